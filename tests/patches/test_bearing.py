@@ -8,37 +8,44 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
+from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
 from raceway.core.patches.balls import Balls
 from raceway.core.patches.pool import Pool
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.testing import b7206c, run, settle
+from raceway.testing import b7206c, model_of, run, settled
 
-NODAL = {
-    "bodies": {"kind": "condensed"},
-    "contact": {"kind": "unilateral", "discretisation": "nodal"},
-    "mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3},
-    "load": {"axial": 1000.0, "radial": [500.0, 0.0]},
-}
-
-
-def scene(**more):
-    tables = b7206c(**NODAL)
-    for name, table in more.items():
-        tables[name] = {**tables.get(name, {}), **table} if isinstance(table, dict) else table
-    return scene_from_dict(tables)
+NODAL = b7206c(
+    bodies={"kind": "condensed"},
+    contact={"kind": "unilateral", "discretisation": "nodal"},
+    mesh={"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3},
+    load={"radial": [500.0, 0.0]},
+)
+RESULTANT = {"kind": "hertz", "discretisation": "resultant"}
 
 
-def model(**more):
-    found = scene(**more)
-    return build_model(found, make_plan(found))
+def tables(**more):
+    return NODAL | {name: NODAL.get(name, {}) | table for name, table in more.items()}
+
+
+def at_rest(**more):
+    return settled(tables(**more))
 
 
 @pytest.fixture(scope="module")
 def free():
-    case = model(supports={"tilt": "free"})
-    return case, settle(case)
+    return at_rest(supports={"tilt": "free"})
+
+
+def off_tangent(system, at, ball):
+    """Largest difference of the stiffness from differences of forces, each row and column by the root of its diagonal."""
+    stiffness, worst = system.evaluate(at, ball=ball).stiffness, 0.0
+    for j, size in enumerate([1e-11, 1e-11, 1e-11, 1e-9, 1e-9]):
+        step = size * np.eye(5)[j]
+        ahead, behind = (system.evaluate(at + s * step, ball=ball).force for s in (1.0, -1.0))
+        weight = np.sqrt(np.diag(stiffness) * stiffness[j, j])
+        worst = max(worst, np.abs(((ahead - behind) / (2.0 * size) - stiffness[:, j]) / weight).max())
+    return worst
 
 
 def test_ring_and_balls_are_in_equilibrium(free):
@@ -49,21 +56,14 @@ def test_ring_and_balls_are_in_equilibrium(free):
     assert now.force[3:] == pytest.approx([0.0, 0.0], abs=1e-8)
     # Without centrifugal forces both races carry the same.
     assert found.contact_force[:12] == pytest.approx(found.contact_force[12:], rel=1e-9)
-
-
-def test_it_is_stepped_from_python_and_has_a_compiled_ring_near_it(free):
-    case, _ = free
-    assert compiled(case.system) is None
-    assert compiled(surrogate(case.system)) is not None
+    # It is stepped from Python, and a compiled ring is near it.
+    assert compiled(case.system) is None and compiled(surrogate(case.system)) is not None
 
 
 def test_it_is_near_resultants_of_the_same_bodies(free):
     """2 % with three points along a semi-axis (0.8 % with eight); the mean stiffness 2 %."""
     case, found = free
-    other = model(
-        contact={"kind": "hertz", "discretisation": "resultant"}, supports={"tilt": "free"}, mesh={"element_size": 0.8e-3}
-    )
-    near = settle(other)
+    near = at_rest(contact=RESULTANT, supports={"tilt": "free"}, mesh={"element_size": 0.8e-3})[1]
     scale = np.array([1.0, 1.0, 1.0, case.system.arm, case.system.arm])
     assert np.abs((found.displacement - near.displacement) * scale).max() < 0.02 * np.abs(near.displacement * scale).max()
     assert np.diag(found.stiffness) == pytest.approx(np.diag(near.stiffness), rel=0.02)
@@ -73,13 +73,9 @@ def test_it_is_near_resultants_of_the_same_bodies(free):
 def test_the_tangent_is_the_derivative(free):
     """Inside a step that changes no set of points; balls follow, so their places are part of it."""
     case, found = free
+    # Forces are known to 1e-8 N here: 1e-3 of what 1e-11 m change.
+    assert off_tangent(case.system, found.displacement, found.ball) < 3e-3
     now = case.system.evaluate(found.displacement, ball=found.ball)
-    for j, size in enumerate([1e-11, 1e-11, 1e-11, 1e-9, 1e-9]):
-        step = size * np.eye(5)[j]
-        ahead, behind = (case.system.evaluate(found.displacement + s * step, ball=found.ball).force for s in (1.0, -1.0))
-        weight = np.sqrt(np.diag(now.stiffness) * now.stiffness[j, j])
-        # Forces are known to 1e-8 N here: 1e-3 of what 1e-11 m change.
-        assert np.abs(((ahead - behind) / (2.0 * size) - now.stiffness[:, j]) / weight).max() < 3e-3
     assert np.abs(now.stiffness - now.stiffness.T).max() < 1e-9 * np.abs(now.stiffness).max()
 
 
@@ -111,22 +107,19 @@ def test_balls_go_along_with_their_grooves_before_newton(free, monkeypatch):
 
 
 def test_balls_at_cage_speed_press_the_outer_race():
-    case = model(excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0})
-    found = settle(case)
+    case, found = at_rest(
+        excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0}
+    )
     radial = np.cos(found.angle_outer) * found.contact_force[12:] - np.cos(found.angle_inner) * found.contact_force[:12]
     # A pressure over points leans by some hundredths of a degree against the line through ball and groove centre.
     assert radial == pytest.approx(case.system.table[:, CENTRIFUGAL], rel=0.02)
     assert radial.min() > 10.0
 
 
-def test_the_first_points_hold_the_contacts_of_the_scene(free):
-    """Patches that are too small would be made again, wider, at several times the cost."""
+def test_the_first_points_hold_the_contacts_of_the_scene_and_get_more_where_they_do_not(free):
+    """Patches that are too small would be made again, wider, at several times the cost; three times the load needs it."""
     assert len(free[0].system.pool.generations) == 1
-
-
-def test_contacts_that_leave_their_points_get_more():
-    """The patches are laid out for one load; three times the load is found on patches that grew."""
-    case = model()
+    case = model_of(tables())
     heavy = attrs.evolve(case.system, load=3.0 * case.system.load)
     rows = heavy.pool.patches[0].columns
     q, ball, _ = heavy.settle(case.guess)
@@ -136,20 +129,19 @@ def test_contacts_that_leave_their_points_get_more():
 
 def test_without_more_points_it_is_a_failure_that_says_where(free):
     case, _ = free
-    alone = attrs.evolve(case.system, pool=Pool(model().bearing.pool.patches), load=16.0 * case.system.load)
+    alone = attrs.evolve(case.system, pool=Pool(model_of(tables()).bearing.pool.patches), load=16.0 * case.system.load)
     with pytest.raises(ConvergenceError, match="leaves its surface points along"):
         alone.settle(case.guess)
 
 
 def test_the_edge_of_the_groove_is_told_with_the_load():
-    case = model(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
-    found = settle(case)
+    case, found = at_rest(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
     said = case.bearing.warnings(case, found)
     assert any("cut off by the groove's edge" in one and "N a ball" in one for one in said)
 
 
 def test_the_result_tells_pressures_approaches_and_points(free):
-    result = run(scene(supports={"tilt": "free"}))
+    result = run(scene_from_dict(tables(supports={"tilt": "free"})))
     ball = result.to_dict()["equilibrium"]["balls"][0]
     nodal, hertz = ball["peak_pressure_nodal_inner_pa"], ball["peak_pressure_inner_pa"]
     assert nodal == pytest.approx(hertz, rel=0.03)
@@ -169,8 +161,7 @@ def test_the_result_tells_pressures_approaches_and_points(free):
 def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
     size, how = free[0].bearing.contact_error(*free)
     assert size == 0.0 and "overlap" in how, "unilateral"
-    case = model(contact={"kind": "hertz"}, supports={"tilt": "free"})
-    found = settle(case)
+    case, found = at_rest(contact={"kind": "hertz"}, supports={"tilt": "free"})
     size, how = case.bearing.contact_error(case, found)
     # 1 % of Hertz's approach at the typical load; it grows with the cube root of the load over its area, and contacts on
     # finite rings approach less than half-spaces: some percent.
@@ -181,8 +172,7 @@ def test_the_error_of_the_contacts_is_the_share_that_overlaps(free):
 
 def test_the_mesh_error_is_near_what_twice_as_many_points_change():
     """Of order 2: 4/3 of that; within a factor of 3, for two points per semi-axis are not yet in the limit."""
-    coarse, fine = (model(supports={"tilt": "free"}, mesh={"nodes_per_semi_axis": n}) for n in (2, 4))
-    found, other = settle(coarse), settle(fine)
+    (coarse, found), (_, other) = (at_rest(supports={"tilt": "free"}, mesh={"nodes_per_semi_axis": n}) for n in (2, 4))
     weight = np.array([1.0, 1.0, 1.0, coarse.system.arm, coarse.system.arm])
     moved = np.abs((other.displacement - found.displacement) * weight).max()
     change = moved / np.abs(found.displacement * weight).max()
@@ -216,5 +206,5 @@ REFUSED = {
 def test_what_cannot_be_is_refused_with_the_way_out(name):
     more, path, said = REFUSED[name]
     with pytest.raises(SceneError) as caught:
-        make_plan(scene(**more))
+        make_plan(scene_from_dict(tables(**more)))
     assert any(m.path == path and said in m.message for m in caught.value.mistakes), str(caught.value)
