@@ -89,6 +89,8 @@ def test_forces_are_the_references(pressed):
     # Gaps of 1e-8 m are differences of lengths of 1e-2 m: 1e-16 / 1e-6 of relative rounding, times a few.
     np.testing.assert_allclose(contact.pressure, pressure, atol=1e-6 * pressure.max())
     np.testing.assert_allclose(-inner.reshape(-1, 3), force, atol=1e-6 * np.abs(force).max())
+    # Of a linear law.
+    assert contact.energy() == pytest.approx(0.5 * contact.area @ pressure**2 / found.penalty, rel=1e-5)
     # No momentum is lost: sums of a few hundred roundings.
     assert np.abs(inner.reshape(-1, 3).sum(axis=0)).max() < 1e-12 * np.abs(inner.reshape(-1, 3)).sum(axis=0).max()
 

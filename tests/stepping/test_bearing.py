@@ -14,7 +14,7 @@ from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import Drivers, integrate
 from raceway.core.stepping.record import Schedule
 from raceway.integrators import raceway_integrators
-from raceway.testing import model_of, settle
+from raceway.testing import settled
 from raceway.testing.integrator import IntegratorSuite
 from validation.scenes import rotating
 
@@ -40,10 +40,7 @@ def case(integrator: str, **changes: Any):
     """Method, system, start and schedule: 40 steps of a bearing that rings after a sudden force."""
     tables = rotating(600.0, "free", 12000.0, changes.pop("inertia", True), integrator)
     tables["integrator"]["steps_per_turn"] = 2880 if integrator == "central_difference" else 360
-    for table, keys in changes.items():
-        tables[table] = tables.get(table, {}) | keys
-    model = model_of(tables)
-    now = settle(model)
+    model, now = settled(tables | {table: tables.get(table, {}) | keys for table, keys in changes.items()})
     method, dt = model.scene.integrator.method, model.excitation.period_s / tables["integrator"]["steps_per_turn"]
     begin = at_rest if method.inertial else static_orbit
     return method, model.system, begin(model.system, now.displacement, now.ball, False), Schedule(dt, 40, 1, ramp=20 * dt)
@@ -85,21 +82,14 @@ def test_loops_conform(method):
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
 def test_two_halves_are_the_whole(kind):
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
-    whole = integrate(method, SteppedBearing(system), start, schedule)
     half = attrs.evolve(schedule, steps_per_turn=20)
-    first = integrate(method, SteppedBearing(system), start, half)
-    second = integrate(method, SteppedBearing(system), first.final, attrs.evolve(half, first=20))
-    for name in ("time", "displacement", "velocity", "force", "ball", "contact_force"):
-        assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
-
-
-def test_compiled_loops_keep_the_clock_too():
-    method, system, start, schedule = case("generalized_alpha")
-    whole = integrate(method, system, start, schedule)
-    half = attrs.evolve(schedule, steps_per_turn=20)
-    first = integrate(method, system, start, half)
-    second = integrate(method, system, first.final, attrs.evolve(half, first=20))
-    assert (np.concatenate([first.displacement, second.displacement]) == whole.displacement).all()
+    for loops in (system, SteppedBearing(system)):
+        whole, first = (integrate(method, loops, start, one) for one in (schedule, half))
+        second = integrate(method, loops, first.final, attrs.evolve(half, first=20))
+        for name in ("time", "displacement", "force", "ball", "contact_force", "velocity")[
+            : 5 if loops is system and not method.inertial else 6
+        ]:
+            assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
 
 
 def test_step_above_the_stable_limit_is_refused_with_the_limit():

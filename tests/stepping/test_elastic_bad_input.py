@@ -49,11 +49,9 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     at = surface_points(meshes[0][0], under)
     pair = Pair("upper on lower", at, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
     contact = NodalContact([pair], assembly.nodes, linear, np.full((len(at.area), 1), penalty))
-    load = np.zeros(assembly.size)
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
-    load += assembly.reduced(force.ravel())
-    return ElasticSystem(assembly, contact, MODULUS, load)
+    return ElasticSystem(assembly, contact, MODULUS, assembly.reduced(force.ravel()))
 
 
 def _facets(mesh, height):
@@ -104,9 +102,8 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
     stepped, start = moving(cubes(gap=1e-7, penalty=1e16))
     stepped.begin(start)
     step = 0.8 * stepped.stable_step()
-    with pytest.raises(
-        StabilityError, match="s at t = .* s, where contacts have closed or stiffened. Take at least"
-    ) as caught:
+    words = "s at t = .* s, where contacts have closed or stiffened. Take at least"
+    with pytest.raises(StabilityError, match=words) as caught:
         integrate(CentralDifference(), stepped, start, Schedule(step, 400, 1))
     named = float(re.search(r"differences, (\S+) s at", str(caught.value))[1])
     assert named < 0.5 * step
@@ -133,30 +130,6 @@ def test_going_on_equals_never_having_stopped(method):
     apart = np.abs(rest.final.whole["u"] - whole.final.whole["u"]).max()
     # Explicit steps to the last bit; implicit ones to Newton's tolerance of 1e-9 of the forces.
     assert apart <= (1e-7 * np.abs(whole.final.whole["u"]).max() if method.implicit else 0.0)
-
-
-@pytest.mark.slow
-def test_explicit_and_implicit_steps_agree_and_keep_the_energy():
-    found = []
-    for method, steps in ((CentralDifference(), 4000), (Newmark(), 400)):
-        stepped, start = moving(cubes(gap=1e-7))
-        record = integrate(method, stepped, start, Schedule(2e-5 / steps, steps, 1, stride=steps // 100))
-        found.append(record)
-        total = sum(record.energies[name] for name in ("elastic", "kinetic", "contact")) - record.energies["external"]
-        # Second order at 0.05 us steps; the impact of faces is sudden.
-        assert np.ptp(total) < 0.02 * record.energies["kinetic"].max()
-    a, b = (record.contact_force[:, 0] for record in found)
-    # The first touch is a jump that 0.05 us blur: the impulse agrees.
-    assert b.sum() == pytest.approx(a.sum(), rel=0.03)
-
-
-def test_a_step_without_balance_keeps_state_and_history():
-    stepped, start = moving(cubes(gap=-1e-7))
-    stepped.solve = lambda *_: np.full(stepped.size, 1e-9)  # type: ignore[method-assign]
-    with pytest.raises(ConvergenceError, match="did not converge after 0 of 5 steps") as caught:
-        integrate(Newmark(), stepped, start, Schedule(1e-7, 5, 1))
-    assert (caught.value.state["u"] == start.whole["u"]).all()
-    assert np.isfinite(caught.value.state["residuals"]).all()
 
 
 def test_an_equilibrium_that_is_not_found_keeps_the_last_good_state_and_the_residuals():

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import copy
 import threading
 from functools import cache
 
 import numpy as np
 import pytest
 
-from raceway import StabilityError, build_model, make_plan, scene_from_dict
+from raceway import StabilityError
 from raceway.core.elastic.body_forces import fitting_threads
 from raceway.core.elastic.start import at_rest
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.core.threads import ThreadPool
 from raceway.integrators.central_difference import CentralDifference
-from raceway.testing import settle
+from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
 
 #: Friction on rigid seats; dashpots, a shaft and elastic seats, whose ring rides on its bed, with the other element.
@@ -35,12 +34,8 @@ STEPS, STEP = 12, 2e-9
 @cache
 def model_of(case: str):
     """Model and its equilibrium."""
-    tables = copy.deepcopy(TINY) | copy.deepcopy(EXCITED)
-    for name, table in CASES[case].items():
-        tables[name] = tables.get(name, {}) | table
-    scene = scene_from_dict(tables)
-    model = build_model(scene, make_plan(scene))
-    return model, settle(model)
+    tables = TINY | EXCITED
+    return settled(tables | {name: tables.get(name, {}) | table for name, table in CASES[case].items()})
 
 
 def moved(case: str, threads: int, steps: int = STEPS, step: float = STEP, on_chunk=None):
@@ -64,12 +59,10 @@ def test_the_digits_do_not_depend_on_the_number_of_threads(case):
     for threads in (2, 3):
         found = moved(case, threads)
         assert found.counts["threads"] == threads
-        for name in ("displacement", "velocity", "gap", "contact_force", "ball"):
-            assert np.array_equal(getattr(found, name), getattr(alone, name)), name
-        for name, values in alone.final.whole.items():
-            assert np.array_equal(found.final.whole[name], values), name
-        for name, values in alone.energies.items():
-            assert np.array_equal(found.energies[name], values), name
+        names = ("displacement", "velocity", "gap", "contact_force", "ball")
+        one, other = ({name: getattr(record, name) for name in names} for record in (alone, found))
+        for name, values in (one | alone.final.whole | alone.energies).items():
+            assert np.array_equal((other | found.final.whole | found.energies)[name], values), name
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -122,12 +115,8 @@ def test_accelerations_are_those_of_the_whole_matrices(case):
     assert (found[:m][~system.assembly.frame_free] == 0.0).all()
     if case == "seats":
         assert np.abs(system.damping_times(a)).max() > 0.0
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_hourglass_energy_of_all_bodies_is_the_sum_of_theirs(case):
-    a = model_of(case)[0].bearing.bearing.system.assembly
-    u = 1e-7 * np.random.default_rng(5).standard_normal(3 * a.nodes)
+    # Hourglass energy of all bodies is the sum of theirs.
+    a, u = system.assembly, 1e-7 * np.random.default_rng(5).standard_normal(3 * system.assembly.nodes)
     wanted = sum(body.operator.hourglass_energy(u[a.part(k)]) for k, body in enumerate(a.bodies))
     assert (wanted > 0.0) == (case == "friction")
     assert a.hourglass_energy(u) == pytest.approx(wanted, rel=1e-13)  # ranges in another order

@@ -61,23 +61,20 @@ def test_tangent_is_the_derivative():
     assert np.abs(symmetric - np.swapaxes(symmetric, 1, 2)).max() < 1e-12 * np.abs(symmetric).max()
 
 
-def test_history_is_committed_only_when_told():
+def test_history_is_committed_only_when_told_and_an_open_point_carries_nothing():
     _, normal, friction = points()
     shift = np.full((40, 3), 1e-6)
-    first, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
-    assert (friction.evaluate(np.zeros((40, 3)), normal, np.full(40, 1e9), np.zeros(40))[0] == 0.0).all()
-    friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
-    friction.commit()
-    again, _ = friction.evaluate(shift, normal, np.full(40, 1e9), np.zeros(40))
-    assert np.abs(again - first).max() < 1e-12 * np.abs(first).max()
-    assert friction.evaluate(2 * shift, normal, np.full(40, 1e9), np.zeros(40))[0] == pytest.approx(2 * first, rel=1e-12)
 
+    def at(place, pressure=1e9):
+        return friction.evaluate(place, normal, np.full(40, pressure), np.zeros(40))[0]
 
-def test_an_open_point_carries_nothing():
-    _, normal, friction = points()
-    friction.evaluate(np.full((40, 3), 1e-6), normal, np.full(40, 1e9), np.zeros(40))
+    first = at(shift).copy()
+    assert (at(0.0 * shift) == 0.0).all()
+    at(shift)
     friction.commit()
-    assert (friction.evaluate(np.full((40, 3), 1e-6), normal, np.zeros(40), np.zeros(40))[0] == 0.0).all()
+    assert np.abs(at(shift) - first).max() < 1e-12 * np.abs(first).max()
+    assert at(2 * shift) == pytest.approx(2 * first, rel=1e-12)
+    assert (at(shift, 0.0) == 0.0).all()
 
 
 def test_closed_cycles_lose_four_times_the_amplitude():
@@ -104,13 +101,10 @@ def test_block_sticks_below_the_limit():
     block = Block(WEIGHT, MU, pull, stick=1e11)
     start = block.at_rest()
     record = integrate(Newmark(), block, start, Schedule(4e-5, 125, 1))
-    x, sticking = (
-        record.displacement[:, 0] - block.motion(block.begin(start)).q[0],
-        0.3 * MU * WEIGHT / (1e11 * block.area.sum()),
-    )
-    rocking = 0.3 * MU * WEIGHT * 1e-3**2 / (1e12 * 3e-3 * 4e-3**3 / 12.0)
+    x, force = record.displacement[:, 0] - block.motion(block.begin(start)).q[0], 0.3 * MU * WEIGHT
+    sticking, rocking = force / (1e11 * block.area.sum()), force * 1e-3**2 / (1e12 * 3e-3 * 4e-3**3 / 12.0)
     modulus = YOUNG / (2.0 * (1.0 + POISSON))
-    shear = 0.3 * MU * WEIGHT * 2e-3 / (3.0 * modulus * 12e-6)  # mean over the height, the pull spread over the mass
+    shear = force * 2e-3 / (3.0 * modulus * 12e-6)  # mean over the height, the pull spread over the mass
     # Bending and the vibration that the pull leaves are some 1 %.
     assert x.max() == pytest.approx(sticking + rocking + shear, rel=0.02)
     assert np.abs(x[record.time > 4e-3]).max() < 0.03 * sticking
