@@ -57,6 +57,11 @@ def swept(folder, design, executor=None, tables=SCENE, **options):
     return rows_of(folder)
 
 
+def altered(folder, statement):
+    with closing(sqlite3.connect(folder / "s" / "points.sqlite")) as file, file:
+        file.execute(statement)
+
+
 @attrs.frozen
 class Stopping(Serial):
     """Ctrl-C after some batches."""
@@ -214,6 +219,14 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == whole
 
 
+def test_points_left_running_by_a_kill_are_computed_on_resume(tmp_path):
+    """What SIGKILL leaves: nothing puts the state back."""
+    design = grid(["load.axial=400:1000:4"])
+    whole = swept(tmp_path / "s", design)
+    altered(tmp_path, "UPDATE points SET state = 'running', content = NULL WHERE number IN (1, 3)")
+    assert swept(tmp_path / "s", design, resume=True) == whole
+
+
 def test_killed_while_it_computes(tmp_path):
     """The store of a process that was killed is whole, and goes on to the same values."""
     words = [
@@ -266,10 +279,7 @@ def test_a_damaged_row_is_computed_again(case, tmp_path):
     statement, damaged = DAMAGES[case]
     design = grid(["load.axial=500,600,700,800"])
     whole = swept(tmp_path / "s", design)
-    file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
-    with file:
-        file.execute(statement)
-    file.close()
+    altered(tmp_path, statement)
     with open_store(tmp_path / "s") as store:
         read = [row for row in store.rows() if row["status"] == "done"]
     assert len(read) == 4 - len(damaged), "nothing that is damaged is read as a value"
@@ -281,8 +291,7 @@ def test_a_damaged_row_inside_a_chain_of_neighbours_has_the_same_bits_again(tmp_
     """Computed alone it would begin from the equilibrium, not from its neighbour's motion."""
     design = grid(["excitation.speed_rpm=10980:15000:48"])
     whole = swept(tmp_path / "s", design)
-    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
-        file.execute("UPDATE points SET content = replace(content, '1', '2') WHERE number % 3 = 1")
+    altered(tmp_path, "UPDATE points SET content = replace(content, '1', '2') WHERE number % 3 = 1")
     with pytest.warns(UserWarning, match="16 rows of the store are damaged"):
         assert swept(tmp_path / "s", design, resume=True) == whole
 
@@ -292,8 +301,7 @@ def test_a_missing_row_does_not_move_the_values_of_the_others(tmp_path):
     swept(tmp_path / "s", grid(["load.axial=500,600,700,800"]))
     with open_store(tmp_path / "s") as store:
         whole = store.to_xarray()["z_real"].values
-    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
-        file.execute("DELETE FROM points WHERE number = 1")
+    altered(tmp_path, "DELETE FROM points WHERE number = 1")
     with open_store(tmp_path / "s") as store:
         found = store.to_xarray()["z_real"].values
     assert np.isnan(found[1]) and (found[[0, 2, 3]] == whole[[0, 2, 3]]).all()
@@ -337,14 +345,8 @@ def test_rows_of_another_store_are_computed_again(tmp_path):
 def test_damaged_facts_are_refused(tmp_path):
     design = grid(["load.axial=500,600"])
     swept(tmp_path / "s", design)
-    for statement in (
-        "UPDATE facts SET value = replace(value, '500', '501')",
-        "UPDATE facts SET value = substr(value, 1, 3)",
-    ):
-        file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
-        with file:
-            file.execute(statement)
-        file.close()
+    for change in ("replace(value, '500', '501')", "substr(value, 1, 3)"):
+        altered(tmp_path, f"UPDATE facts SET value = {change}")
         with pytest.raises(RacewayError, match="is damaged"):
             open_store(tmp_path / "s")
 
@@ -389,14 +391,12 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
     with pytest.raises(RacewayError, match=r"another sweep \(rotor.mass = 2, 3 here, no axis there\)"):
         prepare(SCENE, grid(["load.axial=500,600", "rotor.mass=2,3"]), tmp_path / "s", resume=True)
     assert rows_of(tmp_path / "s") == whole
-    file = sqlite3.connect(tmp_path / "s" / "points.sqlite")
-    with file:
+    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
         (text,) = file.execute("SELECT value FROM facts WHERE name = 'identity'").fetchone()
         old = {**json.loads(text), "raceway": "0.0.9"}
         file.execute("UPDATE facts SET value = ? WHERE name = 'identity'", (json.dumps(old),))
         texts = dict(file.execute("SELECT name, value FROM facts").fetchall())
         file.execute("UPDATE facts SET value = ? WHERE name = 'digest'", (json.dumps(facts_digest(texts)),))
-    file.close()
     before = (tmp_path / "s" / "points.sqlite").read_bytes()
     with pytest.raises(RacewayError, match=r"another version \(raceway 0.1.0 instead of 0.0.9\)"):
         prepare(SCENE, design, tmp_path / "s", resume=True)
