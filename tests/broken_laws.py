@@ -10,29 +10,77 @@ from raceway import LAW, jit, option
 from raceway.contact_laws.hertz import Hertz
 
 
-@jit(LAW)
-def negative(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        closed = gap[i] < 0.0
-        force[i] = 1e6 * max(-gap[i], 0.0) - (1e5 * gap_rate[i] if closed else 0.0)
-        d_gap[i] = -1e6 if closed else 0.0
-        d_rate[i] = -1e5 if closed else 0.0
+def of_one_contact(function):
+    """The kernel of a law from force, d force / d gap and d force / d rate of one contact."""
+    one = njit(function)
+
+    @jit(LAW)
+    def kernel(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+        for i in range(gap.size):
+            force[i], d_gap[i], d_rate[i] = one(params[i, 0], max(-gap[i], 0.0), gap_rate[i], gap[i])
+
+    return kernel
 
 
-@jit(LAW)
-def sticky(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        force[i] = 1e6 * max(1e-6 - gap[i], 0.0)
-        d_gap[i] = -1e6 if gap[i] < 1e-6 else 0.0
-        d_rate[i] = 0.0
+@of_one_contact
+def negative(k, deep, rate, gap):
+    return (-1e6 * gap - 1e5 * rate, -1e6, -1e5) if gap < 0.0 else (0.0, 0.0, 0.0)
 
 
-@jit(LAW)
-def not_a_number(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        force[i] = params[i, 0] * (-gap[i]) ** 1.5
-        d_gap[i] = 0.0
-        d_rate[i] = 0.0
+@of_one_contact
+def sticky(k, deep, rate, gap):
+    return 1e6 * max(1e-6 - gap, 0.0), -1e6 if gap < 1e-6 else 0.0, 0.0
+
+
+@of_one_contact
+def not_a_number(k, deep, rate, gap):
+    return k * (-gap) ** 1.5, 0.0, 0.0
+
+
+@of_one_contact
+def raising(k, deep, rate, gap):
+    if deep > 5e-6:
+        raise ValueError("too deep")
+    return 0.0, 0.0, 0.0
+
+
+@of_one_contact
+def wrong_slope(k, deep, rate, gap):
+    return k * deep**1.5, -1.51 * k * deep**0.5, 0.0
+
+
+@of_one_contact
+def double_slope(k, deep, rate, gap):
+    return k * deep**1.5, -3.0 * k * deep**0.5, 0.0
+
+
+@of_one_contact
+def half_a_damper(k, deep, rate, gap):
+    factor = max(1.0 - rate, 0.0)
+    return k * deep * factor, -k * factor, -0.5 * k * deep
+
+
+@of_one_contact
+def losing(k, deep, rate, gap):
+    factor = max(1.0 - 0.5 * rate, 0.0)
+    return k * deep**1.5 * factor, -1.5 * k * deep**0.5 * factor, -0.5 * k * deep**1.5 * (factor > 0.0)
+
+
+@of_one_contact
+def gaining(k, deep, rate, gap):
+    factor = max(1.0 + 0.5 * rate, 0.0)
+    return k * deep**1.5 * factor, -1.5 * k * deep**0.5 * factor, 0.5 * k * deep**1.5 * (factor > 0.0)
+
+
+@of_one_contact
+def falling(k, deep, rate, gap):
+    return k * deep**1.5 * max(1.0 - deep / 1.5e-5, 0.0) ** 2, 0.0, 0.0
+
+
+@of_one_contact
+def infinite(k, deep, rate, gap):
+    more = np.exp(1e3 * deep)
+    return k * deep**1.5 + more - 1.0, -1.5 * k * deep**0.5 - 1e3 * more * (deep > 0.0), 0.0
 
 
 @jit(LAW)
@@ -45,16 +93,6 @@ def incomplete(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_
 
 
 @jit(LAW)
-def raising(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        if gap[i] < -5e-6:
-            raise ValueError("too deep")
-        force[i] = 0.0
-        d_gap[i] = 0.0
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
 def writing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     for i in range(gap.size):
         approach = max(-gap[i], 0.0)
@@ -63,33 +101,6 @@ def writing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rat
         force[i] = params[i, 0] * approach**1.5
         d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach)
         d_rate[i] = 0.0
-
-
-@jit(LAW)
-def wrong_slope(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        force[i] = params[i, 0] * approach**1.5
-        d_gap[i] = -1.51 * params[i, 0] * np.sqrt(approach)
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
-def double_slope(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        force[i] = params[i, 0] * approach**1.5
-        d_gap[i] = -3.0 * params[i, 0] * np.sqrt(approach)
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
-def half_a_damper(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        force[i] = params[i, 0] * approach * max(1.0 - gap_rate[i], 0.0)
-        d_gap[i] = -params[i, 0] * max(1.0 - gap_rate[i], 0.0)
-        d_rate[i] = -0.5 * params[i, 0] * approach
 
 
 @jit(LAW)
@@ -106,52 +117,12 @@ def far_beyond(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_
         force[i] = 0.0
 
 
-@jit(LAW)
-def losing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        factor = max(1.0 - 0.5 * gap_rate[i], 0.0)
-        inside = 1.0 if factor > 0.0 else 0.0
-        force[i] = params[i, 0] * approach**1.5 * factor
-        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) * factor
-        d_rate[i] = -0.5 * params[i, 0] * approach**1.5 * inside
-
-
-@jit(LAW)
-def gaining(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        factor = max(1.0 + 0.5 * gap_rate[i], 0.0)
-        inside = 1.0 if factor > 0.0 else 0.0
-        force[i] = params[i, 0] * approach**1.5 * factor
-        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) * factor
-        d_rate[i] = 0.5 * params[i, 0] * approach**1.5 * inside
-
-
-@jit(LAW)
-def falling(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        force[i] = params[i, 0] * approach**1.5 * max(1.0 - approach / 1.5e-5, 0.0) ** 2
-        d_gap[i] = 0.0
-        d_rate[i] = 0.0
-
-
 @jit(LAW, allocates=True)
 def allocating(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     approach = np.maximum(-gap, 0.0)
     for i in range(gap.size):
         force[i] = params[i, 0] * approach[i] ** 1.5
         d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach[i])
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
-def infinite(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        force[i] = params[i, 0] * approach**1.5 + np.exp(1e3 * approach) - 1.0
-        d_gap[i] = -1.5 * params[i, 0] * np.sqrt(approach) - 1e3 * np.exp(1e3 * approach) * (1.0 if approach > 0.0 else 0.0)
         d_rate[i] = 0.0
 
 
