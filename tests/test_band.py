@@ -28,25 +28,6 @@ def test_indices_of_ishigamis_function_are_the_closed_form():
     assert np.abs(found.total[0] - np.array([v1 + v13, v2, v13]) / whole).max() < 0.02
 
 
-@pytest.mark.slow  # the first-order band of a result, below, is held against samples, too
-def test_a_small_band_is_that_of_the_derivatives():
-    """Even numbers in p +- h through a nearly straight line: 95 % of them lie within 0.95 h."""
-    given = {"load.axial": "±0.1 %", "bearing.contact_angle_deg": "± 0.01 deg"}
-    slopes = rw.sensitivities(LOADED, list(given))
-    for path, text, size in (("load.axial", "±0.1 %", 0.5), ("bearing.contact_angle_deg", "±0.01 deg", 0.01)):
-        band = rw.band(LOADED, {path: text}, count=256)
-        half = 0.5 * (band.high["kxx"] - band.low["kxx"])
-        assert half == pytest.approx(0.95 * size * abs(slopes[path].derivatives["kxx"]), rel=0.01)
-    both = rw.band(LOADED, given, count=256)
-    shares = np.array(
-        [
-            (slopes[path].derivatives["kxx"] * size) ** 2
-            for path, size in (("load.axial", 0.5), ("bearing.contact_angle_deg", 0.01))
-        ]
-    )
-    assert both.first["kxx"] == pytest.approx((shares / shares.sum()).tolist(), abs=0.01)
-
-
 def test_limits_of_a_sum_of_even_numbers_are_the_closed_forms():
     assert limits([]) == (0.0, 0.0)
     assert limits([(-1.0, 3.0)]) == pytest.approx((1.0 - 1.9, 1.0 + 1.9), abs=1e-3)

@@ -8,12 +8,11 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, scene_from_dict
+from raceway import SceneError, run, scene_from_dict
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
 from raceway.scene.growth import grooves
 from raceway.studies.infer.printed import printed_by
-from raceway.testing import run
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.
@@ -137,10 +136,10 @@ def test_the_catalogue_is_searched_by_pattern_or_by_a_part_of_the_name():
 
 def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     static = {"bearing": {"preset": "7014C"}, "load": {"axial": 1000.0}}
-    found = run(scene_from_dict(static))
+    found = run(static)
     assert found.geometry["words"] == "geometry inferred: stiffness known to about 4 % axially, 8 % radially"
     # A series without printed stiffnesses is known less well than those that have some.
-    other = run(scene_from_dict({**static, "bearing": {"preset": "7914C"}})).geometry
+    other = run({**static, "bearing": {"preset": "7914C"}}).geometry
     assert other["stiffness_error"] == other["radial_stiffness_error"] == 0.2 and "another maker" in other["stiffness_basis"]
     assert set(found.geometry["inferred"]) == {
         "ball_count", "ball_diameter", "pitch_diameter", "conformity_inner", "conformity_outer",
@@ -150,15 +149,15 @@ def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
         "ball_count": 20, "ball_diameter": 0.0119, "pitch_diameter": 0.09, "conformity_inner": 0.52,
         "conformity_outer": 0.53,
     }  # fmt: skip
-    assert run(scene_from_dict({**static, "bearing": {"preset": "7014C", **own}})).geometry is None
-    assert run(scene_from_dict({**static, "bearing": {"preset": "DGB7-MASTA"}})).geometry is None
-    assert run(scene_from_dict({**static, "bearing": {"preset": "B7206C"}})).geometry["stiffness_error"] == 0.036
+    assert run({**static, "bearing": {"preset": "7014C", **own}}).geometry is None
+    assert run({**static, "bearing": {"preset": "DGB7-MASTA"}}).geometry is None
+    assert run({**static, "bearing": {"preset": "B7206C"}}).geometry["stiffness_error"] == 0.036
 
 
 def test_presets_of_rows_are_spoken_of_too():
     base = {"load": {"axial": 500.0}}
     rows = [{"preset": "7014C"}, {"preset": "7014A5"}]
-    found = run(scene_from_dict({**base, "bearing": {"arrangement": "DB", "row": rows, "row_distance": 0.02}})).geometry
+    found = run({**base, "bearing": {"arrangement": "DB", "row": rows, "row_distance": 0.02}}).geometry
     assert [(one["row"], one["preset"]) for one in found["rows"]] == [(0, "7014C"), (1, "7014A5")]
     assert found["stiffness_error"] == max(one["stiffness_error"] for one in found["rows"])
     assert "preset" not in found and found["words"].startswith("geometry inferred")
@@ -166,7 +165,7 @@ def test_presets_of_rows_are_spoken_of_too():
     mixed = {
         "preset": "B7206C", "arrangement": "DB", "row_distance": 0.02, "row": [{"preset": "7206A5", "ball_count": 12}, {}],
     }  # fmt: skip
-    found = run(scene_from_dict({**base, "bearing": mixed})).geometry
+    found = run({**base, "bearing": mixed}).geometry
     assert found["preset"] == "B7206C" and [one["preset"] for one in found["rows"]] == ["7206A5"]
     assert "ball_count" not in found["rows"][0]["inferred"] and "ball_count" in found["inferred"]
 
@@ -200,7 +199,7 @@ def test_a_material_changes_the_mass_too():
 
     def force(material):
         scene = {"bearing": {"preset": "7014C", "balls": {"material": material}}, "load": {"axial": 2000.0}}
-        balls = run(scene_from_dict({**scene, "kinematics": {"spin_speed_rpm": 20000.0}})).to_dict()["equilibrium"]["balls"]
+        balls = run({**scene, "kinematics": {"spin_speed_rpm": 20000.0}}).to_dict()["equilibrium"]["balls"]
         one = balls[0]
         out, into = (one[f"load_{r}_n"] * np.cos(np.radians(one[f"contact_angle_{r}_deg"])) for r in ("outer", "inner"))
         return out - into
@@ -213,7 +212,7 @@ def test_hybrid_balls_are_stiffer_as_hertz_says():
 
     def k(material):
         scene = {"bearing": {"preset": "7014A5", "balls": {"material": material}}, "load": {"axial": 100.0}}
-        return run(scene_from_dict(scene)).stiffness[0, 0]
+        return run(scene).stiffness[0, 0]
 
     steel, mixed = 2 * (1 - 0.3**2) / 208e9, (1 - 0.3**2) / 208e9 + (1 - 0.27**2) / 310e9
     # The softer bearing opens its contact angle more, which takes some percent of the gain.

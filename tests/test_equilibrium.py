@@ -7,7 +7,7 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
-from raceway.planning.closed_form import axial_approach, series_factor
+from raceway.planning.closed_form import axial_approach
 from raceway.testing import Model, model_of, settle, settled
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring
@@ -137,12 +137,6 @@ def test_the_axial_approach_is_that_of_the_equilibrium(built, preset, axial):
     approach, load = axial_approach(model.scene)
     assert approach == pytest.approx(equilibrium.displacement[0], rel=0.02)
     assert load == pytest.approx(equilibrium.contact_force.mean(), rel=0.005)
-
-
-def test_the_series_factor_is_that_of_two_hertz_contacts(built):
-    model = built()
-    exact = (model.inner.factor ** (-2.0 / 3.0) + model.outer.factor ** (-2.0 / 3.0)) ** -1.5
-    assert series_factor(model.scene) == pytest.approx(exact, rel=0.02)
 
 
 CASES = cases()

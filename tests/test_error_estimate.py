@@ -7,20 +7,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
+from raceway import run
 from raceway.commands.screen.text import number_within
 from raceway.pipeline.error import estimate as error_estimate
 from raceway.pipeline.error.finer_series import more_equilibria
 from raceway.pipeline.error.steady_motion import _at_speed, settles_elsewhere
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
-from raceway.testing import b7206c, run
+from raceway.testing import b7206c
 from validation.error_estimate import judge, named, right
 from validation.scenes import rotating
 from validation.series_errors import SERIES, series
 
 
 def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():
-    error = run(scene_from_dict(series(*SERIES[2], 360))).error
+    error = run(series(*SERIES[2], 360)).error
     assert error["total"] == pytest.approx(1e-11, rel=0.1) and "residual" in error["how"]["time_step"]
 
 
@@ -29,7 +29,7 @@ def test_a_finer_series_has_other_harmonics():
 
 
 def test_of_equilibria_every_step_is_recorded_up_to_the_limit_of_long_runs():
-    found = run(scene_from_dict(series(*SERIES[2], 2880)))
+    found = run(series(*SERIES[2], 2880))
     assert len(found.simulation.record.time) == 2880
     assert recorded_per_turn(2880, 12) == 360 and recorded_per_turn(2880, 12, inertial=False) == 2880
     assert samples_per_turn(1000, inertial=False) == samples_per_turn(1000) == 72
@@ -45,8 +45,8 @@ def _near_resonance(**integrator):
 @pytest.mark.parametrize(("start", "turns"), [("static", 3), ("static", 6), ("ramp", 3), ("ramp", 12)])
 def test_a_start_near_resonance_states_at_least_a_third_of_its_error(start, turns):
     tables = _near_resonance(start=start, turns=turns)
-    found = run(scene_from_dict(tables))
-    wanted = run(scene_from_dict({**tables, "integrator": {"kind": "periodic"}})).identification.dynamic_stiffness
+    found = run(tables)
+    wanted = run({**tables, "integrator": {"kind": "periodic"}}).identification.dynamic_stiffness
     true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
     assert true > 0.01 and right(found.error["total"], true), (found.error["total"], true)
 
@@ -73,10 +73,10 @@ def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
     tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
     tables["integrator"] |= {"turns": 4, "steps_per_turn": 60, "start": "static"}
     tables["identifier"] = {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0, 15000.0]}
-    sudden = run(scene_from_dict(tables)).error
+    sudden = run(tables).error
     assert sudden["total"] >= 0.3 * sudden["transient"] > 1e-4 and "steady motion" in sudden["how"]["transient"]
     tables["contact"] |= {"friction": 0.03}
-    rubbing = run(scene_from_dict(tables)).error
+    rubbing = run(tables).error
     assert rubbing["transient"] is None and rubbing["total"] is None
     assert rubbing["how"]["total"].startswith("not estimated: that of the transient is not known (a steady motion")
 
@@ -92,12 +92,12 @@ def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatc
     monkeypatch.setattr(
         "raceway.pipeline.error.steady_motion._at_speed", lambda *given: (speeds.append(given[1]), _at_speed(*given))[1]
     )
-    found = run(scene_from_dict(tables))
+    found = run(tables)
     assert speeds == [speed for speed, _ in found.identification.series]  # for both error and series: once
     rpm = found.identification.frequency_hz * 60.0
     steady = {**tables, "integrator": {"kind": "periodic"}, "identifier": {"kind": "fft_1x"}}
     steady["excitation"] = {"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4}
-    wanted = run(scene_from_dict(steady)).identification.dynamic_stiffness
+    wanted = run(steady).identification.dynamic_stiffness
     true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
     assert true > 1e-6 and right(found.error["total"], true), (found.error["total"], true)
 
@@ -113,7 +113,7 @@ def test_k_shows_the_digits_that_its_error_leaves():
 def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
     tables = _near_resonance(start="static", turns=6)
     tables["rotor"] = {"mass": 1000.0}  # |Z| is six times K
-    found = run(scene_from_dict(tables)).to_dict()
+    found = run(tables).to_dict()
     k, z = found["identification"], found["identification"]["dynamic_stiffness"]
     assert k["equivalent_stiffness_error"] == pytest.approx(found["error"]["total"] * z["abs"])
     assert k["equivalent_stiffness_error"] > 5.0 * found["error"]["total"] * k["equivalent_stiffness"]
@@ -121,9 +121,9 @@ def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
 
 def _with_and_without_the_steady_motion(monkeypatch, tables):
     """A result that knows no steady motion, and its true error."""
-    wanted = run(scene_from_dict({**tables, "integrator": {"kind": "periodic"}})).identification.dynamic_stiffness
+    wanted = run({**tables, "integrator": {"kind": "periodic"}}).identification.dynamic_stiffness
     monkeypatch.setattr(error_estimate, "settled_value", lambda *_: None)
-    found = run(scene_from_dict(tables))
+    found = run(tables)
     return found, abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
 
 
@@ -156,7 +156,7 @@ def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_c
     case = named("lift-off, 100 N, tilt free")
     estimate, true, _ = judge(case)
     assert right(estimate, true), (estimate, true)
-    assert "240 instead of 360 steps" in run(scene_from_dict(case.tables)).error["how"]["time_step"]
+    assert "240 instead of 360 steps" in run(case.tables).error["how"]["time_step"]
 
 
 def motion(tolerance: float, axial: float):
@@ -167,7 +167,7 @@ def motion(tolerance: float, axial: float):
         supports={"tilt": "free"},
         integrator={"kind": "periodic", "tolerance": tolerance, "symmetry": "none"},
     )
-    return run(scene_from_dict(tables))
+    return run(tables)
 
 
 @pytest.mark.parametrize("axial", [400.0, 1000.0])

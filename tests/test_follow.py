@@ -361,15 +361,8 @@ def test_the_command_writes_and_tells(tmp_path):
         assert row["amplitude"] == pytest.approx(50.0 / np.hypot(row["z_real"], row["z_imag"]), rel=1e-6)
     stiffness = [row["stiffness"] for row in content["rows"]]
     assert stiffness[0] > 1.1 * stiffness[-1]  # a lighter preload makes a softer bearing
-    direct = rw.run({**content_scene(), "load": {"axial": 600.0}})
+    direct = rw.run(
+        rw.evolve(tmp_path / "s.toml", {"load.axial": 600.0, "integrator": {"kind": "periodic", "tolerance": 1e-9}})
+    )
     assert stiffness[-1] == pytest.approx(direct.equivalent_stiffness, rel=1e-6)
     assert (tmp_path / "out" / "follow.png").stat().st_size > 10_000
-
-
-def content_scene():
-    return {
-        "bearing": {"preset": "B7206C"},
-        "rotor": {"mass": 2.0, "damping": 1000.0},
-        "excitation": {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 50.0},
-        "integrator": {"kind": "periodic", "tolerance": 1e-9},
-    }

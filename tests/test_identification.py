@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import scene_from_dict
+from raceway import run
 from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
 from raceway.core.stepping.record import Motion, Record, Schedule
-from raceway.testing import model_of, run, settle
+from raceway.testing import model_of, settle
 from validation.scenes import rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
@@ -122,7 +122,7 @@ def test_series_of_equilibria_is_one_turn(identifier, kind):
     """One turn is enough, both fits agree to rounding, and no mass is added."""
     tables = rotating(400.0, "locked", 15000.0, True, "quasi_static")
     tables["excitation"]["kind"], tables["identifier"] = kind, {"kind": identifier}
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     found = result.identification
     assert len(result.simulation.record.time) == 360
     assert found.window < 1e-12 and found.mass_used == 0.0 and found.spread is None
@@ -132,9 +132,9 @@ def test_tangent_identifier_is_the_small_force_limit():
     """A hundredth of the force: the orbit's secant equals the tangent response."""
     tables = rotating(1000.0, "free", 12000.0, True, "newmark")
     tables["excitation"]["load_share"] = 0.005
-    orbit = run(scene_from_dict(tables)).identification
+    orbit = run(tables).identification
     tables["identifier"] = {"kind": "tangent"}
-    tangent = run(scene_from_dict(tables)).identification
+    tangent = run(tables).identification
     assert orbit.dynamic_stiffness.real == pytest.approx(tangent.dynamic_stiffness.real, rel=1e-3)
 
 
@@ -154,7 +154,7 @@ def response(integrator, share, identifier="fft_1x", **changes):
     }
     for name, table in changes.items():
         tables[name] = {**tables.get(name, {}), **table}
-    return rw.run(scene_from_dict(tables))
+    return rw.run(tables)
 
 
 KINDS = [

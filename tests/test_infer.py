@@ -183,9 +183,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_ratings_of_no_bearing_are_one_message(case):
-    changes, words = REFUSED[case]
+@pytest.mark.parametrize(("changes", "words"), REFUSED.values(), ids=REFUSED)
+def test_ratings_of_no_bearing_are_one_message(changes, words):
     with pytest.raises(SceneError) as caught:
         infer_printed(attrs.evolve(GOOD, **changes), "NSK")
     assert len(caught.value.mistakes) == 1 and words in str(caught.value)
@@ -202,9 +201,8 @@ NO_INPUT = {
 }
 
 
-@pytest.mark.parametrize("case", NO_INPUT)
-def test_numbers_that_no_bearing_has_are_told(case):
-    arguments, words = NO_INPUT[case]
+@pytest.mark.parametrize(("arguments", "words"), NO_INPUT.values(), ids=NO_INPUT)
+def test_numbers_that_no_bearing_has_are_told(arguments, words):
     with pytest.raises(SceneError, match=words):
         rw.infer(*arguments)
 
@@ -229,9 +227,8 @@ TABLES = {
 }
 
 
-@pytest.mark.parametrize("case", TABLES)
-def test_a_wrong_table_is_told_with_its_line(case):
-    text, words = TABLES[case]
+@pytest.mark.parametrize(("text", "words"), TABLES.values(), ids=TABLES)
+def test_a_wrong_table_is_told_with_its_line(text, words):
     with pytest.raises(SceneError, match=words):
         parse_table(text, "mine.csv")
 

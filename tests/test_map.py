@@ -6,14 +6,14 @@ import json
 
 import pytest
 
-from raceway import SceneError, scene_from_dict
+from raceway import SceneError, run
 from raceway.scene.file import read_toml
 from raceway.studies.map import study as study_module
 from raceway.studies.map.curves import SATURATED, curves, trend, words
 from raceway.studies.map.design import ANGLE, AXIAL, METHODS, SPEED, TILT, design
 from raceway.studies.map.point import small_signal
 from raceway.studies.map.study import study_map
-from raceway.testing import default_registry, run
+from raceway.testing import default_registry
 from validation.command_line import EXAMPLES, invoke, raceway
 
 REGISTRY = default_registry()
@@ -99,7 +99,7 @@ def test_small_signals_are_the_limit_of_small_forces():
     for tilt in ("locked", "free"):
         tables = {**TABLES, "integrator": METHODS["quasi_static"], "supports": {"tilt": tilt}}
         tables["excitation"] = {**TABLES["excitation"], "amplitude": "constant", "force": 0.1}
-        found = run(scene_from_dict(tables))
+        found = run(tables)
         # 0.1 N moves 2e-4 to 2e-6 of the approach; what remains is of that order squared and the tolerance of the orbit.
         assert small_signal(found) == pytest.approx(found.identification.equivalent_stiffness, rel=1e-4)
 
@@ -114,7 +114,7 @@ def test_contact_loss_and_the_grooves_edge_are_found():
     tables = {**TABLES, "integrator": METHODS["quasi_static"], "load": {"axial": 10000.0}, "supports": {"tilt": "free"}}
     tables["excitation"] = {**TABLES["excitation"], "speed_rpm": 60000.0}
     # The run itself warns at the same point.
-    assert edge and any("beyond the groove's edge" in text for text in run(scene_from_dict(tables)).warnings)
+    assert edge and any("beyond the groove's edge" in text for text in run(tables).warnings)
 
 
 def test_finished_points_are_kept_and_used_again(tmp_path, monkeypatch):

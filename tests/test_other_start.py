@@ -8,11 +8,10 @@ from types import SimpleNamespace
 import attrs
 import pytest
 
-from raceway import ConvergenceError, make_plan, scene_from_dict
+from raceway import ConvergenceError, make_plan, run, scene_from_dict
 from raceway.pipeline.error import other_start
 from raceway.pipeline.error.estimate import _unresolved
 from raceway.pipeline.error.free_vibration import Clean
-from raceway.testing import run
 
 
 def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):
@@ -30,7 +29,7 @@ def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):
 
 
 def solved(*words, **tables):
-    return run(scene_from_dict(rubbing(*words, **tables)))
+    return run(rubbing(*words, **tables))
 
 
 @pytest.mark.parametrize(("kind", "friction"), [("newmark", 0.3), ("newmark", 0.03), ("quasi_static", 0.3)])
@@ -77,7 +76,7 @@ def test_the_next_start_stands_in_for_one_that_fails(monkeypatch):
 def test_a_force_that_grows_by_itself_is_compared_with_the_orbit():
     tables = rubbing("orbit")
     tables["excitation"] |= {"ramp_turns": 10.0}
-    found = run(scene_from_dict(tables))
+    found = run(tables)
     assert found.simulation.start.kind == "ramp" and "and 'orbit'" in found.error["how"]["transient"]
     assert found.error["total"] > 1e-3
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from raceway import SceneError, scene_from_dict
+from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import _newton, solve
 from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
@@ -30,7 +30,7 @@ from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.error.steady_motion import steady_record
-from raceway.testing import model_of, run, settle
+from raceway.testing import model_of, settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
 from validation.command_line import ARTICLE, invoke
@@ -46,7 +46,7 @@ def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables)
 
 
 def solved(tables, **options):
-    return run(scene_from_dict({**tables, "integrator": {"kind": "periodic", **options}}))
+    return run({**tables, "integrator": {"kind": "periodic", **options}})
 
 
 ONE_WAY = {"kind": "unidirectional"}
@@ -108,7 +108,7 @@ def test_condensed_bodies():
     pitch, turn = solved(tables), solved(tables, symmetry="none")
     off = pitch.identification.dynamic_stiffness / turn.identification.dynamic_stiffness - 1.0
     assert abs(off) < 2e-7
-    by_time = run(scene_from_dict({**tables, "integrator": {"kind": "newmark", "turns": 6, "steps_per_turn": 720}}))
+    by_time = run({**tables, "integrator": {"kind": "newmark", "turns": 6, "steps_per_turn": 720}})
     # Newmark's error at 720 steps is 1.8e-7, its transient's 1e-6.
     assert abs(by_time.identification.dynamic_stiffness / pitch.identification.dynamic_stiffness - 1.0) < 5e-6
 
@@ -270,16 +270,6 @@ def test_a_motion_of_which_rounding_is_much_takes_no_finer_mesh(monkeypatch):
     refined = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8).refined
     assert 1e-8 < refined.error <= refined.solved.rounding < 1e-3
     assert len(taken) <= 5 and len(set(taken)) == 1
-
-
-def test_dashpots_are_noticed():
-    weak, strong = (model_of(scene(contact={"damping": c})) for c in (0.001, 500.0))
-    for model, expected in ((weak, False), (strong, True)):
-        q = settle(model).displacement
-        problem = Problem(model.system, 1256.0, one_turn(model.system))
-        from raceway.core.periodic.first_guess import standing
-
-        assert stiff(problem, standing(problem, q, np.linspace(0.0, 2.0 * np.pi, 25))) is expected
 
 
 @pytest.mark.parametrize(

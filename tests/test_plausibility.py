@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import ConvergenceError, SceneError, scene_from_dict
+from raceway import ConvergenceError, SceneError, run, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.framework.options import nearest
 from raceway.pipeline.facts import facts
@@ -20,14 +20,14 @@ from raceway.pipeline.plausibility import inertia_warnings
 from raceway.pipeline.simulate import _stride
 from raceway.planning.implausible import implausible
 from raceway.planning.recording import samples_per_turn
-from raceway.testing import b7206c, run
+from raceway.testing import b7206c
 from validation.command_line import EXAMPLES
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 
 
 def computed(**tables):
-    return run(scene_from_dict(b7206c(**{"excitation": EXCITED, **tables})))
+    return run(b7206c(**{"excitation": EXCITED, **tables}))
 
 
 def test_angles_of_many_states_at_once_are_those_of_each():
@@ -82,7 +82,7 @@ def test_a_moment_on_locked_tilts_has_no_effect_and_says_so():
 
 
 def static(**tables):
-    return run(scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 300.0}, **tables})).warnings
+    return run({"bearing": {"preset": "B7206C"}, "load": {"axial": 300.0}, **tables}).warnings
 
 
 def of_one_kind(warnings, words):
@@ -105,7 +105,7 @@ def test_a_ring_without_a_fit_is_as_loose_as_one_whose_fit_is_lost():
     """16.3 um: plane-stress annuli of a bore of 70 mm and a land of 85.7 mm on a solid shaft, both turning."""
     kyy = []
     for fit in (0.0, 1e-6, 5e-6):
-        result = run(scene_from_dict({"bearing": SET, "kinematics": FAST, "mounting": {"shaft_interference": fit}}))
+        result = run({"bearing": SET, "kinematics": FAST, "mounting": {"shaft_interference": fit}})
         text = of_one_kind(lost_fits(result.warnings), "has grown 16.3 µm more")
         assert f"loose on its shaft by {16.3 - 1e6 * fit:.1f} µm" in text
         kyy.append(result.stiffness[1, 1])

@@ -8,16 +8,15 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import ConvergenceError, scene_from_dict
+from raceway import ConvergenceError, run
 from raceway.commands.screen.result import run_screen
 from raceway.core.periodic import beginning, direct
 from raceway.core.ring.orbit import differentiation
-from raceway.testing import run
 from validation.several import article, by_integration, heavy
 
 
 def solved(tables):
-    return run(scene_from_dict(tables))
+    return run(tables)
 
 
 def z_of(one):
@@ -68,20 +67,6 @@ def test_without_damping_the_branch_leads_through_no_force():
     wanted, _ = by_own_turn(result)
     assert wanted.real < 0.0
     assert abs(result.identification.dynamic_stiffness - wanted) < 1e-6 * abs(wanted)
-
-
-@pytest.mark.slow
-def test_an_internal_resonance_does_not_hide_the_stable_motion():
-    """Newton's iteration from the linear response ends on an unstable motion or none; the force that grows leads to another."""
-    result = solved(article(1000.0, kind="periodic", tolerance=1e-9))
-    (first,) = result.simulation.orbits
-    wanted, multiplier = by_own_turn(result)
-    z = result.identification.dynamic_stiffness
-    assert abs(z - wanted) < 1e-6 * abs(wanted)
-    assert multiplier == pytest.approx(1.0, abs=1e-5)  # no damping
-    assert first["found"] == "from rest" and first["stable"]
-    by_time = solved(article(1000.0))
-    assert abs(by_time.identification.dynamic_stiffness - z) < 2.0 * by_time.error["total"] * abs(z)
 
 
 @pytest.mark.slow
@@ -202,6 +187,6 @@ def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_interval
         raise ConvergenceError("not found")
 
     monkeypatch.setattr(direct, "solve", newton)
-    run(scene_from_dict(tables))
+    run(tables)
     assert meshes, "the motion is searched for directly"
     assert max(meshes) <= 1.5 * direct.HIGHEST, "but not on twice the mesh, share by share"

@@ -274,9 +274,8 @@ DAMAGES = {
 }
 
 
-@pytest.mark.parametrize("case", DAMAGES)
-def test_a_damaged_row_is_computed_again(case, tmp_path):
-    statement, damaged = DAMAGES[case]
+@pytest.mark.parametrize(("statement", "damaged"), DAMAGES.values(), ids=DAMAGES)
+def test_a_damaged_row_is_computed_again(statement, damaged, tmp_path):
     design = grid(["load.axial=500,600,700,800"])
     whole = swept(tmp_path / "s", design)
     altered(tmp_path, statement)

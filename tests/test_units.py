@@ -45,9 +45,8 @@ SAME = {
 }
 
 
-@pytest.mark.parametrize("case", SAME)
-def test_a_number_with_a_unit(case):
-    unit, text, number = SAME[case]
+@pytest.mark.parametrize(("unit", "text", "number"), SAME.values(), ids=SAME)
+def test_a_number_with_a_unit(unit, text, number):
     assert number_in(unit, text) == number
 
 
@@ -72,9 +71,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
-def test_a_wrong_unit_is_one_message_with_path_and_value(case):
-    change, words = REFUSED[case]
+@pytest.mark.parametrize(("change", "words"), REFUSED.values(), ids=REFUSED)
+def test_a_wrong_unit_is_one_message_with_path_and_value(change, words):
     found = invoke("check", ARTICLE, "--set", change)
     assert found.exit_code == 2
     assert words in found.stderr

@@ -6,10 +6,10 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import scene_from_dict
+from raceway import run
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.testing import b7206c, run, settle, simulate
+from raceway.testing import b7206c, settle, simulate
 
 
 def rubbing(friction=0.03, turns=3, **tables):
@@ -159,7 +159,7 @@ def test_energy_balances_with_friction(built):
 
 
 def test_friction_makes_damping_and_is_reported():
-    result = run(scene_from_dict(rubbing(0.03, turns=6))).to_dict()
+    result = run(rubbing(0.03, turns=6)).to_dict()
     found, stability = result["identification"], result["stability"]
     assert found["equivalent_damping"] > 1000.0
     assert stability["friction_energy_j"] > 0.0 and stability["energy_drift"] < 1e-3
@@ -169,7 +169,7 @@ def test_friction_makes_damping_and_is_reported():
         2.0 * np.pi * found["force_amplitude_n"] * found["forward_amplitude_m"] * np.sin(np.radians(found["phase_lag_deg"]))
     )
     assert stability["friction_energy_j"] == pytest.approx(6 * work, rel=0.1)
-    without = run(scene_from_dict(rubbing(0.0))).to_dict()
+    without = run(rubbing(0.0)).to_dict()
     assert without["stability"]["friction_energy_j"] is None
 
 
@@ -199,8 +199,8 @@ def test_with_sticking_contacts_the_tangent_is_symmetric(built):
 
 
 def test_no_friction_is_the_limit_of_little_friction(built):
-    plain = run(scene_from_dict(rubbing(0.0))).identification.equivalent_stiffness
-    little = run(scene_from_dict(rubbing(1e-6))).identification.equivalent_stiffness
+    plain = run(rubbing(0.0)).identification.equivalent_stiffness
+    little = run(rubbing(1e-6)).identification.equivalent_stiffness
     assert little == pytest.approx(plain, rel=1e-5)
 
 

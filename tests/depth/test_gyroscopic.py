@@ -6,12 +6,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, make_plan, scene_from_dict
+from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
 from raceway.core.ring.system import System
 from raceway.scene.inner_ring import ring_inertia
-from raceway.testing import b7206c, run
+from raceway.testing import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.
 STEP = np.array([1e-6, 1e-6, 1e-6, 3e-5, 3e-5])
@@ -186,7 +186,7 @@ def test_what_spins_stiffens_forward_whirl_and_softens_backward_whirl(whirl, pol
         contact={"damping": 0.0},
         integrator={"kind": "periodic"},
     )
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     # A hollow cylinder of the bore and a land at 0.2 D, without its groove: 0.5 m (r_i^2 + r_a^2), 10 % more than the ring.
     bore, land = 15e-3, 0.5 * (46e-3 - 9.525e-3) + 0.2 * 9.525e-3
     cylinder = 0.5 * 7810.0 * np.pi * 16e-3 * (land**4 - bore**4)

@@ -10,12 +10,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import ConvergenceError, scene_from_dict
+from raceway import ConvergenceError, run, scene_from_dict
 from raceway.bodies import mounting
 from raceway.bodies.mounting import preload_table
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.scene.unused import unused
-from raceway.testing import b7206c, run, settle
+from raceway.testing import b7206c, settle
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
@@ -36,7 +36,7 @@ def turning(rpm):
 )
 def test_offset_of_a_pair_stays_at_every_speed(rpm, told):
     """Also against an independent program's K [N/um], to its printed digits (0.1 %)."""
-    result = run(scene_from_dict(pair(excitation=turning(rpm), integrator={"turns": 4})))
+    result = run(pair(excitation=turning(rpm), integrator={"turns": 4}))
     found, running = result.identification, row(rpm)
     x = approach(row(), 300.0)
     expected = secant(running, None, 2, found.mass_used, found.speed, x)
@@ -58,7 +58,7 @@ def test_growth_loads_a_pair(built, growth, told):
     assert now.stiffness[1, 1] == pytest.approx(tangent[1], rel=TOLERANCE)
     assert (now.stiffness[1, 1] > settle(built(**pair())).stiffness[1, 1]) == (growth > 0.0)
     if told is not None:
-        found = run(scene_from_dict(pair(kinematics={"radial_expansion": growth}))).to_dict()["equilibrium"]
+        found = run(pair(kinematics={"radial_expansion": growth})).to_dict()["equilibrium"]
         values = 1e-6 * found["stiffness"][0][0], 1e-6 * found["stiffness"][1][1], found["preload"]["running_n"]
         assert values == pytest.approx(told, rel=TOLERANCE)
 
@@ -70,7 +70,7 @@ def test_a_held_displacement_is_that_of_the_mounted_bearing(rpm, growth):
         supports={"axial": "displacement"},
         kinematics={"spin_speed_rpm": rpm, "radial_expansion": growth},
     )
-    found = run(scene_from_dict(tables)).to_dict()["equilibrium"]
+    found = run(tables).to_dict()["equilibrium"]
     running, x = row(rpm, growth), approach(row(), 400.0)
     force, tangent, _ = running(np.array([x, 0.0, 0.0, 0.0, 0.0]))
     assert found["displacement"]["x"] == pytest.approx(x, rel=TOLERANCE)
@@ -85,7 +85,7 @@ def test_a_held_displacement_is_that_of_the_mounted_bearing(rpm, growth):
 def test_a_spring_keeps_its_force(load):
     """The second row carries the spring's force, the first one the load with it, each as a single row would."""
     kinematics = {"spin_speed_rpm": 20000.0, "radial_expansion": 2e-6}
-    result = run(scene_from_dict(pair("spring", kinematics=kinematics, load={"axial": load})))
+    result = run(pair("spring", kinematics=kinematics, load={"axial": load}))
     found = result.to_dict()["equilibrium"]
     assert found["preload"]["rows_n"] == pytest.approx([300.0 + load, 300.0], rel=1e-8)
     assert found["preload"]["running_n"] == found["preload"]["mounted_n"] == 300.0
@@ -139,13 +139,13 @@ def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
 @pytest.mark.parametrize(("first", "last"), [(6000.0, 15000.0), (15000.0, 6000.0)])
 def test_stiffness_of_a_sprung_pair_over_a_run_up_is_that_of_steady_runs(first, last):
     """0.5 %, where a ring placed at the last speed makes -4.4 and +7.2 %."""
-    result = run(scene_from_dict(run_up(first, last)))
+    result = run(run_up(first, last))
     mass, series = result.model.mass_used, result.identification.series
     for rpm in (6500.0, 14780.0):
         w, z = min(series, key=lambda one: abs(one[0] - rpm * np.pi / 30.0))
         excitation = {"kind": "bidirectional", "speed_rpm": float(w) * 30.0 / np.pi, "unbalance": 3.2e-4}
         steady = pair("spring", load={"axial": 100.0}, rotor={"mass": 2.0}, excitation=excitation, integrator={"turns": 4})
-        expected = run(scene_from_dict(steady)).identification.equivalent_stiffness
+        expected = run(steady).identification.equivalent_stiffness
         assert z.real + mass * w**2 == pytest.approx(expected, rel=5e-3)
 
 
@@ -155,21 +155,21 @@ def test_a_pair_that_has_lost_its_preload_says_what_took_it(bodies):
     shrunk = pair(bodies={"kind": bodies}, kinematics={"radial_expansion": -5e-6})
     lost = r"nothing holds .* x.*preload of 300 N is gone.*shrunk by 5 µm \(kinematics\.radial_expansion = -5e-06 m\)"
     with pytest.raises(ConvergenceError, match=lost):
-        run(scene_from_dict(shrunk))
-    run(scene_from_dict({**shrunk, "load": {"axial": 50.0}}))  # one row carries it
+        run(shrunk)
+    run({**shrunk, "load": {"axial": 50.0}})  # one row carries it
 
 
 def test_a_spring_that_the_load_overcomes_is_told():
     """On deep grooves nothing stops a ring that leaves its first row."""
     tables = pair("spring", load={"axial": -350.0}, kinematics={"spin_speed_rpm": 20000.0})
-    warnings = run(scene_from_dict(tables)).warnings
+    warnings = run(tables).warnings
     assert any("unseats" in one for one in warnings)
 
 
 def test_a_search_that_ends_without_the_springs_force_is_refused(monkeypatch):
     monkeypatch.setattr(mounting, "_LIMIT", 1)
     with pytest.raises(ConvergenceError, match=r"no place of the second row.*spring of `bearing.preload` = 300 N"):
-        run(scene_from_dict(pair("spring", kinematics={"spin_speed_rpm": 20000.0})))
+        run(pair("spring", kinematics={"spin_speed_rpm": 20000.0}))
 
 
 GROWN = {"radial_expansion": 3e-6}

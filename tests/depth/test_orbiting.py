@@ -6,12 +6,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway import SceneError, build_model, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
 from raceway.pipeline.ball_pass import ball_pass, ball_pass_table
-from raceway.testing import b7206c, run, settle, simulate
+from raceway.testing import b7206c, settle, simulate
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
 
@@ -77,7 +77,7 @@ def test_a_series_of_equilibria_has_no_rates(built, damping):
 def test_lines_of_the_result():
     tables = scene(rotor={"mass": 2.0})
     tables["excitation"] = {"kind": "bidirectional", "speed_rpm": SPEED, "unbalance": 3e-4}
-    result = run(scene_from_dict(tables)).to_dict()
+    result = run(tables).to_dict()
     found = {line["name"]: line for line in result["identification"]["lines"]}
     assert list(found) == ["1x", "2x", "3x", "ball pass", "2x ball pass"]
     assert found["1x"]["forward_m"] == pytest.approx(result["identification"]["forward_amplitude_m"], rel=1e-2)
@@ -92,14 +92,14 @@ def test_lines_of_the_result():
 def test_backward_whirl_has_a_backward_line():
     tables = b7206c(excitation={"kind": "bidirectional", "speed_rpm": SPEED, "unbalance": 3e-4, "whirl": "backward"})
     tables["integrator"] = {"turns": 3, "steps_per_turn": 120}
-    found = run(scene_from_dict(tables)).to_dict()["identification"]
+    found = run(tables).to_dict()["identification"]
     assert found["backward_amplitude_m"] > 1e3 * found["forward_amplitude_m"]
     assert found["lines"][0]["backward_m"] == pytest.approx(found["backward_amplitude_m"], rel=1e-3)
 
 
 def test_lines_above_half_the_sampling_rate_are_left_out():
     tables = scene(turns=3, steps=16)
-    names = [line["name"] for line in run(scene_from_dict(tables)).to_dict()["identification"]["lines"]]
+    names = [line["name"] for line in run(tables).to_dict()["identification"]["lines"]]
     assert "ball pass" in names and "2x ball pass" not in names
 
 
@@ -134,20 +134,20 @@ def test_a_result_has_them_at_the_loaded_angle_and_in_hertz():
         "load": {"axial": 1200.0},
         "kinematics": {"spin_speed_rpm": 6000.0, "ball_inertia": False},
     }
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     (row,) = result.ball_pass["rows"]
     assert row["contact_angle_deg"] == pytest.approx(19.26, abs=0.02)  # shared expectation of the loaded angle, 1200 N
     assert row["bpfo"] == pytest.approx(ball_pass(12, 9.525e-3, 46e-3, np.radians(row["contact_angle_deg"]))["bpfo"])
     assert row["bpfo_hz"] == pytest.approx(100.0 * row["bpfo"], rel=1e-12)
     assert result.to_dict()["ball_pass"] == result.ball_pass
-    still = run(scene_from_dict({**tables, "kinematics": {}})).ball_pass
+    still = run({**tables, "kinematics": {}}).ball_pass
     assert still["speed_rpm"] == 0.0 and still["rows"][0]["bpfo_hz"] is None
 
 
 def test_each_row_of_a_pair_has_its_own():
     pair = {"preset": "7014C", "arrangement": "DB", "preload": 300.0}
     # Half the axial load that lifts the second row off: the first row's angle opens, the second's closes.
-    rows = run(scene_from_dict({"bearing": pair, "load": {"axial": 400.0}})).ball_pass["rows"]
+    rows = run({"bearing": pair, "load": {"axial": 400.0}}).ball_pass["rows"]
     assert len(rows) == 2
     assert rows[0]["contact_angle_deg"] > rows[1]["contact_angle_deg"] > 15.0
 
@@ -172,7 +172,7 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
 def test_at_speed_the_angle_is_the_mean_of_both_races():
     """Centrifugal force opens the inner angle and closes the outer one: Q_i sin(a_i) = Q_o sin(a_o) = F_a / Z."""
     tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 15000.0}}
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     inner, outer = np.arcsin(400.0 / 12.0 / result.equilibrium.contact_force.reshape(2, -1)[:, 0])
     assert inner > 1.2 * outer
     assert result.ball_pass["rows"][0]["contact_angle_deg"] == pytest.approx(np.degrees(0.5 * (inner + outer)), rel=1e-6)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
+from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
@@ -19,7 +19,7 @@ from raceway.core.stepping.record import Schedule
 from raceway.plugins.excitations.bidirectional import Bidirectional
 from raceway.plugins.excitations.run_up import RunUp
 from raceway.scene.inner_ring import ring_inertia
-from raceway.testing import b7206c, run
+from raceway.testing import b7206c
 
 
 def steady(rpm=12000.0, **tables):
@@ -71,7 +71,7 @@ def test_fit_is_that_of_the_linear_model(built, integrator, tilt):
     tables = steady(
         excitation=SMALL, identifier=FIT, rotor=rotor, integrator={"kind": integrator, "turns": 6}, supports={"tilt": tilt}
     )
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     found, m = result.identification, result.model.system.mass[1, 1]
     w = np.array(FIT["speeds_rpm"]) * np.pi / 30.0
     z = np.array([linear(result, 9000.0, rpm) for rpm in FIT["speeds_rpm"]])
@@ -107,7 +107,7 @@ def test_error_of_a_fit_covers_its_distance_from_the_steady_motion(speeds):
     result = run(
         scene_from_dict(b7206c(**DISC, excitation=excitation, identifier={"kind": FIT["kind"], "speeds_rpm": speeds}))
     )
-    one = run(scene_from_dict(b7206c(**DISC, excitation=excitation, integrator={"kind": "periodic"}))).identification
+    one = run(b7206c(**DISC, excitation=excitation, integrator={"kind": "periodic"})).identification
     found = result.identification
     off = abs(found.dynamic_stiffness - one.dynamic_stiffness) / abs(found.dynamic_stiffness)
     # A thousandth: steps in time of the motion that the fit is held against.
@@ -130,8 +130,8 @@ def test_fit_does_not_take_what_balls_and_amplitude_change_for_mass(speeds, unba
     K of the same turning force at one speed; the error is that of the amplitude, which falls and rises with the whirl.
     """
     more = {**ROTOR, "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "unbalance": unbalance}}
-    result = run(scene_from_dict(b7206c(**more, identifier={"kind": "impedance_fit", "speeds_rpm": speeds})))
-    steady = run(scene_from_dict(b7206c(**more))).identification
+    result = run(b7206c(**more, identifier={"kind": "impedance_fit", "speeds_rpm": speeds}))
+    steady = run(b7206c(**more)).identification
     found, size = result.identification, abs(steady.dynamic_stiffness)
     assert found.mass_used == pytest.approx(steady.mass_used, rel=1e-9)
     assert found.equivalent_stiffness == pytest.approx(steady.equivalent_stiffness, rel=0.02)
@@ -144,7 +144,7 @@ def test_fit_at_the_middle_of_the_speeds():
     """K was 230.18 N/um with m = 52.73 kg; an independent program's K at 13 000 r/min is 136.5."""
     excitation = {"kind": "bidirectional", "speed_rpm": 13000.0, "unbalance": 3.2e-4}
     identifier = {"kind": "impedance_fit", "speeds_rpm": [11000.0, 12000.0, 13000.0, 14000.0, 15000.0]}
-    found = run(scene_from_dict(b7206c(**ROTOR, excitation=excitation, identifier=identifier))).identification
+    found = run(b7206c(**ROTOR, excitation=excitation, identifier=identifier)).identification
     assert 1e-6 * found.equivalent_stiffness == pytest.approx(136.5, rel=1e-3)
 
 
@@ -153,7 +153,7 @@ def test_fit_says_where_there_is_no_such_stiffness():
     more = {"supports": {"tilt": "free"}, "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "unbalance": 1e-4}}
     rotor = {"mass": 2.0, "transverse_inertia": 1e-3}
     identifier = {"kind": "impedance_fit", "speeds_rpm": [11000.0, 13000.0, 15000.0]}
-    result = run(scene_from_dict(b7206c(**{**ROTOR, **more, "rotor": rotor}, identifier=identifier)))
+    result = run(b7206c(**{**ROTOR, **more, "rotor": rotor}, identifier=identifier))
     assert result.error["total"] > 0.1
 
 
@@ -166,7 +166,7 @@ def test_other_whirl_speeds_have_the_same_force():
 
 def test_fit_of_a_series_of_equilibria_has_no_mass():
     tables = steady(excitation=SMALL, identifier=FIT, integrator={"kind": "quasi_static"})
-    found = run(scene_from_dict(tables)).identification
+    found = run(tables).identification
     assert abs(found.mass_used) < 1e-6 * found.equivalent_stiffness / found.speed**2
 
 
@@ -201,13 +201,13 @@ def rising(first=6000.0, last=9000.0, duration=0.6, **tables):
 @pytest.mark.parametrize("whirl", ["forward", "backward"])
 def test_slow_run_up_agrees_with_steady_runs(first, last, whirl):
     """0.2 %: in a window of four turns the speed changes by some 3 %, Z by m w^2 and the amplitude's bend."""
-    found = run(scene_from_dict(rising(first, last, excitation={"whirl": whirl}))).identification
+    found = run(rising(first, last, excitation={"whirl": whirl})).identification
     assert len(found.series) > 15
     speeds = np.array([w for w, _ in found.series]) * 30.0 / np.pi
     assert (np.diff(speeds) * np.sign(last - first) > 0.0).all()
     for k in (1, len(speeds) // 2, -2):
         tables = steady(float(speeds[k]), excitation={"unbalance": 3.2e-4, "whirl": whirl}, integrator={"turns": 4})
-        expected = run(scene_from_dict(tables)).identification.dynamic_stiffness
+        expected = run(tables).identification.dynamic_stiffness
         assert abs(found.series[k][1] - expected) < 2e-3 * abs(expected)
     forward, backward = found.forward_amplitude, found.backward_amplitude
     assert (forward > 100.0 * backward) if whirl == "forward" else (backward > 100.0 * forward)
@@ -254,7 +254,7 @@ def test_identifiers_of_one_speed_are_refused(identifier):
 def test_short_run_up_is_refused_with_the_remedy():
 
     with pytest.raises(ConvergenceError, match="less than 4 turns.*window_turns"):
-        run(scene_from_dict(rising(duration=0.02)))
+        run(rising(duration=0.02))
 
 
 def test_plan_says_whether_balls_follow_a_run_up(built):
@@ -309,7 +309,7 @@ def test_constants_of_a_moment_are_those_of_a_steady_scene(built, bodies):
 )
 def test_stiffness_over_a_run_up_is_that_of_steady_runs(first, last, integrator):
     """0.5 %, where the constants of the last speed make -17 and +23 %; near 6150 and 14 900 r/min an independent program's."""
-    result = run(scene_from_dict(turning(first, last, integrator={"kind": integrator, "steps_per_turn": 120})))
+    result = run(turning(first, last, integrator={"kind": integrator, "steps_per_turn": 120}))
     mass, found = result.model.mass_used, result.identification.series
     speeds = np.array([w for w, _ in found])
     chosen = [int(np.argmin(np.abs(speeds - rpm * np.pi / 30.0))) for rpm in (6150.0, 10000.0, 14900.0)]
@@ -318,7 +318,7 @@ def test_stiffness_over_a_run_up_is_that_of_steady_runs(first, last, integrator)
         w, z = found[k]
         excitation = {"kind": "bidirectional", "speed_rpm": float(w) * 30.0 / np.pi, "unbalance": 1e-4}
         same = {"kind": integrator, "turns": 3}
-        one = run(scene_from_dict(b7206c(**ROTOR, excitation=excitation, integrator=same))).identification
+        one = run(b7206c(**ROTOR, excitation=excitation, integrator=same)).identification
         stiffness[k] = z.real + mass * w**2
         assert stiffness[k] == pytest.approx(one.equivalent_stiffness, rel=5e-3)
     if integrator == "newmark":
@@ -348,7 +348,7 @@ def test_a_changing_speed_is_not_told_as_damping(damping, tilt):
     """Without subtraction C is m (w' + 2 w A' / A) / w, some 5 m w' / w: 12 to 31 N s/m here; left are 0.5, and 1 % of C."""
     rotor = {"mass": 2.0, "transverse_inertia": 2e-4, "damping": damping}
     more = {"rotor": rotor, "supports": {"tilt": tilt}, "load": {"axial": 2000.0}}
-    result = run(scene_from_dict(turning(6000.0, 15000.0, **more)))
+    result = run(turning(6000.0, 15000.0, **more))
     found = np.array([z.imag / w for w, z in result.identification.series])
     assert len(found) > 30
     assert np.abs(found - damping).max() < 0.5 + 0.01 * damping
@@ -387,7 +387,7 @@ def test_every_window_of_a_run_up_states_its_error(tilt):
     -----
     Free tilts resonate below the first speed: what the first windows hold is the lag that the start leaves.
     """
-    result = run(scene_from_dict(crossing(0.5, supports={"tilt": tilt})))
+    result = run(crossing(0.5, supports={"tilt": tilt}))
     found, told = result.identification, np.array(result.identification.series_error)
     assert len(told) == len(found.series) > 20
     true = []
@@ -396,7 +396,7 @@ def test_every_window_of_a_run_up_states_its_error(tilt):
         tables = crossing(0.5, supports={"tilt": tilt})
         tables |= {"integrator": {"kind": "periodic"}, "identifier": {"kind": "fft_1x"}}
         tables["excitation"] = {"kind": "bidirectional", "speed_rpm": w * 30.0 / np.pi, "unbalance": 1e-5}
-        expected = run(scene_from_dict(tables)).identification.dynamic_stiffness
+        expected = run(tables).identification.dynamic_stiffness
         true.append(abs(z - expected) / min(abs(z), abs(expected)))
     # Both are steady motions, each solved to 1e-8 of its displacement.
     assert told[::6] == pytest.approx(true, rel=1e-3, abs=1e-6)
@@ -418,7 +418,7 @@ def test_every_window_of_a_run_up_states_its_error(tilt):
 
 def test_windows_of_a_slow_run_up_have_small_errors_and_no_warning():
     """Z of each window is within 0.2 % of a steady run's (above), and says so within a factor of 2 of that."""
-    result = run(scene_from_dict(rising()))
+    result = run(rising())
     assert 0.0 < max(result.identification.series_error) < 4e-3
     assert not any("windows" in text for text in result.warnings)
 
@@ -426,7 +426,7 @@ def test_windows_of_a_slow_run_up_have_small_errors_and_no_warning():
 @pytest.mark.slow
 def test_windows_without_a_steady_motion_have_the_error_of_their_record():
     """Equilibria have no steady motion to be held against: what a bend of the amplitude would change is told."""
-    result = run(scene_from_dict(turning(6000.0, 15000.0, integrator={"kind": "quasi_static", "steps_per_turn": 120})))
+    result = run(turning(6000.0, 15000.0, integrator={"kind": "quasi_static", "steps_per_turn": 120}))
     told = result.identification.series_error
     assert len(told) == len(result.identification.series) and 1e-8 < min(told) <= max(told) < 5e-3
 
@@ -444,7 +444,7 @@ def test_friction_of_a_run_up_sees_the_growth_of_the_ring():
         integrator={"turns": 2, "steps_per_turn": 60},
         identifier={"kind": "order_tracking", "window_turns": 2.0},
     )  # fmt: skip
-    result = run(scene_from_dict(tables))
+    result = run(tables)
     spin = result.model.system.spin
     assert spin.grown(np.array([spin.reference])) == pytest.approx(0.0, abs=1e-15)
     assert abs(spin.grown(np.array([0.5 * spin.reference]))[0]) > 1e-8

@@ -46,13 +46,6 @@ def test_shear_adds_its_closed_form():
     assert thick - thin == pytest.approx(extra, rel=1e-6)
 
 
-def test_the_article_s_formula_is_the_beam_s_for_twice_the_span():
-    span, a = 0.175, 0.025
-    printed = a * (3 * (2 * span) ** 2 - 16 * a**2) / (192 * E * SECOND_MOMENT)
-    line = beam(np.array([0.0, a, 0.5 * span, span]), D, E, NU, RHO, False).with_spring(0.0, HELD).with_spring(span, HELD)
-    assert static(line, 0.5 * span)[2] == pytest.approx(printed, rel=1e-6)
-
-
 def test_first_critical_speed_of_a_jeffcott_rotor():
     span, mass = 0.175, 4.0
     line = supported(span, density=1e-6).with_disc(0.5 * span, mass, 0.0, 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from cmath import exp
 from math import pi
 
+import attrs
 import numpy as np
 import pytest
 
@@ -55,8 +56,7 @@ def test_three_turns_will_do():
 
 def test_without_marks_the_amplitude_is_found_though_the_speed_is_a_little_off():
     record = made(marked=False)
-    wrong = Recording(record.time, record.y, record.z, None, 1.001 * record.speed)
-    found = order(turning(wrong))
+    found = order(turning(attrs.evolve(record, speed=1.001 * record.speed)))
     assert not found.marked
     assert abs(found.line) == pytest.approx(abs(LINE), rel=2e-3)
 
@@ -86,38 +86,17 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_records_that_cannot_be_used(case):
-    options, words = BAD[case]
+@pytest.mark.parametrize(("options", "words"), BAD.values(), ids=BAD)
+def test_records_that_cannot_be_used(options, words):
     with pytest.raises(RacewayError, match=words):
         turning(made(**options))
-
-
-def test_a_mark_that_is_missing():
-    record = made()
-    gone = (record.time > 0.2) & (record.time < 0.2 + 1.0 / HZ)
-    with pytest.raises(RacewayError, match="the turn at 0.195.* s takes 2.00 .* a mark of `key` is missing there"):
-        turning(Recording(record.time, record.y, record.z, np.where(gone, 0.0, record.key)))
-
-
-def test_a_speed_that_jumps():
-    record = made(marked=False)
-    jumped = record.speed * np.where(record.time > 0.25, 1.05, 1.0)
-    with pytest.raises(RacewayError, match="% from one turn to the next at 0.2.* s"):
-        turning(Recording(record.time, record.y, record.z, None, jumped))
-
-
-def test_a_probe_that_sees_nothing():
-    record = made()
-    with pytest.raises(RacewayError, match="no mark is seen"):
-        turning(Recording(record.time, record.y, record.z, 0.0 * record.time))
 
 
 def noisy(record, part, seed):
     """The record with white noise of so many parts of the range on the probe's voltage."""
     random = np.random.default_rng(seed)
     white = part * np.ptp(record.key) * random.standard_normal(len(record.key))
-    return Recording(record.time, record.y, record.z, record.key + white, record.speed)
+    return attrs.evolve(record, key=record.key + white)
 
 
 @pytest.mark.parametrize("rate", [10e3, 400e3])
@@ -149,9 +128,24 @@ def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):
     assert part == 0.0 or np.sqrt(np.mean(np.square(over))) > 0.1  # the doubt is no excuse
 
 
-def test_noise_of_a_fifth_of_the_range_is_told_as_marks_that_are_double():
-    with pytest.raises(RacewayError, match="a mark of `key` is double there"):
-        turning(noisy(made(rate=400e3), 0.2, 1))
+FAULTY = {
+    "a mark that is missing": (
+        lambda r: attrs.evolve(r, key=np.where((r.time > 0.2) & (r.time < 0.2 + 1.0 / HZ), 0.0, r.key)),
+        "the turn at 0.195.* s takes 2.00 .* a mark of `key` is missing there",
+    ),
+    "a speed that jumps": (
+        lambda r: attrs.evolve(r, key=None, speed=r.speed * np.where(r.time > 0.25, 1.05, 1.0)),
+        "% from one turn to the next at 0.2.* s",
+    ),
+    "a probe that sees nothing": (lambda r: attrs.evolve(r, key=0.0 * r.key, speed=None), "no mark is seen"),
+    "noise of a fifth of the range": (lambda r: noisy(made(rate=400e3), 0.2, 1), "a mark of `key` is double there"),
+}
+
+
+@pytest.mark.parametrize(("fault", "words"), FAULTY.values(), ids=FAULTY)
+def test_faults_of_a_record_are_told(fault, words):
+    with pytest.raises(RacewayError, match=words):
+        turning(fault(made()))
 
 
 def test_angles_of_noisy_marks_grow_from_sample_to_sample():

@@ -160,9 +160,8 @@ FILES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", FILES)
-def test_a_file_that_cannot_be_used(case, tmp_path):
-    content, words = FILES[case]
+@pytest.mark.parametrize(("content", "words"), FILES.values(), ids=FILES)
+def test_a_file_that_cannot_be_used(content, words, tmp_path):
     path = tmp_path / "signals.csv"
     if content is not None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
@@ -192,9 +191,8 @@ SCENES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", SCENES)
-def test_a_mistake_in_the_rig(case):
-    changes, path, words = SCENES[case]
+@pytest.mark.parametrize(("changes", "path", "words"), SCENES.values(), ids=SCENES)
+def test_a_mistake_in_the_rig(changes, path, words):
     options = [word for change in changes for word in ("--set", change)]
     for command in (["check"], ["study", "rig"]):
         found = invoke(*command, SCENE, *options)
