@@ -29,7 +29,7 @@ from raceway.scene.scene import Scene
 from raceway.testing.asked import OTHERS, PLAIN
 from raceway.testing.bearings import is_key, registry_with, scene_of, settled, unbalanced
 from raceway.testing.drivers import FromPython, has_both
-from raceway.testing.suite import ConformityError, Suite, check_class, duty, require
+from raceway.testing.suite import ConformityError, Suite, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import BodiesKind
@@ -71,10 +71,6 @@ class BodiesSuite(Suite):
     """Duties of ``raceway.framework.contracts.BodiesKind``."""
 
     kind = "bodies"
-
-    @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, bodies: BodiesKind) -> None:
-        check_class("bodies", bodies)
 
     @duty("faults(scene): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
     def test_faults(self, bodies: BodiesKind) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.framework.contracts import Batch, Refused
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Executor
@@ -51,10 +51,6 @@ class ExecutorSuite(Suite):
 
     kind = "executor"
     apart = False
-
-    @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, executor: Executor) -> None:
-        check_class("executor", executor)
 
     @duty("every batch is answered once, by what the work returned; batches are taken as they are needed")
     def test_answers(self, executor: Executor) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.testing.scenes import example_scene
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Mesher
@@ -21,10 +21,6 @@ class MesherSuite(Suite):
     """Duties of ``raceway.framework.contracts.Mesher``."""
 
     kind = "mesher"
-
-    @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, mesher: Mesher) -> None:
-        check_class("mesher", mesher)
 
     @duty("mesh(bearing) returns meshes by name, each with points (n, 3) [m] and cells (m, 8)")
     def test_meshes(self, mesher: Mesher) -> None:

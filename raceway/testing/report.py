@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway.testing.scenes import example_result
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Report
@@ -17,10 +17,6 @@ class ReportSuite(Suite):
     """Duties of ``raceway.framework.contracts.Report``."""
 
     kind = "report"
-
-    @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, report: Report) -> None:
-        check_class("report", report)
 
     @duty("write(result, folder) writes files into the folder and returns their paths; a second time too")
     def test_writes(self, report: Report) -> None:

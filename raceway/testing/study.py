@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Study
@@ -14,10 +14,6 @@ class StudySuite(Suite):
     """Duties of ``raceway.framework.contracts.Study``."""
 
     kind = "study"
-
-    @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, study: Study) -> None:
-        check_class("study", study)
 
     @duty("help is one line for the list of studies")
     def test_help(self, study: Study) -> None:

@@ -119,6 +119,10 @@ class Suite:
     kind: ClassVar[str] = ""
     apart: ClassVar[bool] = True
 
+    @duty("a frozen attrs class whose options are declared")
+    def test_declaration(self, plugin: Any) -> None:
+        check_class(self.kind, plugin)
+
     @classmethod
     def checks(cls) -> Tables:
         """Check name -> method, in the order of the source."""
