@@ -32,7 +32,7 @@ _COLUMNS = {
         "pitch_scatter",
     ),
 }
-#: 90 % of stiffnesses, axial and radial, lie within this, and what was compared (``python -m benchmarks.meaning catalogue``).
+#: 90 % of stiffnesses, axial and radial, lie within this, and what was compared (tests/evidence/test_catalogue.py).
 _UNCERTAINTY = ("stiffness_error", "radial_stiffness_error", "stiffness_basis")
 _KNOWN = (
     STIFFNESS_90["tables"], 0.08,

@@ -5,6 +5,7 @@ damage                stores and caches that were damaged
 signals               commands that are asked to end, or killed
 dask                  workers that are killed, unfit or silent
 pages                 pages in a real browser
+extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 
 from __future__ import annotations

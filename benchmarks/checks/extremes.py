@@ -23,11 +23,11 @@ from raceway.scene.reading import scene_from_dict
 RUNS, _STEPS, _SECONDS = 300, 3000, 3.0
 _PARTS = ("total", "time_step", "transient", "identification", "mesh", "contact")
 _OF_Z = ("equivalent stiffness K", "equivalent damping C", "|Z|", "Z real", "Z imaginary")
-_COMMAND = "python -m benchmarks.meaning extremes"
+_COMMAND = "python -m benchmarks.checks extremes"
 
 
 def rows() -> list[Row]:
-    """The rows of report meaning."""
+    """Rows of 300 runs."""
     silent, shown, hidden, unsaid, null, large = [], [], [], [], 0, 0
     for seed, _, result in islice(finished(), RUNS):
         error, warnings = result.error, result.warnings
