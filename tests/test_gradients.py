@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway import SceneError, build_model, scene_from_dict
 from raceway.pipeline.gradient.differences import derivative
 from raceway.pipeline.gradient.gradients import Gradients
 from raceway.pipeline.gradient.motion import SteadyOrbit
@@ -13,18 +13,12 @@ from raceway.pipeline.gradient.quantities import derivatives, values
 from raceway.pipeline.gradient.statics import static_gradient
 from raceway.pipeline.gradient.variation import NoDerivative
 from raceway.scene.continuous import continuous_keys, key_of, with_number
-from raceway.testing import b7206c, settle
+from raceway.testing import b7206c, settle, settled
 from validation.command_line import invoke
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
 #: Whole runs are solved to 1e-11; a step of 1e-4 leaves 1e-7 of that in a difference.
 TOLERANCE = 1e-6
-
-
-def built(tables):
-    scene = scene_from_dict(tables)
-    model = build_model(scene, make_plan(scene))
-    return model, settle(model)
 
 
 def by_runs(model, path, step, of):
@@ -67,7 +61,7 @@ SCENES = {
 
 @pytest.mark.parametrize("name", SCENES)
 def test_derivatives_of_an_equilibrium_are_those_of_whole_runs(name):
-    model, still = built(SCENES[name])
+    model, still = settled(SCENES[name])
     seen = 0
     for key in continuous_keys(model.scene):
         if key.value == 0.0:
@@ -89,13 +83,13 @@ def test_derivatives_of_an_equilibrium_are_those_of_whole_runs(name):
 
 def test_an_axial_load_on_hertz_contacts_has_the_slope_of_its_power():
     """With contacts at 90 degrees kxx would grow as F^(1/3); at a small free angle the angle's growth adds to it."""
-    model, still = built(b7206c(bearing={"preset": "B7206C", "contact_angle_deg": 75.0}, load={"axial": 1.0}))
+    model, still = settled(b7206c(bearing={"preset": "B7206C", "contact_angle_deg": 75.0}, load={"axial": 1.0}))
     slope = static_gradient(model, still, key_of(model.scene, "load.axial")).stiffness[0, 0] / still.stiffness[0, 0]
     assert slope == pytest.approx(1.0 / 3.0, rel=0.01)
 
 
 def test_a_held_displacement_moves_with_what_holds_it():
-    model, still = built(b7206c(supports={"axial": "displacement"}, load={"axial": 500.0}))
+    model, still = settled(b7206c(supports={"axial": "displacement"}, load={"axial": 500.0}))
     found = static_gradient(model, still, key_of(model.scene, "load.axial"))
     assert found.displacement[0] * still.stiffness[0, 0] == pytest.approx(1.0, rel=1e-8)
 
@@ -111,7 +105,7 @@ ORBIT = b7206c(
     "path", ["excitation.speed_rpm", "excitation.unbalance", "bearing.contact_angle_deg", "contact.damping", "rotor.mass"]
 )
 def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
-    model, still = built(ORBIT)
+    model, still = settled(ORBIT)
     orbit = SteadyOrbit.of(model, still)
     key = key_of(model.scene, path)
     found = orbit.gradient(static_gradient(model, still, key))
@@ -134,7 +128,7 @@ def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
 
 def test_every_number_of_a_motion_has_its_derivative():
     """By the speed, on which all of them depend; C is 3e-4 of |Z|, to which orbits are solved."""
-    model, still = built(ORBIT)
+    model, still = settled(ORBIT)
     gradients = Gradients(model, still)
     told = values(model, still, gradients.orbit)
     found = derivatives(model, still, gradients.by_path("excitation.speed_rpm"))
@@ -148,7 +142,7 @@ def test_every_number_of_a_motion_has_its_derivative():
 
 def test_steps_pass_no_knot_of_the_tables_of_compliances():
     """One contact lies 2 % of an interval from a knot, where derivatives of the stiffness jump: 4e-6 of them if steps pass it."""
-    model, still = built(
+    model, still = settled(
         b7206c(
             bodies={"kind": "condensed"},
             load={"axial": 1843.8916451132752, "radial": [495.1466379641419, -92.98271863387704]},
@@ -179,14 +173,11 @@ def test_keys_come_from_the_declarations():
 
 def test_a_contact_at_the_edge_is_told():
     """Balls about to lift off: the radial load at which the least loaded ball carries next to nothing."""
-    model, still = built(b7206c(load={"axial": 400.0}))
-    loads = []
     low, high = 0.0, 2000.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        model, still = built(b7206c(load={"axial": 400.0, "radial": [middle, 0.0]}))
-        loads.append(still.contact_force[: model.system.ball_count].min())
-        low, high = (middle, high) if loads[-1] > 0.0 else (low, middle)
+        model, still = settled(b7206c(load={"axial": 400.0, "radial": [middle, 0.0]}))
+        low, high = (middle, high) if still.contact_force[: model.system.ball_count].min() > 0.0 else (low, middle)
     found = static_gradient(model, still, key_of(model.scene, "load.axial"))
     assert "open or to close" in found.remark
 
@@ -201,13 +192,13 @@ BAD = [
 
 @pytest.mark.parametrize(("path", "tables", "words"), BAD)
 def test_what_has_no_derivative_is_refused_in_one_sentence(path, tables, words):
-    model, still = built(tables)
+    model, still = settled(tables)
     with pytest.raises(SceneError, match=words):
         Gradients(model, still).by_path(path)
 
 
 def test_surface_points_have_no_derivative():
-    model, still = built(LOADED)
+    model, still = settled(LOADED)
     nodal = attrs.evolve(model, scene=scene_from_dict(LOADED | {"bodies": {"kind": "elastic"}, "contact": {"kind": "penalty", "discretisation": "nodal"}, "mesh": {"kind": "structured", "element_size": 2e-3}}))  # fmt: skip
     with pytest.raises(SceneError, match="one by one"):
         Gradients(nodal, still)

@@ -21,7 +21,7 @@ from raceway.core.stepping.protocol import State
 from raceway.core.stepping.record import Schedule
 from raceway.integrators.newmark import Newmark
 from raceway.studies.stability.systems import BASE
-from raceway.testing import Registry, model_of, settle, simulate
+from raceway.testing import Registry, model_of, settle, settled, simulate
 from validation import orders
 from validation.scenes import rotating
 
@@ -253,9 +253,8 @@ NARROW = np.zeros((12, 1))
 
 @pytest.fixture(scope="module")
 def bearing():
-    scene = scene_from_dict(BASE)
-    model = build_model(scene, make_plan(scene))
-    return model.system, settle(model)
+    model, still = settled(BASE)
+    return model.system, still
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import build_model, make_plan, scene_from_dict
 from raceway.commands.screen.damping import RULE_OF_THUMB_S, dry_damping_note, dry_damping_words
 from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
-from raceway.testing import settle
+from raceway.testing import settled
 
 SPEED = 24000.0
 #: Force of whole runs over the axial load: Z of an orbit is off by its square, 6e-8, and by what the run claims, 1e-8.
@@ -27,13 +26,7 @@ def tables(identifier, contact, **changes):
     }
     for name, table in changes.items():
         found[name] = {**found.get(name, {}), **table}
-    return scene_from_dict(found)
-
-
-def model_of(contact, **changes):
-    scene = tables("tangent", contact, **changes)
-    model = build_model(scene, make_plan(scene))
-    return model, settle(model)
+    return found
 
 
 def complex_condensation(system, equilibrium, w):
@@ -68,7 +61,7 @@ def complex_condensation(system, equilibrium, w):
 @pytest.mark.parametrize("load", [{"axial": 400.0}, {"axial": 400.0, "radial": [900.0, 200.0]}])
 def test_stiffness_at_a_frequency_equals_complex_arithmetic(contact, load, limit):
     """Continued from real rates, against every ball condensed at j w; rounding grows with w c / k: 3 at 1e5 N s/m."""
-    model, equilibrium = model_of(contact, load=load)
+    model, equilibrium = settled(tables("tangent", contact, load=load))
     for w in (0.1, 300.0, 2.0 * np.pi * SPEED / 60.0):
         found = model.system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
         wanted = complex_condensation(model.system, equilibrium, w)
@@ -81,7 +74,7 @@ def test_stiffness_at_a_frequency_equals_complex_arithmetic(contact, load, limit
 
 def test_slow_motions_have_the_damping_of_the_equilibrium():
     """C of the equilibrium is the limit of slow motions: what is left falls with w^2."""
-    model, equilibrium = model_of({"time_constant": 1e-4})
+    model, equilibrium = settled(tables("tangent", {"time_constant": 1e-4}))
     off = []
     for w in (2000.0, 1000.0):
         found = model.system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)

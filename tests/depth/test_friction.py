@@ -9,7 +9,7 @@ import pytest
 from raceway import run
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.testing import b7206c, settle, simulate
+from raceway.testing import b7206c, model_of, settle, simulate
 
 
 def rubbing(friction=0.03, turns=3, **tables):
@@ -20,10 +20,6 @@ def rubbing(friction=0.03, turns=3, **tables):
         "rotor": {"mass": 2.0},
     }
     return b7206c(**base, **tables)
-
-
-def model_of(built, tables):
-    return built(**{k: v for k, v in tables.items() if k != "title"})
 
 
 class Contact:
@@ -149,11 +145,11 @@ def test_closed_form_of_a_sticking_cycle_and_of_a_sliding_one():
     assert small.lost == 0.0
 
 
-def test_energy_balances_with_friction(built):
+def test_energy_balances_with_friction():
     """Kinetic + stored + lost - work stays within 1e-3 at 360 steps a turn; losses are of first order in the step."""
     drifts = []
     for steps in (180, 360, 720):
-        model = model_of(built, rubbing(0.03, turns=2, integrator={"steps_per_turn": steps}))
+        model = model_of(rubbing(0.03, turns=2, integrator={"steps_per_turn": steps}))
         drifts.append(energy_balance(model.system, simulate(model, settle(model)).whole).drift)
     assert drifts[1] < 1e-3 and drifts[2] < 0.7 * drifts[0]
 

@@ -6,29 +6,24 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import SceneError, build_model, make_plan, run, scene_from_dict
+from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
 from raceway.pipeline.ball_pass import ball_pass, ball_pass_table
-from raceway.testing import b7206c, settle, simulate
+from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
 
 
-def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would(built):
+def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would():
     """k / (k - m W^2) with the small-signal stiffness, W the ball-pass speed; 2 %: the stiffness itself varies."""
     tables = scene(rotor={"mass": 4.0, "damping": 4000.0}, bearing={"ball_count": 7})
     tables["integrator"] = {"kind": "newmark", "turns": 12, "steps_per_turn": 360, "start": "static"}
-    model = built(**{k: v for k, v in tables.items() if k != "title"})
+    model = model_of(tables)
     equilibrium = settle(model)
     record = simulate(model, equilibrium).record
-    slow = built(
-        **{
-            **{k: v for k, v in tables.items() if k != "title"},
-            "integrator": {**tables["integrator"], "kind": "quasi_static"},
-        }
-    )
+    slow = model_of({**tables, "integrator": {**tables["integrator"], "kind": "quasi_static"}})
     still = simulate(slow, settle(slow)).whole
     frequency = passing_hz(model)
     dynamic, static = (phasors(r.time, r.displacement[:, :3], [frequency])[0, 1] for r in (record, still))
@@ -62,10 +57,10 @@ def test_rates_of_the_groove_centres(built):
 
 
 @pytest.mark.parametrize("damping", [0.0, 500.0])
-def test_a_series_of_equilibria_has_no_rates(built, damping):
+def test_a_series_of_equilibria_has_no_rates(damping):
     """Contact dampers change nothing in it, however fast the balls travel."""
     tables = scene(turns=1, contact={"damping": damping})
-    model = built(**{k: v for k, v in tables.items() if k != "title"})
+    model = model_of(tables)
     equilibrium = settle(model)
     record = simulate(model, equilibrium).whole
     without = attrs.evolve(model.system, scalars=model.system.without(CAGE).scalars)
@@ -159,10 +154,9 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
         "load": {"axial": 2000.0},
         "kinematics": {"spin_speed_rpm": 15000.0, "orbiting": True},
     }
-    scene = scene_from_dict(tables)
-    model = build_model(scene, make_plan(scene))
-    row = ball_pass_table(model, settle(model))["rows"][0]
-    cage, b = row["ftf_in_forces"] * scene.spin_speed, scene.bearing
+    model, now = settled(tables)
+    row = ball_pass_table(model, now)["rows"][0]
+    cage, b = row["ftf_in_forces"] * model.scene.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
     centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2
     assert model.system.table[:, CENTRIFUGAL] == pytest.approx(centrifugal, rel=1e-13)

@@ -258,7 +258,7 @@ def test_short_run_up_is_refused_with_the_remedy():
 
 
 def test_plan_says_whether_balls_follow_a_run_up(built):
-    tables = {k: v for k, v in rising().items() if k != "title"}
+    tables = rising()
     held = built(**tables).plan
     assert any("terms with the speed" in part.part and "9000" in part.why for part in held.left_out)
     followed = built(**{**tables, "kinematics": {}}).plan
