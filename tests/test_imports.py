@@ -9,90 +9,69 @@ import pytest
 
 from validation.command_line import ARTICLE, python
 
-HEAVY = ("numba", "scipy", "meshio", "gmsh", "pyvista", "matplotlib")
-
 LOOK = """
 import json, sys
 try:
     {code}
 except SystemExit as end:
-    assert not end.code, end.code
-sys.stderr.write(json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}})))
+    assert (end.code or 0) == {status}, end.code
+sys.stderr.write("\\n" + json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}})))
 """
-
-#: What reading a scene needs not either.
-HEAVIER = (*HEAVY, "numpy", "pandas", "xarray", "pluggy", "attrs", "click", "rich")
-
-LIGHT = {
-    "import": "import raceway; raceway.load_scene; raceway.RacewayError",
-    "scene": f"import raceway as rw; rw.Scene.from_toml({ARTICLE!r}).with_(load={{'axial': '1 kN'}}); rw.positive",
-    "check and plan": f"import raceway as rw; rw.check({ARTICLE!r}); rw.plan({ARTICLE!r})",
-    "help": "from raceway.cli import main; main(['--help'])",
-    "help of a command": "from raceway.cli import main; main(['run', '--help'])",
-    "check": f"from raceway.cli import main; main(['check', {ARTICLE!r}])",
-    "plan": f"from raceway.cli import main; main(['plan', {ARTICLE!r}])",
-    "plugins": "from raceway.cli import main; main(['plugins'])",
-    "schema": "from raceway.cli import main; main(['schema'])",
-    "cache": "from raceway.cli import main; main(['cache'])",
+PICTURES = {"meshio", "gmsh", "pyvista", "matplotlib"}
+HEAVY = PICTURES | {"numba", "scipy"}
+MAIN = "from raceway.cli import main; main({!r})"
+#: Code, and what it loads not.
+CASES = {
+    "import": ("import raceway as rw; dir(rw)", HEAVY | {"numpy", "pandas", "xarray", "pluggy", "attrs", "click", "rich"}),
+    "names": ("import raceway; raceway.load_scene; raceway.RacewayError", HEAVY),
+    "scene": (f"import raceway as rw; rw.Scene.from_toml({ARTICLE!r}).with_(load={{'axial': '1 kN'}}); rw.positive", HEAVY),
+    "check and plan of a scene": (f"import raceway as rw; rw.check({ARTICLE!r}); rw.plan({ARTICLE!r})", HEAVY),
+    "help": (MAIN.format(["--help"]), HEAVY | {"numpy", "rich", "cattrs"}),
+    "help of a command": (MAIN.format(["run", "--help"]), HEAVY),
+    "run": (f"import tempfile; {MAIN.format(['run', ARTICLE, '--out'])[:-2]}, tempfile.mkdtemp()])", PICTURES),
+} | {word: (MAIN.format([word, *scene]), HEAVY) for word, *scene in (
+    ("check", ARTICLE), ("plan", ARTICLE), ("plugins",), ("schema",), ("cache",),
+)}  # fmt: skip
+#: Mistakes in a study are told before the compiler is loaded.
+MISTAKES = {
+    "precision": MAIN.format(["precision", ARTICLE, "--vary", "no.key=1,2"]),
+    "stability": MAIN.format(["stability", "--only", "no such case"]),
 }
 
 
-@pytest.mark.parametrize("case", LIGHT)
-def test_heavy_packages_stay_out(case):
-    found = python("-c", LOOK.format(code=LIGHT[case]))
+def loaded(code: str, status: int = 0) -> set[str]:
+    """Packages in memory of a process that has executed ``code``."""
+    found = python("-c", LOOK.format(code=code, status=status))
     assert found.returncode == 0, found.stderr
-    loaded = set(json.loads(found.stderr))
-    assert "raceway" in loaded
-    assert not loaded & set(HEAVY)
+    return set(json.loads(found.stderr.splitlines()[-1]))
 
 
-def test_the_import_alone_loads_nothing_else():
-    found = python("-c", LOOK.format(code="import raceway as rw; dir(rw)"))
-    assert found.returncode == 0, found.stderr
-    assert not set(json.loads(found.stderr)) & set(HEAVIER)
+@pytest.mark.parametrize(("code", "without"), CASES.values(), ids=CASES)
+def test_packages_stay_out(code, without):
+    packages = loaded(code)
+    assert "raceway" in packages and not packages & without
 
 
-def test_the_list_of_commands_loads_none_of_them():
-    found = python("-c", LOOK.format(code=LIGHT["help"]))
-    assert found.returncode == 0, found.stderr
-    assert not set(json.loads(found.stderr.splitlines()[-1])) & {*HEAVY, "numpy", "rich", "cattrs"}
+@pytest.mark.parametrize("code", MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_in_a_study_is_told_before_the_compiler_is_loaded(code):
+    assert not loaded(code, status=2) & HEAVY
 
 
 def least_seconds(*words, runs=9):
     """Processor time of a process, the least of several: what others do on the machine only adds."""
-
-    def spent():
-        used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return used.ru_utime + used.ru_stime
-
     taken = []
     for _ in range(runs):
-        before = spent()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         assert python(*words).returncode == 0
-        taken.append(spent() - before)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     return min(taken)
 
 
-def test_the_import_takes_a_tenth_of_a_second_at_most():
-    assert least_seconds("-c", "import raceway") - least_seconds("-c", "pass") <= 0.1
-
-
-def test_a_run_without_pictures_loads_no_package_for_pictures_or_meshes(tmp_path):
-    code = f"from raceway.cli import main; main(['run', {ARTICLE!r}, '--out', {str(tmp_path)!r}])"
-    found = python("-c", LOOK.format(code=code))
-    assert found.returncode == 0, found.stderr
-    assert not set(json.loads(found.stderr)) & {"meshio", "gmsh", "pyvista", "matplotlib"}
-
-
-@pytest.mark.parametrize("words", [["precision", ARTICLE, "--vary", "no.key=1,2"], ["stability", "--only", "no such case"]])
-def test_a_mistake_in_a_study_is_told_before_the_compiler_is_loaded(words):
-    code = LOOK.replace("assert not end.code", "assert end.code == 2").format(
-        code=f"from raceway.cli import main; main({words!r})"
-    )
-    found = python("-c", code)
-    assert found.returncode == 0, found.stderr
-    assert not set(json.loads(found.stderr.splitlines()[-1])) & set(HEAVY)
-
-
-def test_help_takes_little_more_than_its_libraries():
-    assert least_seconds("-m", "raceway", "--help") - least_seconds("-c", "import attrs, click") <= 0.15
+@pytest.mark.parametrize(
+    ("words", "other", "limit"),
+    [(("-c", "import raceway"), "pass", 0.1), (("-m", "raceway", "--help"), "import attrs, click", 0.15)],
+    ids=["import", "help"],
+)
+def test_the_import_and_the_help_take_little_more_than_their_libraries(words, other, limit):
+    assert least_seconds(*words) - least_seconds("-c", other) <= limit
