@@ -9,11 +9,9 @@ import pytest
 from scipy.integrate import quad
 
 from raceway import RacewayError, scene_from_dict
-from raceway.bodies.basis import make_basis
 from raceway.bodies.pressure import approach_at
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
-from raceway.core.ring.kernels.layout import STICK
 from raceway.testing import run
 from validation.reference.hertz import contact
 from validation.reference.ring import Ring
