@@ -82,16 +82,6 @@ def test_a_race_that_carries_nothing_is_absent(result):
         contact.pressure = pressed
 
 
-def test_stresses_of_all_elements_say_that_the_mesh_does_not_resolve_the_contacts(result, monkeypatch):
-    from raceway.studies.view.fields import contacts_left_out
-
-    largest = 1e-6 * result.to_dict()["equilibrium"]["largest_pressure_pa"]
-    wanted = f"the mesh does not resolve the contacts' own stresses (Hertz's pressure up to {largest:.4g} MPa)"
-    assert contacts_left_out(result) == wanted
-    monkeypatch.setattr("raceway.bodies.elastic.subsurface.RESOLVED", 0.0)
-    assert contacts_left_out(result) == ""
-
-
 def test_the_screen_tells_shear_where_the_mesh_resolves_it_and_hertz_s_number_elsewhere(result):
     from raceway.commands.screen.result_model import bodies_rows
 
@@ -107,23 +97,6 @@ def test_the_screen_tells_shear_where_the_mesh_resolves_it_and_hertz_s_number_el
     ):
         _, (_, value, told) = bodies_rows({"subsurface": sides})
         assert value == shown and words in told
-
-
-@pytest.mark.needs("pyvista")
-def test_the_picture_shows_elements_where_the_mesh_is_too_coarse_for_a_fit(result):
-    """Fitted curves would be extrapolated from one element: the stress axis belongs to Hertz's and the elements' values."""
-    from raceway.studies.view.contact_stress import drawn
-
-    sides = below_contacts(result.model.bearing, result.model, result.equilibrium)
-    figure, grid = drawn(result, sides)
-    of_elements = 1e-6 * np.concatenate([grid.cell_data[f"{name} stress [Pa]"] for name in ("von Mises", "largest shear")])
-    panels = [axes for axes in figure.axes if axes.get_title() == "on the contact's normal"]
-    lines = [line for axes in panels for line in axes.lines if line.get_linewidth() == 1.6]
-    assert len(lines) == 2 * len(sides)
-    for line in lines:
-        shown = np.asarray(line.get_xdata())[np.isfinite(line.get_xdata())]
-        assert len(shown) and np.isin(shown, of_elements).all()
-    assert not any(line.get_marker() == "+" for axes in figure.axes for line in axes.lines)
 
 
 def test_cells_near_a_place_have_a_node_there():

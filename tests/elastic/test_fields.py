@@ -43,8 +43,7 @@ def test_stresses_beside_contact_resultants_are_named_structure_only_with_hertz_
     """A pressure of gigapascals has a von Mises stress of half of it; the footprints of this mesh leave a few per cent."""
     largest = result.to_dict()["equilibrium"]["largest_pressure_pa"]
     assert Fields.of(result).von_mises.max() < 0.2 * largest
-    wanted = f"structure only, without the contacts' own stresses (Hertz's pressure up to {1e-6 * largest:.4g} MPa)"
-    assert contacts_left_out(result) == wanted
+    assert "structure only" in contacts_left_out(result) and f"{1e-6 * largest:.4g} MPa" in contacts_left_out(result)
 
 
 @pytest.mark.needs("pyvista")

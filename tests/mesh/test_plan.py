@@ -131,16 +131,17 @@ def test_gmsh_is_predicted(tmp_path, solid, method, size, low, high):
 
 @attrs.frozen
 class Guessing:
-    """A mesher of a third party that predicts, rightly or not."""
+    """A mesher of a third party that predicts, rightly or not, or fails."""
 
     name: ClassVar[str] = "guessing"
     answer: object
 
     def predict(self, bearing):
+        if isinstance(self.answer, Exception):
+            raise self.answer
         return self.answer
 
-    def mesh(self, bearing):
-        raise AssertionError("a plan meshes nothing")
+    mesh = predict
 
 
 def test_other_meshers_predictions_are_judged():
@@ -152,26 +153,12 @@ def test_other_meshers_predictions_are_judged():
         predicted_mesh(attrs.evolve(chosen, mesh=Guessing(7.0)))
 
 
-@attrs.frozen
-class Raising:
-    """A mesher of a third party whose own code fails."""
-
-    name: ClassVar[str] = "raising"
-    error: Exception
-
-    def predict(self, bearing):
-        raise self.error
-
-    def mesh(self, bearing):
-        raise self.error
-
-
 @pytest.mark.parametrize(("duty", "call"), [("mesh", mesh_scene), ("predict", predicted_mesh), ("predict", make_plan)])
 def test_what_a_mesher_raises_is_put_to_its_name(duty, call):
-    with pytest.raises(PluginError, match=rf"^mesher 'raising': {duty}\(\) raises KeyError: 'teeth'"):
-        call(attrs.evolve(scene(), mesh=Raising(KeyError("teeth"))))
+    with pytest.raises(PluginError, match=rf"^mesher 'guessing': {duty}\(\) raises KeyError: 'teeth'"):
+        call(attrs.evolve(scene(), mesh=Guessing(KeyError("teeth"))))
     with pytest.raises(MemoryError):  # no fault of a mesher: the command line says what to do about it
-        mesh_scene(attrs.evolve(scene(), mesh=Raising(MemoryError())))
+        mesh_scene(attrs.evolve(scene(), mesh=Guessing(MemoryError())))
 
 
 def test_a_plan_tells_modules_of_the_given_registry_s_bodies():

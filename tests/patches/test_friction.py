@@ -10,7 +10,6 @@ import pytest
 
 from raceway import make_plan, scene_from_dict
 from raceway.bodies.patches.plan import patch_cost
-from raceway.core.patches.balls import AppliedLoads
 from raceway.core.patches.contact import Contact, SlipState
 from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.gyroscopic import Gyroscopic
@@ -215,9 +214,3 @@ def test_balls_are_accelerated_by_their_contacts():
         assert balance == pytest.approx(mass * (acceleration + first * velocity / dt), abs=1e-6)
         assert np.abs(balance).max() > 0.01  # the contacts give way, or it were mass * 30
         assert now.memory[0, 1] == 2.0
-
-
-def test_a_series_of_equilibria_knows_no_inertia():
-    history = History.of(np.zeros((24, 0)), 12)
-    assert history.with_inertia(AppliedLoads(np.zeros(12)), 1.0, 1e-5, 1e5, np.zeros((12, 2))).spring == 0.0
-    assert History.of(history.after(None, [None] * 24, np.zeros(24)), 12).known == 0
