@@ -39,8 +39,9 @@ def squeezed(formulation, folder):
     assert shutil.which("ccx"), "CalculiX is not installed: apt-get install calculix-ccx, or the line of make apt-line"
     mesh = block()
     far = len(mesh.points) - 1
-    # Node 5 stands above the corner along z, node 24 along y: three, two and one displacements are held.
-    sets = {"corner": [0], "edge": [5], "side": [24], "far": [far]}
+    # Along z and along y from the corner: three, two and one displacements are held.
+    edge, side = (int(np.argmax(mesh.points @ axis)) for axis in ([-9.0, -9.0, 1.0], [-9.0, 1.0, -9.0]))
+    sets = {"corner": [0], "edge": [edge], "side": [side], "far": [far]}
     Abaqus(formulation).write(folder / "body.inp", attrs.evolve(mesh, node_sets=sets))
     with (folder / "body.inp").open("a", encoding="utf-8") as file:
         file.write(REST)

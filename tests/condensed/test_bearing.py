@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, make_plan, scene_from_dict
-from raceway.bodies.condensed import compliances
 from raceway.core.condensed import calibration
 from raceway.core.revolution.body import seat_areas
-from raceway.storage import array_cache
 from raceway.testing import b7206c, run, settled
 from validation.command_line import EXAMPLES, invoke
 
@@ -88,28 +86,6 @@ def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
     assert change < case.bearing.mesh_error(case, found)[0] < 10.0 * change
 
 
-@pytest.fixture
-def made_anew(monkeypatch):
-    """Bodies that no other test computed in this process, calibrated on few points: half of what they take otherwise."""
-    monkeypatch.setattr(compliances, "_BODIES", {})
-    monkeypatch.setattr(calibration, "POINTS", (2, 4))
-    monkeypatch.setattr(calibration, "LOADS", np.linspace(0.4, 1.6, 5))
-
-
-def test_second_use_of_a_geometry_takes_compliances_from_the_cache(made_anew, monkeypatch, tmp_path):
-    made = []
-    monkeypatch.setattr(array_cache, "folder", lambda: tmp_path)
-    write = array_cache._write
-    monkeypatch.setattr(array_cache, "_write", lambda *a: made.append(a[1]) or write(*a))
-    mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}
-    first = at_rest(mesh=mesh)[1]
-    count = len(made)
-    second = at_rest(mesh=mesh, load={"axial": 400.0})[1]
-    assert count > 0
-    assert len(made) == count
-    assert at_rest(mesh=mesh)[1].displacement.tolist() == first.displacement.tolist() != second.displacement.tolist()
-
-
 def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():
     result = run(
         scene_from_dict(tables(excitation=ROTATING, rotor={"mass": 2.0}, integrator={"kind": "quasi_static", "turns": 1}))
@@ -165,20 +141,6 @@ def test_a_bearing_without_dimensions_is_refused_by_name():
     with pytest.raises(SceneError) as caught:
         make_plan(scene_from_dict({**tables(), "bearing": own}))
     assert {m.path for m in caught.value.mistakes} == {"bearing.bore", "bearing.outer_diameter", "bearing.width"}
-
-
-@pytest.mark.slow
-def test_an_unwritable_cache_is_said_once_and_costs_nothing_else(made_anew, monkeypatch, tmp_path):
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setattr(array_cache, "folder", lambda: blocked / "arrays")
-    array_cache._warn_unwritable.cache_clear()
-    mesh = {"kind": "structured", "element_size": 2e-3, "nodes_per_semi_axis": 1}
-    with pytest.warns(RuntimeWarning, match="cannot be kept") as said:
-        found = at_rest(mesh=mesh)[1]
-    array_cache._warn_unwritable.cache_clear()
-    assert len([w for w in said if "cannot be kept" in str(w.message)]) == 1
-    assert 1e6 * found.displacement[0] == pytest.approx(28.7, rel=0.01)
 
 
 @pytest.mark.parametrize(("speed_rpm", "told"), [(6000.0, False), (30000.0, True)])

@@ -118,7 +118,6 @@ def test_a_coarse_mesh_gives_what_condensed_bodies_give():
     mesh = {**TINY["mesh"], "azimuth_cells": 24}
     coarse = run(scene_from_dict({**article, "bodies": TINY["bodies"], "mesh": mesh}))
     condensed = run(scene_from_dict({**article, "bodies": {"kind": "condensed"}}))
-    rigid = run(scene_from_dict(article))
     assert coarse.to_dict()["model"]["mesh"]["cells"] < 3000
     ratio = coarse.equilibrium.displacement[:2] / condensed.equilibrium.displacement[:2]
     stiffness = np.diag(coarse.equilibrium.stiffness) / np.diag(condensed.equilibrium.stiffness)
@@ -133,12 +132,9 @@ def test_a_coarse_mesh_gives_what_condensed_bodies_give():
     # What the calibration and the mesh leave is stated, and is no total: how the mesh bends is not known.
     assert np.abs(stiffness - 1.0).max() < told["error"]["contact"] < 0.05
     assert "surface points" in told["error"]["how"]["contact"] and told["error"]["total"] is None
-    # Rigid bodies miss it by several times as much.
-    assert np.abs(np.diag(rigid.equilibrium.stiffness) / np.diag(condensed.equilibrium.stiffness) - 1.0).min() > 0.045
     # Loads of the balls decide little: one by one within the same bound of the largest.
-    assert np.abs(coarse.equilibrium.contact_force - condensed.equilibrium.contact_force).max() < (
-        0.015 * condensed.equilibrium.contact_force.max()
-    )
+    apart = np.abs(coarse.equilibrium.contact_force - condensed.equilibrium.contact_force).max()
+    assert apart < 0.015 * condensed.equilibrium.contact_force.max()
 
 
 @pytest.mark.slow
