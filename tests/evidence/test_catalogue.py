@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-import time
 from collections import defaultdict
 from functools import cache
 
 import numpy as np
 
 import raceway as rw
+from raceway.core.jit import working_process_time
 from raceway.studies.infer.infer import STIFFNESS_90
 from raceway.studies.infer.practices import stiffnesses
 from raceway.studies.infer.printed import printed_by
@@ -22,20 +22,20 @@ GMN = "GMN's printed balls: 103 bearings, each inferred from what is printed of 
 
 @cache
 def inferred(*words):
-    begun = time.process_time()
+    begun = working_process_time()
     content = json.loads(invoke("infer", *words, "--json").stdout)["summary"]
-    return content, time.process_time() - begun
+    return content, working_process_time() - begun
 
 
 @cache
 def of_scenes():
     """Relative errors of all printed axial stiffnesses of pairs, each by the equilibrium of a scene as a user writes it."""
-    begun, errors = time.process_time(), []
+    begun, errors = working_process_time(), []
     for one in printed_by("nsk"):
         for pair in one.pairs:
             bearing = {"preset": one.names[0], "arrangement": "DB", "preload": pair.preload}
             errors.append(abs(rw.run({"bearing": bearing}).stiffness[0, 0] / pair.stiffness - 1.0))
-    return np.array(errors), time.process_time() - begun
+    return np.array(errors), working_process_time() - begun
 
 
 def test_inferred_from_ratings(claim):
