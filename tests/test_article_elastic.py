@@ -60,6 +60,7 @@ def test_the_scene_is_the_article_s_mesh_of_the_examples():
     assert found["excitation"] == article["excitation"] and found["rotor"] == article["rotor"]
 
 
+@pytest.mark.slow
 def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_runs(tmp_path, short, monkeypatch):
     done, real = [], driver.row_of
 

@@ -15,11 +15,12 @@ from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES
 from validation.command_line import MINIMAL
 
-#: The page of `view` has pictures; those two take longest to write.
+#: The page of `view` has pictures; those of studies take longest to write.
 MARKS = {
     "view": [pytest.mark.slow, pytest.mark.needs("pyvista")],
     "study article": [pytest.mark.slow],
     "study map": [pytest.mark.slow],
+    "study rig": [pytest.mark.slow],
 }
 
 
