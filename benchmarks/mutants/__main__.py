@@ -8,8 +8,9 @@ from __future__ import annotations
 import argparse
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
-from benchmarks.mutants.faults import Fault, chosen
+from benchmarks.mutants.faults import TABLE, Fault, chosen
 from benchmarks.mutants.trial import QUICK, Verdict, copied
 
 
@@ -22,8 +23,9 @@ def main(words: list[str]) -> int:
     )
     parser.add_argument("--list", action="store_true", help="only show the faults")
     parser.add_argument("--quick", action="store_true", help=f"with the tests that `make test` runs: {QUICK}")
+    parser.add_argument("--table", type=Path, default=TABLE, help="a file of other faults: benchmarks/mutants/stranger.toml")
     asked = parser.parse_args(words)
-    faults = chosen(asked.words)
+    faults = chosen(asked.words, asked.table)
     if asked.list:
         for fault in faults:
             print(f"{fault.file}: {fault.does} ({', '.join(fault.tests)})")

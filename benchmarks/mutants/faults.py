@@ -49,6 +49,8 @@ def read_faults(path: Path = TABLE) -> list[Fault]:
     return [Fault(**{**row, "tests": tuple(row["tests"])}) for row in rows]
 
 
-def chosen(words: list[str]) -> list[Fault]:
+def chosen(words: list[str], table: Path = TABLE) -> list[Fault]:
     """The faults whose file or effect holds one of the words; all without words."""
-    return [fault for fault in read_faults() if not words or any(word in f"{fault.file} {fault.does}" for word in words)]
+    return [
+        fault for fault in read_faults(table) if not words or any(word in f"{fault.file} {fault.does}" for word in words)
+    ]
