@@ -13,7 +13,7 @@ from __future__ import annotations
 import ast
 import json
 import math
-import time
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -84,9 +84,14 @@ def claim(request: pytest.FixtureRequest) -> Callable[..., None]:
     return claims_into(request.node.user_properties)
 
 
+def _cpu_s() -> float:
+    """Processor time of this process and of its children that ended [s]."""
+    return sum(os.times()[:4])
+
+
 def claims_into(properties: list[tuple[str, Any]]) -> Callable[..., None]:
     """What the fixture is: asserts a claim, and appends its row to the properties of a test."""
-    before = time.process_time()
+    before = _cpu_s()
 
     def claim(
         quantity: str,
@@ -105,7 +110,7 @@ def claims_into(properties: list[tuple[str, Any]]) -> Callable[..., None]:
         nonlocal before
         if basis not in BASES:
             raise TypeError(f"basis {basis!r} is none of {', '.join(BASES)}")
-        now = time.process_time()
+        now = _cpu_s()
         low, high = limits_of(near, within, at_least, at_most)
         row = Claim(quantity, float(value), unit, low, high, basis, source, round(now - before, 2), misses)
         if machine and row.holds:
@@ -131,11 +136,11 @@ def pytest_configure(config: pytest.Config) -> None:
     """Refuse what would give reports of a part of a module, or of no commit."""
     if not config.option.evidence:
         return
-    from benchmarks.evidence import _files
+    from benchmarks import reports as files
 
     if config.option.keyword or any("::" in word for word in config.args):
         raise pytest.UsageError("--evidence writes whole modules: without -k and without ::")
-    if _files.commit() is None:
+    if files.commit() is None:
         raise pytest.UsageError("--evidence is made of a commit: there are uncommitted changes, or there is no repository")
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(_Reports(), "reports of claims")
@@ -159,7 +164,7 @@ class _Reports:
 
     @pytest.hookimpl(trylast=True)
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        from benchmarks.evidence import _files
+        from benchmarks import reports as files
 
         for module, keyed in sorted(self.rows.items()):
             rows = [row for *_, row in sorted(keyed, key=lambda item: item[:3])]
@@ -169,10 +174,10 @@ class _Reports:
             path = next(FOLDER.rglob(f"{module}.py"))
             title = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or name).splitlines()[0].rstrip(".")
             seconds = sum(row["seconds"] for row in rows)
-            _files.write(name, title, rows, seconds, f"pytest --evidence {path.relative_to(FOLDER.parents[1]).as_posix()}")
+            files.write(name, title, rows, seconds, f"pytest --evidence {path.relative_to(FOLDER.parents[1]).as_posix()}")
             held = sum(not row["misses"] for row in rows)
             terminalreporter.write_line(f"report {name}: {held} of {len(rows)} claims hold, {seconds:.1f} CPU-s")
-        _files.refresh()
+        files.refresh()
 
 
 def claims_of(folder: Path) -> Iterator[tuple[str, Claim]]:

@@ -15,10 +15,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from benchmarks.evidence import _files, names
+from benchmarks import reports as files
 
-#: Module reports of the release tier.
-RELEASE = {"article", "article_mesh", "article_motion"}
 #: A value that changed by more is worth a line.
 _WORTH = 0.02
 
@@ -34,28 +32,25 @@ def changes(before: Reports, after: Reports) -> list[str]:
         lines += [f"{name}: no longer there: {quantity}" for quantity in old if quantity not in now]
         for quantity, row in now.items():
             if quantity not in old:
-                lines.append(f"{name}: new: {quantity} = {_files.shown(row['value'])}")
+                lines.append(f"{name}: new: {quantity} = {files.shown(row['value'])}")
                 continue
             a, b = old[quantity]["value"], row["value"]
             verdict = (
                 ""
-                if _files.holds(old[quantity]) == _files.holds(row)
-                else f", {'holds' if _files.holds(row) else 'MISSES'} now"
+                if files.holds(old[quantity]) == files.holds(row)
+                else f", {'holds' if files.holds(row) else 'MISSES'} now"
             )
             far = isinstance(a, float) and isinstance(b, float) and abs(b - a) > _WORTH * abs(a)
             if verdict or far:
-                lines.append(f"{name}: {quantity}: {_files.shown(a)} -> {_files.shown(b)}{verdict}")
+                lines.append(f"{name}: {quantity}: {files.shown(a)} -> {files.shown(b)}{verdict}")
     return lines
 
 
 def make(tree: Path, release: bool) -> int:
-    """All tests and reports of a work tree; the worst exit code."""
+    """All tests of a work tree, and the reports of their claims; pytest's exit code."""
     tier = "not ross" if release else "not release and not ross"
-    done = [subprocess.run([sys.executable, "-m", "pytest", "-n", "2", "-q", "--evidence", "-m", tier], cwd=tree)]
-    chosen = [name for name in names() if release or name not in RELEASE]
-    # In worktrees of their own reports would each compile: one process for all of them.
-    done.append(subprocess.run([sys.executable, "-m", "benchmarks.evidence", *chosen], cwd=tree))
-    return max(one.returncode for one in done)
+    words = ["-n", "2", "--dist", "loadgroup", "-q", "--evidence", "-m", tier]
+    return subprocess.run([sys.executable, "-m", "pytest", *words], cwd=tree).returncode
 
 
 def main(words: list[str]) -> int:
@@ -64,22 +59,23 @@ def main(words: list[str]) -> int:
     )
     parser.add_argument("--release", action="store_true", help="the article's mesh and study, too: hours")
     asked = parser.parse_args(words)
-    made_at = _files.commit()
+    made_at = files.commit()
     if made_at is None:
         print("evidence is made of a commit: there are uncommitted changes, or there is no repository", file=sys.stderr)
         return 2
-    before = _files.read()
+    before = files.read()
     with tempfile.TemporaryDirectory(prefix="raceway-evidence-") as folder:
         tree = Path(folder) / "tree"
         _git("worktree", "add", "--detach", str(tree), made_at)
         try:
             code = make(tree, asked.release)
-            after = _files.read(tree / "docs" / "reports")
+            after = files.read(tree / "docs" / "reports")
             for name in after:
-                shutil.copy2(tree / "docs" / "reports" / f"{name}.json", _files.FOLDER)
+                shutil.copy2(tree / "docs" / "reports" / f"{name}.json", files.FOLDER)
+            shutil.copytree(tree / "docs" / "pictures", files.ROOT / "docs" / "pictures", dirs_exist_ok=True)
         finally:
             _git("worktree", "remove", "--force", str(tree))
-    _files.refresh()
+    files.refresh()
     lines = changes(before, after)
     print("\n".join(lines))
     head = f"Evidence of {datetime.datetime.now(datetime.UTC):%Y-%m-%d} at {made_at}"
@@ -89,7 +85,7 @@ def main(words: list[str]) -> int:
 
 
 def _git(*words: str) -> None:
-    subprocess.run(["git", *words], cwd=_files.ROOT, check=True)
+    subprocess.run(["git", *words], cwd=files.ROOT, check=True)
 
 
 if __name__ == "__main__":

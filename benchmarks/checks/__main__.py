@@ -5,8 +5,7 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
-from benchmarks.checks import names
-from benchmarks.evidence import Row, show
+from benchmarks.checks import Row, names, show
 
 
 def rows_of(name: str) -> list[Row]:

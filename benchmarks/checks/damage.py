@@ -9,7 +9,7 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
 from benchmarks import damaged_stores
-from benchmarks.evidence import Row, below
+from benchmarks.checks import Row, below
 from benchmarks.faulty_caches import SAME, TOLD
 
 TITLE = "Damaged stores and caches: the same numbers or one message"

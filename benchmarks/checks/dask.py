@@ -11,7 +11,7 @@ from pathlib import Path
 
 import attrs
 
-from benchmarks.evidence import Row, below
+from benchmarks.checks import Row, below
 from raceway.errors import PluginError
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.serial import Serial

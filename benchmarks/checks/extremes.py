@@ -10,8 +10,8 @@ from itertools import islice
 
 from rich.console import Console
 
+from benchmarks.checks import Row, below, near
 from benchmarks.checks._scenes import Chance, Tables
-from benchmarks.evidence import Row, below, near
 from raceway.commands.screen.result import run_screen
 from raceway.errors import RacewayError
 from raceway.pipeline.result import Result

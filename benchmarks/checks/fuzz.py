@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.checks import Row
 from benchmarks.checks._doors import fronts
 from benchmarks.checks._fuzz import ASLEEP_S, CALLS, CHECK_S, RUN_S
 from benchmarks.checks._scenes import scene_keys
-from benchmarks.evidence import Row
 
 TITLE = "Fuzz: random scenes and calls"
 COMMAND = "python -m benchmarks.checks fuzz"

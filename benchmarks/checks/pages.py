@@ -8,7 +8,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from benchmarks.evidence import Row, below
+from benchmarks.checks import Row, below
 from raceway.cli import main
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES as CHEAP

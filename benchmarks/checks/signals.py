@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from benchmarks import signals
-from benchmarks.evidence import Row, below
+from benchmarks.checks import Row, below
 
 TITLE = "Signals: commands that are asked to end, and killed"
 _COMMAND = "python -m benchmarks.signals"

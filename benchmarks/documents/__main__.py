@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from benchmarks import documents
+from benchmarks import reports as files
 from benchmarks.documents import commands, drawing, promises, versions
-from benchmarks.evidence import _files
 
 
 def main() -> None:
@@ -15,7 +15,7 @@ def main() -> None:
     text = documents.README.read_text(encoding="utf-8")
     documents.README.write_text(documents.with_screen(text, documents.screen()), encoding="utf-8")
     drawing.draw(documents.DRAWING)
-    reports = _files.read()
+    reports = files.read()
     promises.draw_stability(reports["stability"], documents.STABILITY)
 
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from benchmarks import reports as files
 from benchmarks.claims import Claim, _Reports, claims_into, limits_of
-from benchmarks.evidence import _files
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_what_does_not_hold_fails_and_leaves_no_row(rows, value, limits, words):
 
 def test_a_stated_miss_stays_visible(rows):
     claims_into(rows)("x", 2.0, at_most=1.0, basis="own other method", misses="the mesh is coarse")
-    assert _files.misses({"one": {"rows": [rows[0][1]]}}).endswith(
+    assert files.misses({"one": {"rows": [rows[0][1]]}}).endswith(
         "| [one](one.md) | x | 2 | at most 1 | the mesh is coarse |"
     )
 
@@ -66,9 +66,9 @@ def test_a_basis_is_one_of_the_list(rows):
 def test_reports_are_of_modules_without_a_failure(rows, tmp_path, monkeypatch):
     monkeypatch.setattr("benchmarks.claims.FOLDER", tmp_path / "tests" / "evidence")
     monkeypatch.setattr(
-        _files, "write", lambda name, title, rows, seconds, command: written.update({name: (title, rows, command)})
+        files, "write", lambda name, title, rows, seconds, command: written.update({name: (title, rows, command)})
     )
-    monkeypatch.setattr(_files, "refresh", list)
+    monkeypatch.setattr(files, "refresh", list)
     (tmp_path / "tests" / "evidence").mkdir(parents=True)
     for name in ("good", "bad"):
         (tmp_path / "tests" / "evidence" / f"test_{name}.py").write_text(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from benchmarks import reports as files
 from benchmarks.documents import (
     COMMANDS,
     DRAWING,
@@ -25,7 +26,6 @@ from benchmarks.documents import (
     shown_screen,
 )
 from benchmarks.documents.versions import with_versions
-from benchmarks.evidence import _files
 from raceway.scene.schema import keys
 from raceway.scene.tables import TABLES
 
@@ -71,7 +71,7 @@ def test_the_drawing_explains_keys_that_there_are(tmp_path):
 
 
 def test_the_picture_of_stability_is_that_of_the_report(tmp_path):
-    promises.draw_stability(_files.read()["stability"], tmp_path / "drawn.svg")
+    promises.draw_stability(files.read()["stability"], tmp_path / "drawn.svg")
     assert texts(STABILITY) == texts(tmp_path / "drawn.svg"), "run python -m benchmarks.documents"
     assert len(texts(STABILITY)) > 20
 

@@ -28,7 +28,7 @@ FRICTION = 0.03
 FRICTIONS = ("none", "standing", "orbiting")
 #: How runs with friction are integrated: the force grows over two thirds of the turns, the last third counts.
 FRICTION_TURNS, FRICTION_STEPS = 12, 360
-#: Least relative error of K with friction: what twice the turns of twice the steps change (``benchmarks.evidence article``).
+#: Least relative error of K with friction: what twice the turns of twice the steps change (``tests/evidence/test_article.py``).
 FRICTION_ERROR = 0.005
 ARTICLE = Path(__file__).resolve().parents[2] / "data" / "article.toml"
 #: The article's ranges: section 4 (speeds) and 3.3 (axial loads); how finely is ours.
