@@ -152,9 +152,11 @@ class _Reports:
     def __init__(self) -> None:
         self.rows: dict[str, list[tuple[int, str, int, dict[str, Any]]]] = {}
         self.failed: set[str] = set()
+        self.seconds: dict[str, float] = {}
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         module = Path(report.nodeid.partition("::")[0])
+        self.seconds[module.stem] = self.seconds.get(module.stem, 0.0) + report.duration
         if report.failed or report.skipped:
             self.failed.add(module.stem)
         if report.when == "call":
@@ -173,10 +175,10 @@ class _Reports:
             name = module.removeprefix("test_")
             path = next(FOLDER.rglob(f"{module}.py"))
             title = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or name).splitlines()[0].rstrip(".")
-            seconds = sum(row["seconds"] for row in rows)
+            seconds = self.seconds[module]
             files.write(name, title, rows, seconds, f"pytest --evidence {path.relative_to(FOLDER.parents[1]).as_posix()}")
             held = sum(not row["misses"] for row in rows)
-            terminalreporter.write_line(f"report {name}: {held} of {len(rows)} claims hold, {seconds:.1f} CPU-s")
+            terminalreporter.write_line(f"report {name}: {held} of {len(rows)} claims hold, {seconds:.1f} s")
         files.refresh()
 
 

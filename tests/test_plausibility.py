@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from raceway import ConvergenceError, SceneError, run, scene_from_dict
+from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.framework.options import nearest
 from raceway.pipeline.facts import facts
 from raceway.pipeline.plausibility import inertia_warnings
 from raceway.pipeline.simulate import _stride
 from raceway.planning.implausible import implausible
-from raceway.planning.recording import samples_per_turn
+from raceway.planning.recording import damped_limit, samples_per_turn
 from raceway.testing import b7206c
 from validation.command_line import EXAMPLES
 
@@ -208,6 +208,30 @@ def test_implausible_numbers_are_told(tables, words):
             static(**tables)
     else:
         assert any(words in text for text in static(**tables))
+
+
+def test_check_says_what_is_implausible_and_takes_a_window_as_long_as_the_record():
+    scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "excitation": EXCITED, "integrator": {"turns": 5}}
+    assert any("`contact.friction` = 1.5" in text for text in check({**scene, "contact": {"friction": 1.5}}).warnings)
+    windows = [check({**scene, "identifier": {"kind": "order_tracking", "window_turns": turns}}).ok for turns in (5, 6)]
+    assert windows == [True, False]
+
+
+@pytest.mark.parametrize("time_constant", [0.0, 1e-7, 1e-5])
+def test_the_stable_step_with_dashpots_is_that_of_one_damped_mode(time_constant):
+    """Velocity Verlet, whose forces see the predicted velocity v + dt a, with c = tau k: eigenvalues on the unit circle at the limit."""
+    limit, w = 1e-6, 2e6
+    dt = damped_limit(limit, time_constant)
+
+    def growth(dt):
+        """Of (q, v, a) over a step."""
+        moved, predicted = np.array([1.0, dt, 0.5 * dt**2]), np.array([0.0, 1.0, dt])
+        a = -(w**2) * (moved + time_constant * predicted)
+        step = np.array([moved, np.array([0.0, 1.0, 0.5 * dt]) + 0.5 * dt * a, a])
+        scale = np.array([1.0, dt, dt**2])
+        return np.abs(np.linalg.eigvals(step * scale[:, None] / scale)).max()
+
+    assert growth(0.99 * dt) < 1.0 + 1e-6 < growth(1.01 * dt)
 
 
 def test_an_error_that_is_not_known_is_a_warning_with_its_reason():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.bodies.elastic.subsurface import below_contacts
+from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
 from raceway.core.elastic.contacts.contact_axis import contact_axes
 from raceway.core.elastic.contacts.stress_profile import cells_near
 from raceway.testing import run
@@ -124,3 +124,11 @@ def test_the_picture_and_the_file_of_the_elements_near_the_contacts(result, tmp_
     middle = {tuple(np.round(1e9 * one).astype(int)): k for k, one in enumerate(whole.points[whole.cells].mean(axis=1))}
     chosen = [middle[tuple(np.round(1e9 * one).astype(int))] for one in grid.points[grid.cells_dict[12]].mean(axis=1)]
     assert np.array_equal(grid.cell_data["largest shear stress [Pa]"], whole.largest_shear[chosen])
+
+
+@pytest.mark.parametrize(
+    ("cells", "resolved"), [((4.0, 9.0, 5.0), True), ((3.9, 9.0, 5.0), False), ((9.0, 9.0, 3.9), False)]
+)
+def test_stresses_are_resolved_where_the_mesh_is_fine_in_every_direction(cells, resolved, monkeypatch):
+    monkeypatch.setattr(BelowContact, "cells", cells)
+    assert BelowContact.resolved.fget(BelowContact.__new__(BelowContact)) is resolved

@@ -139,6 +139,17 @@ def test_cost_at_rest(claim):
           source="a sixth of the first", misses="tangents of twelve equal balls are made one by one")  # fmt: skip
 
 
+@pytest.mark.parametrize("name", SIZES)
+def test_plan(claim, name):
+    """Before this process grows: a child's peak memory begins with its parent's."""
+    cost = elastic_cost(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()]))
+    run = measured(dict(SIZES[name])) if SIZES[name] else static("1000 N")
+    size = f"plan, {run['model']['mesh']['cells']} elements"
+    twice = {"at_least": 0.5, "at_most": 2.0, "source": "a plan decides whether to start"}
+    claim(f"{size}: memory predicted over measured", cost.bytes / run["peak_bytes"], basis="regression", **twice)
+    claim(f"{size}: CPU time predicted over measured", cost.equilibrium_s / run["cpu_s"], **COST, **twice)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_peak_pressure_of_the_most_loaded_ball(claim, case):
     balls, errors = static(case)["equilibrium"]["balls"], []
@@ -208,16 +219,6 @@ def test_cost_beside_other_solvers(claim):
           source="one process, compiled")  # fmt: skip
     claim("63 120 elements: CPU time over CalculiX's", superelements / CALCULIX_BEARING, at_most=0.1, **COST,
           source=f"{CALCULIX_BEARING:g} CPU-s, same size, facets")  # fmt: skip
-
-
-@pytest.mark.parametrize("name", SIZES)
-def test_plan(claim, name):
-    cost = elastic_cost(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()]))
-    run = measured(dict(SIZES[name])) if SIZES[name] else static("1000 N")
-    size = f"plan, {run['model']['mesh']['cells']} elements"
-    twice = {"at_least": 0.5, "at_most": 2.0, "source": "a plan decides whether to start"}
-    claim(f"{size}: memory predicted over measured", cost.bytes / run["peak_bytes"], basis="regression", **twice)
-    claim(f"{size}: CPU time predicted over measured", cost.equilibrium_s / run["cpu_s"], **COST, **twice)
 
 
 def test_one_point_hexahedra(claim):

@@ -122,7 +122,8 @@ class Condensed:
             once = section_cost(scene).seconds
             return Cost(START_S + once + compiled_motion(scene, balls, motion, _TIMES, more), once)
         patches = patch_cost(scene)
-        seconds = patches.setup_s + 3.0 * patches.equilibrium_s + (MOTION * patches.step_s if scene.excitation else 0.0)
+        guess = MOTION if scene.excitation is not None and scene.integrator.method.inertial else 0.0
+        seconds = patches.setup_s + 3.0 * patches.equilibrium_s + guess * patches.step_s
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(scene, motion) * steps * patches.step_s)
 
