@@ -75,7 +75,9 @@ def commit() -> str | None:
     """Short name of the commit; None where tracked files differ from it, or there is none."""
     try:
         name = _git("rev-parse", "--short", "HEAD")
-        changed = _git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/reports", ":!docs/pictures", ":!*.md")
+        changed = _git(
+            "status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/reports", ":!docs/pictures", ":!*.md"
+        )
     except (OSError, subprocess.CalledProcessError):
         return None
     return None if changed else name

@@ -87,7 +87,13 @@ def test_reports_are_of_modules_without_a_failure(rows, tmp_path, monkeypatch):
         nodeid = f"tests/evidence/test_{name}.py::test_{line}"
         reports.pytest_runtest_logreport(
             SimpleNamespace(
-                nodeid=nodeid, when="call", failed=failed, skipped=False, user_properties=properties, location=("", line, "")
+                nodeid=nodeid,
+                when="call",
+                failed=failed,
+                skipped=False,
+                duration=0.5,
+                user_properties=properties,
+                location=("", line, ""),
             )
         )
     reports.pytest_terminal_summary(SimpleNamespace(write_line=lambda line: None))
