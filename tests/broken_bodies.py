@@ -134,7 +134,6 @@ BROKEN = [
     (made("Negative", stable_step=lambda *_: -1.0), "plan", "neither None nor a time"),
     (made("Stutter", decide=twice), "plan", "is decided twice"),
     (made("Strange", unused=lambda *_: [("bearing.rollers", "there are none")]), "plan", "which is no key"),
-    (made("Vague", imports=lambda *_: {"json": "it is read"}), "plan", "imports\\(\\) names json"),
     (made("Endless", cost=lambda *_: Cost(float("nan"))), "plan", "is no time"),
     (made("Nothing", build=lambda *_: None), "build", "returns NoneType"),
     (of_bearing("Adrift", settle=adrift), "equilibrium", "of the loads is left"),

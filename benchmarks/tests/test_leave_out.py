@@ -13,7 +13,7 @@ from raceway.pipeline.run import run as compute
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import recorded_per_turn
 from validation import left_out
-from validation.command_line import ARTICLE, invoke, python
+from validation.command_line import ARTICLE, python
 
 #: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
 RUN = """
@@ -59,6 +59,32 @@ SCENES = {
 }
 
 
+#: Optional modules of the core, without "raceway.core.", and the scenes that import them.
+OPTIONAL = {
+    "condensed": ("condensed",),
+    "contact_laws.hertz": ("", "penalty"),
+    "contact_laws.penalty": ("penalty",),
+    "elastic": (),
+    "excitations.run_up": ("run-up",),
+    "hexahedron": ("condensed",),
+    "periodic": ("", "equilibri"),
+    "revolution": ("condensed",),
+    "ring.kernels.rigid_inertial": ("", "weightless", "condensed"),
+    "ring.kernels.rigid_tangential": ("friction",),
+    "ring.kernels.rigid_weightless": ("weightless", "condensed"),
+    "ring.root": ("friction",),
+    "schemes.explicit.compiled": ("explicit",),
+    "schemes.one_step.compiled": ("", "explicit", "equilibri", "steady"),
+    "schemes.one_step.stepped": (),
+    "schemes.static.compiled": ("equilibria",),
+}
+
+
+def needs(scene: str, words: tuple[str, ...]) -> bool:
+    """Whether the scene's name holds one of the words; where the first is "", whether it holds none of the others."""
+    return not any(word in scene for word in words[1:]) if words[:1] == ("",) else any(word in scene for word in words)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
@@ -71,14 +97,10 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     for one in (found["plan"], expected):
         one.pop("predicted_wall_s")  # each process times the machine
     assert found["plan"] == expected
-    for module in plan.modules:
-        assert (module.module in found["loaded"]) == module.needed, module
-        here = {kernel: made for kernel, made in found["kernels"].items() if kernel.partition(":")[0] == module.module}
-        assert module.needed or not here, here
-        # A kernel that another one calls is read from the cache with that one: rigid bodies within condensed ones, roots in a loop.
-        held = ("raceway.core.ring.root", "raceway.core.schemes.static.compiled")
-        within = scene.bodies.name == "condensed" or module.module in held
-        assert not here or any(here.values()) or within, here
+    loaded, libraries = set(found["loaded"]), {"gmsh", "matplotlib", "meshio", "pyvista"}
+    assert not loaded & libraries
+    for module, words in OPTIONAL.items():
+        assert (f"raceway.core.{module}" in loaded) == needs(name, words), module
     # One compiled version of a kernel serves every scene, and what no scene uses has none.
     assert set(found["kernels"].values()) <= {0, 1}
     # Kernels that are made around others: those of condensed bodies, and the loop around the solver of equilibria.
@@ -108,8 +130,6 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     compute(scene)  # as above
     found = run(*ELASTIC)
     assert found["plan"] == json.loads(json.dumps(make_plan(scene).to_dict()))
-    for module in make_plan(scene).modules:
-        assert (module.module in found["loaded"]) == module.needed, module
     assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
     assert "raceway.bodies.condensed.build" not in found["loaded"]
     assert {"raceway.core.elastic.contacts.resultant", "raceway.core.contact.sphere"} <= set(found["loaded"])
@@ -162,7 +182,7 @@ def test_every_part_of_a_scene_is_decided_with_a_reason():
     ):
         plan = make_plan(load_scene(ARTICLE, changes))
         decided = [*plan.kept, *plan.left_out]
-        assert all(part.why for part in decided) and all(module.why for module in plan.modules)
+        assert all(part.why for part in decided)
         for words in parts:
             assert sum(part.part.startswith(words) for part in decided) == 1, words
     condensed = make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",)))
@@ -194,15 +214,6 @@ def test_planning_takes_less_than_20_ms():
     begun = time.process_time()
     assert left_out.planning() < 0.02
     assert time.process_time() - begun < 5.0
-
-
-def test_the_command_shows_modules():
-    content = json.loads(invoke("plan", ARTICLE, "--json").stdout)
-    needed = {one["module"]: one["needed"] for one in content["modules"]}
-    assert needed["raceway.core.ring.kernels.rigid_inertial"] and not needed["raceway.core.ring.kernels.rigid_tangential"]
-    assert not any(needed[name] for name in ("matplotlib", "gmsh", "meshio", "pyvista"))
-    shown = invoke("plan", ARTICLE).stdout
-    assert "Modules not imported" in shown and "rigid_tangential" in shown
 
 
 def test_a_saving_counts_above_the_noise_only():

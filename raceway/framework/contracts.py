@@ -385,18 +385,15 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
     5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    7. ``imports(scene, balls)``: module -> reason, of the optional modules that a run on these bodies imports; ``modules``: all of
-       them, whatever the scene.
-    8. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
-    9. The fields of the class are the keys of the table [bodies] beside ``kind``.
-    10. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
+    7. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
+    8. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    9. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
-    11. ``same_bodies(scene, other)``, if it is there: whether nothing that is meshed differs between two scenes of this kind, so
+    10. ``same_bodies(scene, other)``, if it is there: whether nothing that is meshed differs between two scenes of this kind, so
         that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
     """
 
     name: ClassVar[str]
-    modules: ClassVar[tuple[str, ...]]
 
     def faults(self, scene: Scene) -> list[Mistake]: ...
     def traits(self, scene: Scene) -> Traits: ...
@@ -404,7 +401,6 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     def decide(self, scene: Scene, parts: Decisions) -> None: ...
     def unused(self, scene: Scene) -> list[tuple[str, str]]: ...
     def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
-    def imports(self, scene: Scene, balls: Balls) -> Mapping[str, str]: ...
     def build(self, scene: Scene, plan: Plan) -> BuiltBearing: ...
 
 
@@ -439,7 +435,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "format": ("raceway_formats", ("suffixes", "read", "write")),
     "bodies": (
         "raceway_bodies",
-        ("modules", "faults", "traits", "stable_step", "decide", "unused", "cost", "imports", "build"),
+        ("faults", "traits", "stable_step", "decide", "unused", "cost", "build"),
     ),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),

@@ -10,7 +10,6 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
-from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
 from raceway.planning.implausible import foreseen, implausible
 from raceway.planning.plan import make_plan
@@ -84,7 +83,7 @@ def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
     """
     try:
         read = as_scene(scene, plugins=plugins)
-        make_plan(read, registry=default_registry())
+        make_plan(read)
     except SceneError as error:
         return Check(tuple(error.mistakes))
     return Check(tuple(foreseen(read)), implausible(read))

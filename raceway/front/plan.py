@@ -10,7 +10,6 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.doors import door
-from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown, number
 from raceway.planning.implausible import foreseen
 from raceway.planning.plan import Plan, make_plan
@@ -75,6 +74,6 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     read = as_scene(scene, plugins=plugins)
     if mistakes := foreseen(read):
         raise SceneError(mistakes)
-    made = make_plan(read, registry=default_registry())
+    made = make_plan(read)
     values = {str(field.alias): getattr(made, field.name) for field in attrs.fields(Plan)}
     return ScenePlan(**values, title=read.title)

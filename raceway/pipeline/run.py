@@ -99,7 +99,7 @@ def _run(
     stay: bool,
 ) -> Result:
     wall, processor = working_clock(), working_process_time()
-    plan = make_plan(scene, registry=registry)
+    plan = make_plan(scene)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)

@@ -7,18 +7,15 @@ predicts seconds.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from functools import partial
+from collections.abc import Collection
 
 import attrs
 
 from raceway.framework.doors import door
 from raceway.framework.duties import bodies
-from raceway.framework.registry import Registry, default_registry
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.planning.decisions import decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.machine import slowness
-from raceway.planning.modules import Module, as_dicts, optional_modules
 from raceway.planning.parts import Decisions, Part
 from raceway.planning.recording import refuse_memory
 from raceway.scene.scene import Scene
@@ -42,7 +39,6 @@ class Plan:
     at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
     predicted_once_s : seconds of that which a second run on the same bodies does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
-    modules : optional modules, and whether a run imports them
     """
 
     kept: tuple[Part, ...]
@@ -61,12 +57,6 @@ class Plan:
     predicted_bytes: int = 0
     mesh: Tables | None = None
     at_least: bool = False
-    _modules: Callable[[], tuple[Module, ...]] = attrs.field(default=tuple, eq=False, repr=False)
-
-    @property
-    def modules(self) -> tuple[Module, ...]:
-        """Made when it is asked for: no run asks."""
-        return self._modules()
 
     def keeps(self, part: str) -> bool:
         """Whether a part is kept, by its name."""
@@ -84,18 +74,16 @@ class Plan:
             "predicted_at_least": self.at_least,
             "predicted_bytes": self.predicted_bytes or None,
             "mesh": self.mesh,
-            "modules": as_dicts(self.modules),
         }
 
 
 @door
-def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | None = None) -> Plan:
+def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     """Decide what a scene needs.
 
     Parameters
     ----------
     force : parts that are kept although the scene does not need them: to measure what leaving them out saves
-    registry : that the scene was made with, whose kinds of bodies the modules are told of
 
     Raises
     ------
@@ -138,7 +126,6 @@ def make_plan(scene: Scene, force: Collection[str] = (), registry: Registry | No
         predicted_bytes=cost.bytes,
         mesh=cost.mesh,
         at_least=cost.at_least,
-        modules=partial(optional_modules, scene, registry or default_registry(), balls, motion.recorded),
     )
 
 

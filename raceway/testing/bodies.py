@@ -89,7 +89,7 @@ class BodiesSuite(Suite):
         return f"refused: {', '.join(refused) or 'nothing'}"
 
     @duty(
-        "traits, stable_step, decide, unused, imports, cost: as the contract types them, finite, of keys that exist; nothing is built"
+        "traits, stable_step, decide, unused, cost: as the contract types them, finite, of keys that exist; nothing is built"
     )
     def test_plan(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
@@ -110,8 +110,6 @@ class BodiesSuite(Suite):
             require(not twice, f"{', '.join(twice)} is decided twice")
             for path, why in bodies.unused(scene):
                 require(is_key(scene, path) and why, f"unused() names `{path}`, which is no key, or gives no reason")
-            more = sorted(set(bodies.imports(scene, balls)) - set(bodies.modules))
-            require(not more, f"imports() names {', '.join(more)}, which `modules` lacks")
             cost = bodies.cost(scene, balls, motion, parts)
         require(isinstance(cost, Cost), f"cost() returns {type(cost).__name__}, not Cost")
         require(0.0 < cost.seconds < np.inf, f"cost().seconds = {cost.seconds} is no time")

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import json
-from types import ModuleType
 from typing import ClassVar
 
 import attrs
 import pytest
 
-from raceway import MeshError, PluginError, SceneError, hookimpl, load_scene, make_plan, scene_from_dict
+from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
 from raceway.bodies.mesh_plan import predicted_mesh
 from raceway.bodies.meshing import mesh_scene
-from raceway.bodies.rigid.kind import Rigid
 from raceway.commands.screen import plan_screen
 from raceway.plugins.formats.abaqus import Abaqus
 from raceway.plugins.meshers.gmsh import Gmsh
 from raceway.plugins.meshers.structured import Structured
-from raceway.testing import Registry
 from tests.mesh import solids
 from validation.command_line import EXAMPLES, invoke
 
@@ -159,27 +156,3 @@ def test_what_a_mesher_raises_is_put_to_its_name(duty, call):
         call(attrs.evolve(scene(), mesh=Guessing(KeyError("teeth"))))
     with pytest.raises(MemoryError):  # no fault of a mesher: the command line says what to do about it
         mesh_scene(attrs.evolve(scene(), mesh=Guessing(MemoryError())))
-
-
-def test_a_plan_tells_modules_of_the_given_registry_s_bodies():
-    @attrs.frozen
-    class Other(Rigid):
-        """Bodies of one registry only."""
-
-        name: ClassVar[str] = "other"
-        modules: ClassVar[tuple[str, ...]] = ("other_bodies",)
-
-    registry = Registry(third_party=False)
-    plugin = ModuleType("other")
-
-    @hookimpl
-    def raceway_bodies():
-        return [Other]
-
-    plugin.raceway_bodies = raceway_bodies
-    registry.add(plugin)
-    assert not registry.faults
-    chosen = scene("rigid")
-    found = {one.module: one.needed for one in make_plan(attrs.evolve(chosen, mesh=None), registry=registry).modules}
-    assert found["other_bodies"] is False
-    assert "other_bodies" not in {one.module for one in make_plan(attrs.evolve(chosen, mesh=None)).modules}

@@ -29,7 +29,6 @@ class CylindricalRollers:
     """Rigid rings on Z cylindrical rollers in line contact: radial loads, no axial and no tilt stiffness."""
 
     name: ClassVar[str] = "cylindrical_rollers"
-    modules: ClassVar[tuple[str, ...]] = ()
 
     roller_length: float = option(unit="m", help="effective length L of the line contacts", rule=positive())
 
@@ -124,10 +123,6 @@ class CylindricalRollers:
     def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's."""
         return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
-
-    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
-        """No optional module of the core."""
-        return {}
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway_cylindrical_rollers.build``."""

@@ -9,7 +9,6 @@ import attrs
 
 from raceway.bodies.condensed.plan import BETWEEN_BALLS, seat_faults, section_cost, section_faults
 from raceway.bodies.mesh_plan import unrefined
-from raceway.bodies.modules import REDUCED, RIGID, of_balls
 from raceway.bodies.patches.plan import MOTION, patch_cost, patch_faults
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
@@ -36,7 +35,6 @@ class Condensed:
     """Elastic rings and balls, reduced to the compliances that their contacts feel."""
 
     name: ClassVar[str] = "condensed"
-    modules: ClassVar[tuple[str, ...]] = (*RIGID, *REDUCED)
 
     @classmethod
     def example_scene(cls) -> Tables:
@@ -136,10 +134,6 @@ class Condensed:
             return True  # all that sections are made of
         one, two = (sections(each, make_basis(each)) for each in (scene, other))
         return one == two
-
-    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
-        """Kernels of the balls, and what reduces the bodies."""
-        return of_balls(balls) | dict.fromkeys(REDUCED, "elastic rings and balls, reduced")
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway.bodies.condensed.build`` and ``raceway.bodies.patches.build``."""

@@ -9,7 +9,6 @@ import attrs
 from raceway.bodies.condensed.plan import section_cost
 from raceway.bodies.elastic.plan import elastic_cost, elastic_faults, equal_sectors, memory_faults, words
 from raceway.bodies.mesh_plan import mesh_faults, predicted_mesh, unrefined
-from raceway.bodies.modules import EVERY_NODE, REDUCED, RIGID, of_balls
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.options import one_of, option, positive
@@ -29,7 +28,6 @@ class Elastic:
     """Finite elements of rings and balls, all nodes unknowns: the bodies' own inertia and any mesh."""
 
     name: ClassVar[str] = "elastic"
-    modules: ClassVar[tuple[str, ...]] = (*RIGID, *EVERY_NODE, *REDUCED)
 
     formulation: str = option(
         "incompatible",
@@ -125,14 +123,6 @@ class Elastic:
         if motion.recorded:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
         return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(scene), scales=False, bytes=cost.bytes)
-
-    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
-        """Kernels of the rigid ring beside it, the bodies, and what calibrates contact resultants."""
-        found = of_balls(balls) | dict.fromkeys(EVERY_NODE, "every node moves")
-        found["raceway.core.hexahedron"] = "finite elements of the bodies"
-        if scene.contact.discretisation == "resultant":
-            found |= dict.fromkeys(REDUCED, "calibrates the contact resultants")
-        return found
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway.bodies.elastic.build``."""

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.bodies.modules import RIGID, of_balls
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.planning.closed_form import highest_frequency
@@ -28,7 +27,6 @@ class Rigid:
     """Rigid rings and balls: only the contacts deform."""
 
     name: ClassVar[str] = "rigid"
-    modules: ClassVar[tuple[str, ...]] = RIGID
 
     def faults(self, scene: Scene) -> list[Mistake]:
         """Seats and meshes, which rigid bodies have none of; surface points."""
@@ -66,10 +64,6 @@ class Rigid:
     def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's: an equilibrium takes microseconds."""
         return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
-
-    def imports(self, scene: Scene, balls: Balls) -> dict[str, str]:
-        """Kernels of the balls."""
-        return of_balls(balls)
 
     def build(self, scene: Scene, plan: Plan) -> Bearing:
         """See ``raceway.bodies.rigid.build``."""

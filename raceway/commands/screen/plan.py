@@ -24,14 +24,8 @@ def plan_screen(title: str, plan: ReadTables) -> RenderableType:
     ]
     if plan["mesh"] is not None:
         rows += _mesh_rows(plan["mesh"])
-    unused = [
-        {"part": one["module"].removeprefix("raceway.core."), "why": one["why"]}
-        for one in plan["modules"]
-        if not one["needed"]
-    ]
     parts = [_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"])]
-    parts += [_reasons("Modules not imported, hence not compiled", unused), sections(rows)]
-    return Group(Words(title, "bold"), *parts)
+    return Group(Words(title, "bold"), *parts, sections(rows))
 
 
 def _wall_time(plan: ReadTables) -> Row:

@@ -129,7 +129,7 @@ def setting_at(
     model = {key: value for key, value in values.items() if not is_numerical(key)}
     try:
         scene = scene_from_dict(changed, registry)
-        plan = make_plan(scene, registry=registry)
+        plan = make_plan(scene)
     except RacewayError as error:
         return Setting(family, values, model, changed, None, reason=short(str(error)))
     if needs_motion(scene) and not scene.integrator.method.inertial:

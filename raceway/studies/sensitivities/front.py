@@ -11,7 +11,6 @@ from raceway.commands.progress import telling
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
-from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import continuous_keys, key_of
@@ -63,7 +62,7 @@ def sensitivities(
     chosen = [key_of(read, path) for path in keys] or continuous_keys(read)
     with telling(progress) as told:
         begun = working_processor_time()
-        model = build_model(read, make_plan(read, registry=default_registry()))
+        model = build_model(read, make_plan(read))
         equilibrium = settle(model)
         found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
     if keys and found.refused:

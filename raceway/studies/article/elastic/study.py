@@ -178,7 +178,7 @@ def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
     seconds, made = [], set[tuple[str, bool]]()
     for scene in scenes:
         try:
-            plan = make_plan(scene, registry=registry)
+            plan = make_plan(scene)
         except RacewayError:  # its row says why
             seconds.append(0.0)
             continue
