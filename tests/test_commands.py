@@ -49,8 +49,6 @@ FIVE = (
 FAST = ("--set", "identifier.kind=tangent")
 SPEEDS = ("--grid", "kinematics.spin_speed_rpm=2000:18000:5", "--grid", "load.axial=400,1000")
 RIG = ("--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25")
-VARIED = ("load.axial=400,2000", "excitation.speed_rpm=10980,15000", "bearing.contact_angle_deg=15")
-MAP = tuple(word for varied in VARIED for word in ("--vary", varied))
 #: Far from resonances, so that a run takes milliseconds.
 SMALL = (
     *("--bodies", "rigid", "--speeds", "11000,13000,15000", "--axial", "1600,1800,2000"),
@@ -85,7 +83,6 @@ COMMANDS = {
         *("--free", "load.axial", "--out", "OUT"),
     ),
     "study limits": ("study", "limits", EXAMPLES / "set_tbt.toml"),
-    "study map": ("study", "map", *MAP, "--processes", "0", "--no-pictures", "--out", "OUT"),
     "study article": ("study", "article", *SMALL, "--out", "OUT"),
     "infer": ("infer", "gmn"),
     "infer, one": ("infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),
@@ -135,7 +132,7 @@ TOLD = {
 }
 #: Studies that go on where they were stopped, and what they keep.
 GOES_ON = {
-    "compare": "compare-rows.jsonl", "stability": "stability-rows.jsonl", "band": "band-rows.jsonl", "study map": "map-rows.jsonl",
+    "compare": "compare-rows.jsonl", "stability": "stability-rows.jsonl", "band": "band-rows.jsonl",
     "study rig": "rig-rows.jsonl", "study article": "article-rows.jsonl", "sweep": "points.sqlite", "precision": "precision-rows.jsonl",
 }  # fmt: skip
 
@@ -407,7 +404,6 @@ def test_a_value_of_a_wrong_type_is_refused_by_every_option(name, seen, folder, 
 TWO = {
     "sweep": ("--executor", "processes", "--workers", "2"),
     "band": ("--processes", "2"),
-    "study map": ("--processes", "2"),
 }
 
 

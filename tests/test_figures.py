@@ -26,8 +26,6 @@ from raceway.studies.fit import picture as fits
 from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
-from raceway.studies.map import picture as map_picture
-from raceway.studies.map.curves import curves as map_curves
 from raceway.studies.measured import figures as measured
 from raceway.studies.measured.angle import turning
 from raceway.studies.measured.orders import order
@@ -41,7 +39,7 @@ from raceway.studies.view import contact_stress, contacts
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.states import at_rest
 from raceway.testing import b7206c, run
-from tests import test_compare, test_map
+from tests import test_compare
 from tests.elastic.test_below_contact import TINY
 from tests.figures import outside
 from tests.rig.test_orders import made as a_record
@@ -111,19 +109,6 @@ def of_a_band() -> list[Figure]:
     lost = {name: {**one, "total": None, "first_order": None} for name, one in whole["quantities"].items()}
     odd = {name: {**one, "total": [1.3, -0.2], "first_order": [1.1, -0.1]} for name, one in whole["quantities"].items()}
     return [band_picture.draw({**whole, "quantities": one}) for one in (whole["quantities"], lost, odd)]
-
-
-def of_a_map() -> list[Figure]:
-    rows = []
-    for load, exponent in ((1.0, 0.1), (100.0, -1.5), (10000.0, 2.5)):
-        for row in test_map.rows(lambda speed, exponent=exponent: 1e7 * (speed / 1e3) ** exponent):
-            rows.append({**row, "point": {**row["point"], map_picture.AXIAL: load}, "lost": int(load == 1.0)})
-    rows[-1] = {**rows[-1], "status": "failed", "stiffness": None, "small_signal": None}
-    names = (map_picture.ANGLE, map_picture.TILT, map_picture.AXIAL, map_picture.SPEED)
-    axes = {name: sorted({row["point"][name] for row in rows}) for name in names}
-    found = map_curves(rows)
-    content = {"axes": axes, "rows": rows, "curves": [attrs.asdict(c) if attrs.has(type(c)) else c for c in found]}
-    return [map_picture.change_map(content), map_picture.exponent_map(content), map_picture.curves_figure(content)]
 
 
 def of_the_article() -> list[Figure]:
@@ -213,7 +198,7 @@ def of_fits() -> list[Figure]:
 
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
-    pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision, map_picture: of_a_map,
+    pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision,
     panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
     fits: of_fits,

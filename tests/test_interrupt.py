@@ -173,10 +173,23 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
 
 
 def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_none(tmp_path):
-    words = ["study", "map", "--processes", "2", "--out", tmp_path, "--no-pictures", "--json"]
+    words = [
+        "study",
+        "article",
+        "--bodies",
+        "rigid",
+        "--friction",
+        "0",
+        "--processes",
+        "2",
+        "--out",
+        tmp_path,
+        "--no-pictures",
+        "--json",
+    ]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    rows, end = tmp_path / "map-rows.jsonl", time.monotonic() + 100.0
+    rows, end = tmp_path / "article-rows.jsonl", time.monotonic() + 100.0
     while not (rows.is_file() and rows.stat().st_size) and time.monotonic() < end:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command

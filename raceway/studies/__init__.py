@@ -9,7 +9,7 @@ fit         numbers of a scene from measured data, with what these do not determ
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands
 law         one contact of a bearing with any installed contact law, beside Hertz'
-article, rig, map    whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
+article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
 command     ``raceway study``
 shaft       the rotor that ``rig`` and ``measured`` set the bearing in
 """
@@ -53,11 +53,6 @@ def raceway_studies() -> list[type]:
             "raceway.studies.article.command:article",
         ),
         _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.command:rig"),
-        _study(
-            "map",
-            "Hardening or softening of k(speed) over axial load, tilt and contact angle.",
-            "raceway.studies.map.command:study_map",
-        ),
         _study(
             "limits",
             "Axial loads at which a set's rows lift off, and those that its contacts carry.",

@@ -19,7 +19,6 @@ from validation.command_line import MINIMAL
 MARKS = {
     "view": [pytest.mark.slow, pytest.mark.needs("pyvista")],
     "study article": [pytest.mark.slow],
-    "study map": [pytest.mark.slow],
     "study rig": [pytest.mark.slow],
 }
 

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import resource
+import os
+import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from raceway.framework.registry import default_registry
+from raceway import sweep
 from raceway.scene.file import read_toml
 from raceway.studies.article.expected import TRENDS
 from raceway.studies.compare.study import compare
-from raceway.studies.map.design import ANGLE, AXIAL, SPEED, design
-from raceway.studies.map.study import study_map
 
 pytestmark = pytest.mark.night
 
 ROOT = Path(__file__).parents[2]
-MAP = read_toml(ROOT / "raceway" / "data" / "map.toml")
+MAP = read_toml(ROOT / "examples" / "hardening_map.toml")
+AXIAL, SPEED, TILT_AXIS = "load.axial", "excitation.speed_rpm", "supports.tilt"
 SPEEDS, TILT = "excitation.speed_rpm=10980:15000:5", "supports.tilt=locked,free"
 FACTORS = ["excitation.kind=unidirectional,bidirectional", "excitation.amplitude=constant,unbalance", SPEEDS, TILT,
            "kinematics.ball_inertia=false,true"]  # fmt: skip
@@ -47,44 +47,32 @@ def test_comparison(claim, words, scene, vary):
     claim(quantity, hidden, at_most=0, basis="own other method", source=source)
 
 
-def cpu() -> float:
-    """Processor time of this process and of those that have ended [s]."""
-    return sum(
-        used.ru_utime + used.ru_stime for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    )
-
-
-def mapped(tables, *vary, method="quasi_static", workers=1):
-    registry = default_registry()
-    return study_map(design(tables, vary, method, registry), workers, registry=registry)
-
-
 def test_complete_map(claim):
-    begun = cpu()
-    study = mapped(MAP, workers=2)
-    spent = cpu() - begun
-    failed = sum(row["status"] != "completed" for row in study.rows)
-    quantity = f"map of {len(study.rows)} points, 50 N to 10 kN, 1000 to 60 000 r/min, 15 to 40 deg: points without a number"
-    claim(quantity, failed, at_most=0, basis="closed form", source="the potential of loaded rings is convex")
-    claim(
-        "the same: processor time of both processes",
-        spent,
-        at_most=60.0,
-        unit="s",
-        basis="regression",
-        source="half a minute each",
+    """examples/hardening_map.py."""
+    axes = runpy.run_path(str(ROOT / "examples" / "hardening_map.py"))["axes"]
+    begun = sum(os.times()[:4])
+    points = sweep(MAP, axes, executor="processes")
+    spent = sum(os.times()[:4]) - begun
+    failed = int((points.status != "done").sum())
+    quantity = (
+        f"map of {points.status.size} points, 50 N to 10 kN, 1000 to 60 000 r/min, 15 to 40 deg: points without a number"
     )
+    claim(quantity, failed, at_most=0, basis="closed form", source="the potential of loaded rings is convex")
+    quantity = "the same: processor time of all processes"
+    claim(quantity, spent, at_most=60.0, unit="s", basis="regression", source="half a minute each")
 
 
 def test_map_against_another_solver(claim):
     plain = {**MAP, "kinematics": {"ball_inertia": True}}
-    study = mapped(plain, f"{AXIAL}=400,1000,2000", f"{SPEED}=10980,15000", f"{ANGLE}=15")
-    assert len(study.curves) == 6
-    known = [TRENDS[curve["tilt"], float(curve["axial"]), True] for curve in study.curves]
-    first = [1e-6 * curve["first_stiffness"] / k - 1.0 for curve, (k, _) in zip(study.curves, known, strict=True)]
-    change = [
-        (1.0 + curve["last_change"]) / ratios[-1] - 1.0 for curve, (_, ratios) in zip(study.curves, known, strict=True)
-    ]
+    k = sweep(plain, {TILT_AXIS: ["locked", "free"], AXIAL: [400, 1000, 2000], SPEED: [10980, 15000]}).equivalent_stiffness
+    slow, fast = (k.sel({SPEED: speed}) for speed in (10980, 15000))
+    first, change = [], []
+    for tilt in ("locked", "free"):
+        for load in (400, 1000, 2000):
+            expected, ratios = TRENDS[tilt, float(load), True]
+            at = {TILT_AXIS: tilt, AXIAL: load}
+            first.append(1e-6 * float(slow.sel(at)) / expected - 1.0)
+            change.append(float(fast.sel(at) / slow.sel(at)) / ratios[-1] - 1.0)
     where = "tilt locked and free, 400, 1000, 2000 N, centrifugal force, no ring growth"
     source = (
         "another rigid-ring solver (raceway/studies/article/expected.py), which loads towards ball 0; three or four digits"
@@ -97,9 +85,9 @@ def test_map_against_another_solver(claim):
 
 def test_inertia_of_the_ring_alone(claim):
     """With no rotor the contacts carry m w^2 r of the ring's own 61 g besides the force."""
-    vary = (f"{AXIAL}=400,2000", f"{SPEED}=10980,15000", f"{ANGLE}=15")
-    both = [mapped(MAP, *vary, method=method).rows for method in ("quasi_static", "periodic")]
-    change = max(abs(b["stiffness"] / a["stiffness"] - 1.0) for a, b in zip(*both, strict=True))
+    axes = {TILT_AXIS: ["locked", "free"], AXIAL: [400, 2000], SPEED: [10980, 15000]}
+    periodic = {**MAP, "integrator": {"kind": "periodic", "turns": 1, "steps_per_turn": 360}}
+    statics, orbits = (sweep(tables, axes).equivalent_stiffness for tables in (MAP, periodic))
     quantity = "k of the map, which has no inertia of the ring: largest relative difference"
     source = "steady orbits of the ring's own 61 g: m w^2 of 0.15 N/um, and its tilt inertia, which softened tilts feel"
-    claim(quantity, change, at_most=0.02, basis="own other method", source=source)
+    claim(quantity, float(abs(orbits / statics - 1.0).max()), at_most=0.02, basis="own other method", source=source)

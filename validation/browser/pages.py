@@ -43,17 +43,6 @@ def _article_elastic(folder: Path) -> Path:
 _POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.25")
 PAGES: dict[str, Callable[[Path], Path]] = {
     "view": _command("view.html", "view", ARTICLE, "--html"),
-    "study map": _command(
-        "map.html",
-        "study",
-        "map",
-        "--vary",
-        "load.axial=400,2000",
-        "--vary",
-        "excitation.speed_rpm=10000,15000,60000",
-        "--vary",
-        "bearing.contact_angle_deg=15",
-    ),
     "study article": _article,
     "article of elastic bodies": _article_elastic,
     "study rig": _command(
