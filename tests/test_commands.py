@@ -280,7 +280,8 @@ def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
     assert shown or name in ("check", "schema")
     long = [line for line in narrow if len(line) > COLUMNS and str(folder) not in line]
     assert not long
-    assert not numbers(wide) - numbers(narrow)
+    # A path may break, however long the folder's name is here.
+    assert not [word for word in numbers(wide) - numbers(narrow) if str(folder) not in word]
     # A number stays beside its unit.
     assert not [line for line in narrow if re.match(r"\s*(N/µm|N s/m|µm|r/min|MPa|deg)\b(?! {2})", line)]
     if name not in ("schema", "plugins"):  # keys and options in their own spelling
