@@ -112,7 +112,7 @@ class Page:
 
         Parameters
         ----------
-        items : (figure of matplotlib or bytes of a PNG, GIF or SVG file, what is seen, caption)
+        items : (figure of matplotlib or bytes of a PNG or SVG file, what is seen, caption)
         """
         parts = []
         for picture, alternative, caption in items:
@@ -165,9 +165,8 @@ def svg(figure: Figure) -> bytes:
 
 
 def data_uri(content: bytes) -> str:
-    """A PNG, GIF or SVG file as a data URI."""
-    kinds = {b"\x89PNG": "png", b"GIF8": "gif"}
-    kind = f"image/{kinds.get(content[:4], 'svg+xml')}"
+    """A PNG or SVG file as a data URI."""
+    kind = "image/png" if content.startswith(b"\x89PNG") else "image/svg+xml"
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 

@@ -39,7 +39,7 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
     Parameters
     ----------
     words : title, subtitle, when (which state is shown), lead (a paragraph), notes (sentences)
-    pictures : (bytes of a PNG or GIF file, what is seen, caption)
+    pictures : (bytes of a PNG file, what is seen, caption)
     """
     page = Page(words["title"], words["subtitle"], "Made by `raceway view`; opens without a network.")
     page.section("The bearing")
