@@ -33,7 +33,7 @@ def test_a_study_of_ones_own_is_listed_and_run(tmp_path):
     file = tmp_path / "mine.py"
     file.write_text(STUDY.format(body=SAYS), encoding="utf-8")
     shown = raceway("study", "--plugin", file, "--help").stdout
-    assert "What I look at." in shown and all(name in shown for name in ("article", "rig", "map"))
+    assert "What I look at." in shown and all(name in shown for name in ("article", "rig"))
     assert raceway("study", "--plugin", file, "mine", "seen").stdout == "seen\n"
     assert "mine" not in raceway("study", "--help").stdout
 
