@@ -21,8 +21,10 @@ from typing import Any
 import attrs
 import pytest
 
+from benchmarks import reports as files
+
 #: What a limit rests on; README shows the first three.
-BASES = ("closed form", "published", "other program", "own other method", "regression")
+BASES = (*files.OUTSIDE, "own other method", "regression")
 #: Where the modules of reports are.
 FOLDER = Path(__file__).resolve().parents[1] / "tests" / "evidence"
 
@@ -136,8 +138,6 @@ def pytest_configure(config: pytest.Config) -> None:
     """Refuse what would give reports of a part of a module, or of no commit."""
     if not config.option.evidence:
         return
-    from benchmarks import reports as files
-
     if config.option.keyword or any("::" in word for word in config.args):
         raise pytest.UsageError("--evidence writes whole modules: without -k and without ::")
     if files.commit() is None:
@@ -166,8 +166,6 @@ class _Reports:
 
     @pytest.hookimpl(trylast=True)
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        from benchmarks import reports as files
-
         for module, keyed in sorted(self.rows.items()):
             rows = [row for *_, row in sorted(keyed, key=lambda item: item[:3])]
             if not rows or module in self.failed:

@@ -219,7 +219,7 @@ def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
     KeyError
         A report or a row that is not there, or, for README, one that rests on ourselves.
     """
-    lines = ["| what | number | limit | holds | report |", "|---|---|---|---|---|"]
+    cells = []
     for name, quantity, words in CHOSEN[block]:
         rows = [row for row in reports[name]["rows"] if row["quantity"] == quantity]
         if len(rows) != 1:
@@ -228,15 +228,9 @@ def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
         if block == "readme" and row["basis"] not in OUTSIDE:
             raise KeyError(f"README shows {', '.join(OUTSIDE)}, and {quantity!r} is {row['basis']}")
         value = f"{row['value']:.6g}" if isinstance(row["value"], float) and row["value"] > 100 else shown(row["value"])
-        cells = (
-            words,
-            value,
-            limits(row["low"], row["high"]),
-            "yes" if holds(row) else "**no**",
-            f"[{name}]({links}{name}.md)",
-        )
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        link = f"[{name}]({links}{name}.md)"
+        cells.append((words, value, limits(row["low"], row["high"]), _yes(holds(row)), link))
+    return _markdown(("what", "number", "limit", "holds", "report"), cells)
 
 
 def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/reports/") -> str:
