@@ -46,7 +46,7 @@ _QUANTITIES = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
 #: Relative change of a stiffness that is not worth a solution or a sentence.
 NEGLIGIBLE = 1e-3
 #: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
-_SAMPLES, _TOLERANCE, _ROUGH = 17, 1e-7, 1e-4
+_ORBIT_TIMES, _TOLERANCE, _ROUGH = 17, 1e-7, 1e-4
 #: Iterations from the motion under the scene's own hypotheses, after which one from the linear response is tried.
 _LIMIT = 12
 #: Distance of the steady orbit's Z from the identified one, over its size, up to which that orbit is the motion.
@@ -185,15 +185,15 @@ def _secant(
     turn = None if simulation is None or period is None else last_turn(simulation.whole, period)
     if model.scene.contact.friction > 0.0 or turn is None:
         return None, "not estimated: with friction, or without whole turns, there is no steady orbit to compare with"
-    half = np.fft.rfft(turn.displacement, axis=0)[: _SAMPLES // 2 + 1] / len(turn.displacement)
-    first = _SAMPLES * np.fft.irfft(half, _SAMPLES, axis=0)
+    half = np.fft.rfft(turn.displacement, axis=0)[: _ORBIT_TIMES // 2 + 1] / len(turn.displacement)
+    first = _ORBIT_TIMES * np.fft.irfft(half, _ORBIT_TIMES, axis=0)
 
     def orbit(one: Model, at: np.ndarray, limit: int) -> Orbit:
         ring = one.bearing.orbiting(one.system)
-        return orbit_near(ring, period, at, _SAMPLES, method.inertial, _TOLERANCE, limit)
+        return orbit_near(ring, period, at, _ORBIT_TIMES, method.inertial, _TOLERANCE, limit)
 
     def value(one: Orbit) -> complex:
-        waves = 2.0 / _SAMPLES * np.exp(-2j * np.pi * np.arange(_SAMPLES) / _SAMPLES)
+        waves = 2.0 / _ORBIT_TIMES * np.exp(-2j * np.pi * np.arange(_ORBIT_TIMES) / _ORBIT_TIMES)
         return stiffness(waves @ one.force, waves @ one.displacement)
 
     try:

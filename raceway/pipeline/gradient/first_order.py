@@ -25,7 +25,7 @@ from raceway.scene.tolerance import tolerances_of
 from raceway.storage.tables import Tables
 
 #: Share of the answers in a band; points of a density.
-_SHARE, _POINTS = 0.95, 4001
+_COVERAGE, _POINTS = 0.95, 4001
 
 
 def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
@@ -74,7 +74,7 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
     return {"quantities": quantities, "left_out": left_out, "why": why}
 
 
-def limits(ends: Sequence[Sequence[float]], share: float = _SHARE) -> tuple[float, float]:
+def limits(ends: Sequence[Sequence[float]], share: float = _COVERAGE) -> tuple[float, float]:
     """Limits of a share of the sum of independent numbers that are even between their ends, (d, 2); 0 of none."""
     middle = sum(0.5 * (low + high) for low, high in ends)
     halves = [0.5 * (high - low) for low, high in ends if high > low]

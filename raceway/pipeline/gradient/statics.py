@@ -102,7 +102,7 @@ def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticG
 def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> StaticGradient:
     system, q, ball = surrogate(model.system), equilibrium.displacement, equilibrium.ball
     here = _state(system, q, ball)
-    step, remark = _step(system, direction, equilibrium, here) if direction.at_rest else (0.0, "")
+    step, remark = _difference_step(system, direction, equilibrium, here) if direction.at_rest else (0.0, "")
     if step == 0.0:
         size = len(here.contacts.contact_force)
         nothing = np.zeros(5), np.zeros((5, 5)), np.zeros((5, 5)), np.zeros(size)
@@ -149,7 +149,7 @@ def _moved(system: System, tangent: np.ndarray, residual: np.ndarray, held: np.n
     return found
 
 
-def _step(system: System, direction: Direction, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
+def _difference_step(system: System, direction: Direction, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
     """Step of the differences, and a remark where no step is smooth; 0 where the key changes nothing of the statics at all."""
     q, ball, tried, value = equilibrium.displacement, equilibrium.ball, direction.tried, direction.key.value
     one = direction.moved(system, tried)

@@ -31,7 +31,7 @@ _TWO, _FOUR = 5e-6, 5e-4
 #: What the least step may be of the number; first try of a step along a direction, over the number, and over the least step at 0.
 _MUCH, _FIRST, _FIRST_AT_0 = 1e-3, 1e-6, 0.01
 #: Arrays whose second difference is a larger part of the first than this have a kink; differences that are rounding.
-_BENT, _ROUNDING = 0.02, 1e-12
+_KINK, _ARRAY_ROUNDING = 0.02, 1e-12
 #: Arrays of a system that forces at rest depend on, and those that only a motion does.
 _AT_REST, _IN_MOTION = ("scalars", "table", "stiffness", "load", "law_params"), ("mass", "damping", "force_params")
 
@@ -87,7 +87,7 @@ def direction_of(model: Model, key: Key) -> Direction:
         There is none, with the reason.
     """
     solved = model.scene.bearing.preloaded or renews(model.scene.contact.law)
-    step, near = (_step(key, _FOUR), (-2, -1, 1, 2)) if solved else (_step(key, _TWO), (-1, 1))
+    step, near = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solved else (_model_step(key, _TWO), (-1, 1))
     here, slopes, bends = surrogate(model.system), {}, False
     _scene(model, key, -step)  # a key at the end of its range is refused, whatever it does
     ahead = _model(model, key, step)
@@ -133,11 +133,11 @@ def _derivative(values: dict[int, np.ndarray], step: float) -> np.ndarray:
 def _bent(values: dict[int, np.ndarray], middle: np.ndarray) -> bool:
     """Whether one side differs from the other; a number whose both sides differ alike has a turning point."""
     first, second = np.abs(values[1] - values[-1]), np.abs(values[1] + values[-1] - 2.0 * middle)
-    rounding = _ROUNDING * np.abs(middle).max(initial=0.0)
-    return bool(((second > _BENT * first + rounding) & (first > 0.1 * second)).any())
+    rounding = _ARRAY_ROUNDING * np.abs(middle).max(initial=0.0)
+    return bool(((second > _KINK * first + rounding) & (first > 0.1 * second)).any())
 
 
-def _step(key: Key, relative: float) -> float:
+def _model_step(key: Key, relative: float) -> float:
     """Of the models, in the unit of the key."""
     size = abs(key.value)
     return max(relative * size, min(_least(key), _MUCH * size)) if size else _least(key)

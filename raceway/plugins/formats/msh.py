@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from raceway.core.mesh.hex_mesh import HexMesh
 
-_NODES, _PHYSICAL, _ENTITY = "nodes:", "gmsh:physical", "gmsh:geometrical"
+_GROUPS_OF_NODES, _PHYSICAL, _ENTITY = "nodes:", "gmsh:physical", "gmsh:geometrical"
 
 
 @attrs.frozen
@@ -36,7 +36,9 @@ class Msh:
                 name = names.get((int(tag), dimension), f"physical_{tag}") if tag else None
                 if name is not None:
                     groups[block.type].setdefault(name, []).append(np.asarray(block.data)[np.asarray(tags) == tag])
-        nodes = {name.removeprefix(_NODES): np.concatenate(parts).ravel() for name, parts in groups["vertex"].items()}
+        nodes = {
+            name.removeprefix(_GROUPS_OF_NODES): np.concatenate(parts).ravel() for name, parts in groups["vertex"].items()
+        }
         facets = {
             name: exchange.facets_of_quads(path, cells, np.concatenate(parts)) for name, parts in groups["quad"].items()
         }
@@ -56,7 +58,7 @@ class Msh:
             if len(nodes):
                 tags.append(len(tags) + 1)
                 blocks.append(("vertex", nodes[:, None]))
-                field_data[_NODES + name] = np.array([tags[-1], 0])
+                field_data[_GROUPS_OF_NODES + name] = np.array([tags[-1], 0])
         data = [np.full(len(block[1]), tag, dtype=np.int32) for block, tag in zip(blocks, tags, strict=True)]
         content = package.Mesh(
             what.points, blocks, cell_data={_PHYSICAL: data, _ENTITY: [d.copy() for d in data]}, field_data=field_data

@@ -20,7 +20,7 @@ def _motion(result: Result) -> Simulation:
     return result.simulation
 
 
-def orbit(axes: Axes, result: Result) -> None:
+def draw_orbit(axes: Axes, result: Result) -> None:
     """Path of the inner ring's reference point in the radial plane."""
     motion = _motion(result)
     whole, used = motion.whole, motion.record
@@ -37,7 +37,7 @@ def orbit(axes: Axes, result: Result) -> None:
     _finish(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
 
 
-def spectrum(axes: Axes, result: Result) -> None:
+def draw_spectrum(axes: Axes, result: Result) -> None:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
     import numpy as np
 
@@ -76,7 +76,7 @@ def spectrum(axes: Axes, result: Result) -> None:
     )
 
 
-def ball_loads(axes: Any, result: Result) -> None:
+def draw_ball_loads(axes: Any, result: Result) -> None:
     """Inner contact load of each ball on polar axes: static, and its range over the recorded turns."""
     import numpy as np
 

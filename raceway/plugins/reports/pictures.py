@@ -10,7 +10,7 @@ import attrs
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, option
-from raceway.plugins.reports import drawing
+from raceway.plugins.reports.drawing import draw_ball_loads, draw_orbit, draw_spectrum
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
 def orbit(result: Result) -> Figure:
     """Path of the inner ring's reference point in the radial plane."""
     figure = new_figure(6.4, 6.8)
-    drawing.orbit(figure.add_subplot(), result)
+    draw_orbit(figure.add_subplot(), result)
     figure.legend(loc="outside lower center", ncols=3, fontsize=9.5, frameon=False)
     return figure
 
@@ -115,7 +115,7 @@ def orbit(result: Result) -> Figure:
 def spectrum(result: Result) -> Figure:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
     figure = new_figure(7.2, 4.6)
-    drawing.spectrum(figure.add_subplot(), result)
+    draw_spectrum(figure.add_subplot(), result)
     figure.legend(loc="outside lower center", ncols=3, fontsize=9.5, frameon=False)
     return figure
 
@@ -123,6 +123,6 @@ def spectrum(result: Result) -> Figure:
 def ball_loads(result: Result) -> Figure:
     """Inner contact load of each ball: static, and its range over the recorded turns."""
     figure = new_figure(7.0, 6.4)
-    drawing.ball_loads(figure.add_subplot(projection="polar"), result)
+    draw_ball_loads(figure.add_subplot(projection="polar"), result)
     figure.legend(loc="outside lower center", ncols=2, fontsize=10, frameon=False)
     return figure

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import nearest
-from raceway.plugins.reports import drawing
+from raceway.plugins.reports.drawing import draw_ball_loads, draw_orbit, draw_spectrum
 
 if TYPE_CHECKING:
     from raceway.framework.higher_types import Result
 
-_DRAWINGS = {"orbit": drawing.orbit, "spectrum": drawing.spectrum, "ball_loads": drawing.ball_loads}
+_DRAWINGS = {"orbit": draw_orbit, "spectrum": draw_spectrum, "ball_loads": draw_ball_loads}
 _POLAR = ("ball_loads",)
 
 
