@@ -8,7 +8,7 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError, scene_from_dict
-from raceway.pipeline.gradient.first_order import limits
+from raceway.pipeline.gradient import limits
 from raceway.scene.tolerance import tolerances_of
 from raceway.studies.band.sobol import design, indices
 from raceway.testing import b7206c

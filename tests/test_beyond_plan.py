@@ -10,7 +10,7 @@ import pytest
 
 from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
 from raceway.cli import main
-from raceway.pipeline.allowance import PATIENCE, Allowance
+from raceway.pipeline.run import PATIENCE, Allowance
 from raceway.testing import run
 from tests.test_elastic_scene import QUICK
 from tests.test_elastic_scene import scene as elastic_scene
@@ -25,7 +25,7 @@ class Clock:
 
     def __init__(self, monkeypatch):
         self.now = 0.0
-        monkeypatch.setattr("raceway.pipeline.allowance.working_processor_time", lambda: self.now)
+        monkeypatch.setattr("raceway.pipeline.run.working_processor_time", lambda: self.now)
 
 
 def test_a_run_far_beyond_its_plan_is_stopped_and_keeps_its_state(tmp_path):
@@ -76,7 +76,7 @@ def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
             raise BeyondPlanError("stopped far beyond the plan")
         check(self, what, done, total)
 
-    monkeypatch.setattr("raceway.pipeline.error.steady_motion.last_turn", lambda *_: None)
+    monkeypatch.setattr("raceway.pipeline.transient_error.last_turn", lambda *_: None)
     scene = scene_from_dict(article(800.0, start="ramp", turns=24))
     whole = run(scene)
     monkeypatch.setattr(Allowance, "check", stop)
@@ -135,7 +135,7 @@ def test_a_search_for_steady_motions_is_stopped_between_their_points(tmp_path):
 def test_memory_beyond_the_plan_stops_a_run(monkeypatch):
     """Growth since the run began counts: what a process held before is not its own."""
     held = [3e9]
-    monkeypatch.setattr("raceway.pipeline.allowance.resident_bytes", lambda: held[0])
+    monkeypatch.setattr("raceway.pipeline.run.resident_bytes", lambda: held[0])
     plan = type("Plan", (), {"predicted_wall_s": 1.0, "predicted_bytes": 1e9, "at_least": False})()
     allowance, endless = Allowance.of(plan, PATIENCE), Allowance.of(plan, float("inf"))
     held[0] = 6.4e9

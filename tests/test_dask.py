@@ -9,8 +9,8 @@ import attrs
 import pytest
 
 from raceway import PluginError
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.dask import Dask
+from raceway.plugins.processes import Serial
 from raceway.studies.sweep import sweep
 from validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
 from validation.command_line import invoke

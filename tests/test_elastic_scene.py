@@ -14,7 +14,7 @@ from raceway.bodies.elastic.plan import allowed_bytes
 from raceway.core.elastic.solver import LinearSolver
 from raceway.core.elastic.start import from_orbit
 from raceway.core.ring.orbit import steady_orbit
-from raceway.pipeline.allowance import Allowance
+from raceway.pipeline.run import Allowance
 from raceway.scene.unused import unused
 from raceway.testing import run, settle
 

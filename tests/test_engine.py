@@ -5,8 +5,7 @@ import os
 import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
-from raceway.plugins.executors.processes import Processes
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.processes import Processes, Serial
 from raceway.studies.many.engine import Item, work_through
 from raceway.studies.many.row_store import RowStore
 from raceway.testing import Registry, default_registry

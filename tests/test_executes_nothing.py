@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from raceway import load_scene
-from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.plugins.gmsh import Gmsh
 from tests.mesh.solids import write
 from validation.command_line import EXAMPLES, invoke, python
 

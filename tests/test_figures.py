@@ -16,7 +16,7 @@ from matplotlib.text import Text
 import raceway
 from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
-from raceway.plugins.reports import pictures
+from raceway.plugins import pictures
 from raceway.studies.article import figures as article
 from raceway.studies.article import panel
 from raceway.studies.band import picture as band_picture

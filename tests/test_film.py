@@ -9,7 +9,7 @@ from raceway import make_plan
 from raceway.contact_laws.film import Film
 from raceway.contact_laws.lubricant import GRADES, Walther, mineral_thinning, pressure_viscosity
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
-from raceway.pipeline.damping import DRY
+from raceway.pipeline.result import DRY
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.testing import run
 from raceway.testing.contact_law import example_pairs

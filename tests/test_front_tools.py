@@ -10,7 +10,7 @@ import pytest
 
 import raceway as rw
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.processes import Serial
 from raceway.studies.ross.screen import point_rows
 from validation.command_line import invoke
 

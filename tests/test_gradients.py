@@ -6,12 +6,8 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError, build_model, scene_from_dict
-from raceway.pipeline.gradient.differences import derivative
-from raceway.pipeline.gradient.gradients import Gradients
-from raceway.pipeline.gradient.motion import SteadyOrbit
-from raceway.pipeline.gradient.quantities import derivatives, values
-from raceway.pipeline.gradient.statics import static_gradient
-from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.gradient import Gradients, SteadyOrbit, derivatives, values
+from raceway.pipeline.static_gradient import NoDerivative, derivative, static_gradient
 from raceway.scene.continuous import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settle, settled
 from validation.command_line import invoke

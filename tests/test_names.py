@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 import raceway as rw
-from raceway.pipeline.motion import race_of
+from raceway.pipeline.settle import race_of
 from raceway.studies.sweep.dataset import write_netcdf
 from raceway.studies.sweep.selection import select
 from raceway.studies.sweep.store import open_store

@@ -9,11 +9,11 @@ import pytest
 
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.mesh.hex_mesh import HexMesh
-from raceway.pipeline.error.estimate import no_error
+from raceway.pipeline.error import no_error
 from raceway.planning.closed_form import highest_frequency
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
-from raceway.plugins.formats.vtu import Vtu
-from raceway.plugins.meshers.file import File
+from raceway.plugins.formats import Vtu
+from raceway.plugins.mesh_files import File
 from raceway.studies.measured.recording import read_recording
 from raceway.testing import b7206c, run
 from validation.command_line import ARTICLE, MINIMAL, invoke

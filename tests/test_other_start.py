@@ -9,9 +9,9 @@ import attrs
 import pytest
 
 from raceway import ConvergenceError, make_plan, run, scene_from_dict
-from raceway.pipeline.error import other_start
-from raceway.pipeline.error.estimate import _unresolved
-from raceway.pipeline.error.free_vibration import Clean
+from raceway.pipeline import transient_error as other_start
+from raceway.pipeline.error import _unresolved
+from raceway.pipeline.transient_error import Clean
 
 
 def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):

@@ -29,7 +29,7 @@ from raceway.core.ring.orbit import steady_orbit
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Motion, Schedule
 from raceway.integrators.periodic import Periodic
-from raceway.pipeline.error.steady_motion import steady_record
+from raceway.pipeline.transient_error import steady_record
 from raceway.testing import model_of, settle
 from raceway.testing.compiled import along_x
 from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion

@@ -15,8 +15,8 @@ from rich.console import Console
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
 from raceway.commands.screen.result import run_screen
 from raceway.framework.options import nearest
-from raceway.pipeline.facts import facts
-from raceway.pipeline.plausibility import inertia_warnings
+from raceway.pipeline.plausible import inertia_warnings
+from raceway.pipeline.result import facts
 from raceway.pipeline.simulate import _stride
 from raceway.planning.implausible import implausible
 from raceway.planning.recording import damped_limit, samples_per_turn

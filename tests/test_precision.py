@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
-from raceway.pipeline.error.free_vibration import hann_line
-from raceway.pipeline.motion import peak
+from raceway.pipeline.settle import peak
+from raceway.pipeline.transient_error import hann_line
 from raceway.scene.file import read_toml
 from raceway.studies.many.measured_run import measured
 from raceway.studies.many.row_store import RowStore, row_key

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.processes import Serial
 from raceway.studies.ross.coefficients import Coefficients, coefficients
 from raceway.studies.ross.file import NAMES, ross_file
 from raceway.studies.ross.reading import smoothed, through_points

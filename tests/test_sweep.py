@@ -20,9 +20,9 @@ import pytest
 from raceway import PluginError, RacewayError, SceneError, scene_from_dict
 from raceway import sweep as front
 from raceway.framework.contracts import Lost, Refused
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.joblib import Joblib
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.dask import Dask
+from raceway.plugins.joblib import Joblib
+from raceway.plugins.processes import Serial
 from raceway.scene.file import read_toml
 from raceway.studies.many.axes import parse_axes, points
 from raceway.studies.many.points import tables_at

@@ -8,7 +8,7 @@ import pytest
 
 from raceway import load_scene, scene_from_dict
 from raceway.commands.inputs import slug
-from raceway.plugins.reports.pictures import ball_loads
+from raceway.plugins.pictures import ball_loads
 from raceway.scene.changes import parse_change, titled
 from raceway.studies.many.page import Page
 from raceway.studies.many.row_store import row_key

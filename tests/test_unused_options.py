@@ -11,8 +11,7 @@ from raceway import option
 from raceway.contact_laws.hertz import Hertz
 from raceway.errors import PluginError
 from raceway.framework.options import unused_options
-from raceway.plugins.excitations.bidirectional import Bidirectional
-from raceway.plugins.excitations.unidirectional import Unidirectional
+from raceway.plugins.excitations import Bidirectional, Unidirectional
 from validation.command_line import ARTICLE, invoke
 
 

@@ -15,12 +15,11 @@ import pytest
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
-from raceway.plugins.formats import _exchange
-from raceway.plugins.formats.abaqus import Abaqus
-from raceway.plugins.formats.msh import Msh
-from raceway.plugins.formats.vtu import Vtu
-from raceway.plugins.meshers.file import File
-from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.plugins import formats
+from raceway.plugins.abaqus import Abaqus
+from raceway.plugins.formats import Msh, Vtu
+from raceway.plugins.gmsh import Gmsh
+from raceway.plugins.mesh_files import File
 from raceway.storage import number_table
 from raceway.storage.number_table import read_numbers
 from raceway.storage.user_files import memory_for, told
@@ -77,7 +76,7 @@ def test_a_file_without_an_end_is_refused(reader, endless, tmp_path):
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(reader, tmp_path, monkeypatch):
     suffix, read = READERS[reader]
     monkeypatch.setattr(number_table, "LARGEST", 1000)
-    monkeypatch.setattr(_exchange, "LARGEST", 1000)
+    monkeypatch.setattr(formats, "LARGEST", 1000)
     monkeypatch.setattr(design, "_LONGEST", 1000)
     monkeypatch.setattr(plugin_sources, "_LONGEST", 1000)
     path = tmp_path / f"file{suffix}"

@@ -10,8 +10,8 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.plugins.formats.vtu import Vtu
-from raceway.plugins.reports.pictures import ball_loads
+from raceway.plugins.formats import Vtu
+from raceway.plugins.pictures import ball_loads
 from raceway.studies.view import surfaces
 from raceway.studies.view.bearing import Bearing
 from raceway.studies.view.contacts import contacts

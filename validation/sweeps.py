@@ -18,7 +18,7 @@ from typing import Any
 from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.processes import Serial
 from raceway.scene.changes import with_value
 from raceway.scene.file import load_scene, read_toml
 from raceway.scene.reading import scene_from_dict

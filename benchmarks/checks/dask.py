@@ -13,8 +13,8 @@ import attrs
 
 from benchmarks.checks import Row, below
 from raceway.errors import PluginError
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.dask import Dask
+from raceway.plugins.processes import Serial
 from raceway.studies.sweep import sweep
 from validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from validation.cluster import rows as rows_of

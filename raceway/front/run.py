@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from raceway.commands.progress import telling
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
-from raceway.pipeline.allowance import PATIENCE
 from raceway.pipeline.result import Result
+from raceway.pipeline.run import PATIENCE
 from raceway.pipeline.run import run as compute
 from raceway.scene.given import as_scene
 from raceway.storage.files import writable

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
@@ -19,22 +20,22 @@ from raceway.bodies.running import report_of
 from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
-from raceway.framework.shown import Fact, Shown
-from raceway.pipeline.ball_pass import ball_pass_table
-from raceway.pipeline.damping import damping_origin
-from raceway.pipeline.facts import facts
-from raceway.pipeline.motion import largest_contacts, motion_table
+from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
+from raceway.pipeline.plausible import NEGLIGIBLE
+from raceway.pipeline.settle import ball_pass_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.simulate import Simulation
-from raceway.plugins.reports.labelled import labelled
-from raceway.plugins.reports.plot import plot
+from raceway.plugins.labelled import labelled
+from raceway.plugins.pictures import plot
 from raceway.scene.catalogue import geometry_of
+from raceway.scene.scene import Scene
+from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import xarray
 
-    from raceway.pipeline.gradient.gradients import Gradient
+    from raceway.pipeline.gradient import Gradient
 
 SCHEMA = 1
 
@@ -165,21 +166,21 @@ class Result(Shown):
         >>> round(float(slope * 1000.0 / result.stiffness[0, 0]), 2)  # one per cent more load, so many per cent more kxx
         0.54
         """
-        from raceway.pipeline.gradient.gradients import Gradients
+        from raceway.pipeline.gradient import Gradients
 
         return Gradients(self.model, self.equilibrium).by_path(path)
 
     @cached_property
     def tolerances(self) -> Tables | None:
         """95 % band over the scene's [tolerances] to first order, by derivatives; None without that table."""
-        from raceway.pipeline.gradient.first_order import first_order_band
+        from raceway.pipeline.gradient import first_order_band
 
         return first_order_band(self.model, self.equilibrium)
 
     @cached_property
     def model_spread(self) -> tuple[Tables | None, str]:
         """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
-        from raceway.pipeline.error.hypotheses import model_spread
+        from raceway.pipeline.plausible import model_spread
 
         return model_spread(self.model, self.equilibrium, self.identification, self.simulation)
 
@@ -394,3 +395,136 @@ def write_json(content: object, path: Path) -> Path:
         Folder or disk that cannot be written.
     """
     return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)
+
+
+#: Of scenes without any damping.
+DRY = "dry: no damping is modelled"
+
+
+def damping_origin(scene: Scene) -> str:
+    """What damps a scene, in words."""
+    contact, found = scene.contact, []
+    low, high = TIME_CONSTANTS
+    if contact.in_a_band:
+        found.append(
+            f"c = tau k at the contacts, tau from {low:g} to {high:g} s: the band of rolling bearings (Kraemer 1993)"
+        )
+    elif contact.loss_factor is not None:
+        found.append(
+            f"contact.loss_factor {contact.loss_factor:g}: c = tau k at the contacts, tau = {scene.time_constant:.4g} s"
+        )
+    elif contact.time_constant is not None:
+        found.append(f"contact.time_constant: c = tau k at the contacts, tau = {contact.time_constant:g} s")
+    elif contact.dashpot > 0.0:
+        found.append(f"contact.damping: {contact.dashpot:g} N s/m at each contact")
+    if contact.law.dissipative:
+        found.append(f"contact law '{contact.kind}'")
+    if contact.friction > 0.0:
+        found.append("contact.friction")
+    if scene.rotor.damping > 0.0:
+        found.append(f"rotor.damping: {scene.rotor.damping:g} N s/m")
+    return "; ".join(found) or DRY
+
+
+def run_band(scene: Scene, run: Callable[[Scene], Result]) -> Result:
+    """The result at the low end of the band, with ``band`` from both ends; cost is that of both runs."""
+    ends = [
+        run(attrs.evolve(scene, contact=attrs.evolve(scene.contact, damping=0.0, time_constant=tau)))
+        for tau in TIME_CONSTANTS
+    ]
+    low, high = ends
+    both = {key: value + high.cost[key] for key, value in low.cost.items() if key not in ("peak_memory_bytes", "threads")}
+    model = attrs.evolve(low.model, scene=attrs.evolve(low.model.scene, contact=scene.contact))
+    warnings = tuple(dict.fromkeys((*low.warnings, *high.warnings)))
+    return attrs.evolve(low, model=model, cost={**high.cost, **both}, band=_band(ends), warnings=warnings)
+
+
+def _band(ends: list[Result]) -> Tables:
+    """``identification.band``: numbers of both ends, [low, high]."""
+    found = [one.identification for one in ends]
+    assert all(one is not None for one in found), "static scenes have no band"
+    known = [one for one in found if one is not None]
+    return {
+        "time_constant_s": list(TIME_CONSTANTS),
+        "equivalent_damping": [one.equivalent_damping for one in known],
+        "equivalent_damping_error": [one.equivalent_damping_error for one in ends],
+        "equivalent_stiffness": [one.equivalent_stiffness for one in known],
+        "loss_factor": [one.equivalent_damping * one.speed / one.equivalent_stiffness for one in known],
+        "phase_lag_deg": [one.phase_lag_deg for one in known],
+    }
+
+
+def facts(result: Result) -> list[Fact]:
+    """Name, value with unit, remark."""
+    count = len(result.warnings)
+    warned = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
+    return [*_identified(result), *warned, *_equilibrium(result), *_computed(result)]
+
+
+def _identified(result: Result) -> list[Fact]:
+    found = result.identification
+    if found is None:
+        return []
+    k, c, z = found.equivalent_stiffness, found.equivalent_damping, found.dynamic_stiffness
+    band = result.band
+    total, damping_error = result.error["total"], result.equivalent_damping_error
+    held = tilt_words(result.model.scene.supports.tilt)
+    rows = [
+        within(
+            "stiffness K", k, result.equivalent_stiffness_error, 1e-6, "N/µm", f"{60.0 * found.frequency_hz:g} r/min, {held}"
+        ),
+        within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w")
+        if band is None
+        else _ends(band["equivalent_damping"]),
+        ("|Z|", number(1e-6 * abs(z), "N/µm"), "force over displacement of the 1x line"),
+        ("orbit", f"{in_micro(found.orbit_major)} x {in_micro(found.orbit_minor)} µm", "semi-axes of the 1x line"),
+    ]
+    rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
+    return [
+        *rows,
+        *_spread(result),
+        ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated"),
+    ]
+
+
+def _spread(result: Result) -> list[Fact]:
+    """Change of K by hypotheses left at their defaults, where it is worth a sentence."""
+    ends = (result.model_spread[0] or {}).get("equivalent_stiffness")
+    if not ends or max(map(abs, ends)) < NEGLIGIBLE:
+        return []
+    return [("model of K", percents(*ends), "hypotheses left at their defaults: .model_spread")]
+
+
+def _ends(ends: list[float]) -> Fact:
+    return (
+        "damping C",
+        f"{ends[0]:.3g} to {ends[1]:.3g} N s/m",
+        "both ends of the band of time constants; all else is the low end's",
+    )
+
+
+def _equilibrium(result: Result) -> list[Fact]:
+    k, moved, loads = result.stiffness, result.displacement, result.ball_loads
+    forces, follows = result.equilibrium.contact_force, result.kyy_tilts_follow
+    return [
+        ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
+        *([] if follows is None else [("kyy tilts follow", f"{1e-6 * follows:.5g} N/µm", "static, x and z held")]),
+        ("displacement x", number(1e6 * moved[0], "µm"), "static, axial"),
+        ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
+        *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
+    ]
+
+
+def _computed(result: Result) -> list[Fact]:
+    scene, cost = result.model.scene, result.cost
+    bearing: Tables = scene.source["bearing"]
+    kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
+    steps = f"{cost['steps']} steps" if cost["steps"] else "static"
+    compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
+    rows: list[Fact] = [
+        ("bearing", str(bearing.get("preset") or "own geometry"), kind),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
+    ]
+    if result.geometry is not None:
+        rows.insert(1, ("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
+    return rows

@@ -1,8 +1,22 @@
-"""The static state under the constant loads, ball by ball, and what a user should know about it."""
+"""The static state under the constant loads, ball by ball: equilibrium, pressures, ball-pass frequencies.
+
+Notes
+-----
+Ball-pass frequencies: with g = D cos(a) / d_m at the loaded contact angle a, over the shaft's frequency: FTF = (1 - g) / 2 (cage),
+BPFO = Z (1 - g) / 2 and BPFI = Z (1 + g) / 2 (balls over a place of the outer and of the inner race), BSF = d_m (1 - g^2) / (2 D)
+(turns of a ball about its own axis).  Balls roll without slip and cos(a) is the mean over both races of all loaded balls of a row: at
+speed the races' angles differ.  Forces know one cage speed, that of the free contact angle (``BallBearing.cage_speed``), stated beside
+FTF as ``ftf_in_forces``.
+
+References
+----------
+Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 10.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import acos, cos, degrees, pi
 
 import attrs
 import numpy as np
@@ -13,9 +27,11 @@ from raceway.bodies.mounting import lost_preload
 from raceway.bodies.running import report_of
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
+from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import traits_of
 from raceway.scene.growth import free_angle
+from raceway.storage.tables import Tables
 
 #: Share of its free contact angle at which a row without a clearance counts as unseated.
 _SEATED = 0.5
@@ -120,3 +136,78 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
     elif model.scene.contact.friction > 0.0:
         found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
     return (*found, *model.bearing.edge_warnings(model, inner, outer, force))
+
+
+def motion_table(model: Model, record: Record) -> Tables:
+    """The table ``motion`` of result.json: mean axial displacement, and the largest of each race in the turns that are used.
+
+    Parameters
+    ----------
+    record : its columns of ``contact_force`` (n, 2 Z) are the inner races, then the outer ones [N]
+    """
+    peaks = np.array([peak(column[:, None]) for column in record.contact_force.T])
+    axial = float(record.displacement[:, 0].mean())
+    return {"axial_displacement_m": axial, **largest_contacts(peaks, pressures(model, peaks), "peak")}
+
+
+def pressures(model: Model, loads: np.ndarray) -> np.ndarray:
+    """(2 Z,) peak pressures [Pa] at loads (2 Z,) [N] of the inner races, then of the outer ones."""
+    return np.concatenate([model.bearing.contact_ellipse(model, k, half)[0] for k, half in enumerate(np.split(loads, 2))])
+
+
+def largest_contacts(loads: np.ndarray, pressures: np.ndarray, word: str) -> Tables:
+    """Of loads and pressures (2 Z,) [N, Pa] the largest of both races, its race, and each race's; ``word`` begins the names."""
+    found: Tables = {}
+    for name, unit, values in (("ball_load", "n", loads), ("pressure", "pa", pressures)):
+        ends = values.reshape(2, -1).max(axis=1).tolist()
+        found |= {f"{word}_{name}_{unit}": max(ends), f"{word}_{name}_race": race_of(*ends)}
+        found |= {f"{word}_{name}_{race}_{unit}": end for race, end in zip(("inner", "outer"), ends, strict=True)}
+    return found
+
+
+def race_of(inner: float, outer: float) -> str:
+    """The race of the larger number: "inner", "outer", or "both" where they are equal but for rounding."""
+    return "both" if np.isclose(inner, outer, rtol=1e-9, atol=0.0) else "inner" if inner > outer else "outer"
+
+
+def peak(samples: np.ndarray) -> float:
+    """Largest value of curves sampled at equidistant times, (n, k), by a parabola through the largest sample's neighbours."""
+    row, column = np.unravel_index(int(np.argmax(samples)), samples.shape)
+    top = float(samples[row, column])
+    if not 0 < row < len(samples) - 1:
+        return top
+    before, after = float(samples[row - 1, column]), float(samples[row + 1, column])
+    bend = before - 2.0 * top + after
+    return top if bend >= 0.0 else top - (before - after) ** 2 / (8.0 * bend)
+
+
+#: Names in the order in which they are told.
+NAMES = ("ftf", "bpfo", "bpfi", "bsf")
+
+
+def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, contact_angle: float) -> dict[str, float]:
+    """FTF, BPFO, BPFI and BSF over the shaft's frequency.
+
+    Parameters
+    ----------
+    ball_diameter, pitch_diameter : [m];  contact_angle : loaded [rad]
+    """
+    g = ball_diameter * cos(contact_angle) / pitch_diameter
+    cage = 0.5 * (1.0 - g)
+    spin = 0.5 * pitch_diameter / ball_diameter * (1.0 - g * g)
+    return {"ftf": cage, "bpfo": ball_count * cage, "bpfi": ball_count * (1.0 - cage), "bsf": spin}
+
+
+def ball_pass_table(model: Model, equilibrium: Equilibrium) -> Tables:
+    """The table ``ball_pass`` of result.json: multiples of the shaft's speed, a row each, and Hz where the shaft turns."""
+    speed = model.scene.spin_speed / (2.0 * pi)
+    cosine = np.cos(0.5 * (np.abs(equilibrium.angle_inner) + np.abs(equilibrium.angle_outer)))
+    rows = []
+    for k, b in enumerate(model.scene.bearing.of_rows):
+        loaded = (model.basis.row == k) & np.isfinite(cosine)  # by both races
+        a = acos(float(cosine[loaded].mean())) if loaded.any() else b.contact_angle
+        times = ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, a)
+        hertz = {f"{name}_hz": speed * times[name] if speed else None for name in NAMES}
+        in_forces = {"ftf_in_forces": model.basis.geometries[k].cage_speed(1.0)}
+        rows.append({"contact_angle_deg": degrees(a), **times, **hertz, **in_forces})
+    return {"speed_rpm": 60.0 * speed, "rows": rows}

@@ -1,32 +1,30 @@
-"""Built-in plug-ins, one a file in a folder for each kind.
+"""Built-in plug-ins.
 
-excitations, identifiers, meshers, formats, reports, executors
-system_libraries   system libraries that packages for meshes and pictures need
+excitations, measured_force      forces
+identifiers, order_tracking      dynamic stiffness from motion
+structured_mesh, gmsh, mesh_files  hexahedra of the bodies
+formats, abaqus                  mesh files
+processes, joblib, dask          executors
+pictures, labelled               pictures and labelled arrays of one run
+system_libraries                 system libraries that packages for meshes and pictures need
 """
 
 from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.plugins.excitations.bidirectional import Bidirectional
-from raceway.plugins.excitations.measured import Measured
-from raceway.plugins.excitations.run_up import RunUp
-from raceway.plugins.excitations.unidirectional import Unidirectional
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.joblib import Joblib
-from raceway.plugins.executors.processes import Processes
-from raceway.plugins.executors.serial import Serial
-from raceway.plugins.formats.abaqus import Abaqus
-from raceway.plugins.formats.msh import Msh
-from raceway.plugins.formats.vtu import Vtu
-from raceway.plugins.identifiers.fft_1x import Fft1x
-from raceway.plugins.identifiers.impedance_fit import ImpedanceFit
-from raceway.plugins.identifiers.order_tracking import OrderTracking
-from raceway.plugins.identifiers.sine_fit import SineFit
-from raceway.plugins.identifiers.tangent import Tangent
-from raceway.plugins.meshers.file import File
-from raceway.plugins.meshers.gmsh import Gmsh
-from raceway.plugins.meshers.structured import Structured
-from raceway.plugins.reports.pictures import Pictures
+from raceway.plugins.abaqus import Abaqus
+from raceway.plugins.dask import Dask
+from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
+from raceway.plugins.formats import Msh, Vtu
+from raceway.plugins.gmsh import Gmsh
+from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
+from raceway.plugins.joblib import Joblib
+from raceway.plugins.measured_force import Measured
+from raceway.plugins.mesh_files import File
+from raceway.plugins.order_tracking import OrderTracking
+from raceway.plugins.pictures import Pictures
+from raceway.plugins.processes import Processes, Serial
+from raceway.plugins.structured_mesh import Structured
 
 
 @hookimpl

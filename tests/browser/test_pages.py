@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import raceway as rw
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.studies.many.page import Page
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES

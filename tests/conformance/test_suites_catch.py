@@ -14,8 +14,8 @@ from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
-from raceway.plugins.excitations.bidirectional import Bidirectional
-from raceway.plugins.identifiers.sine_fit import SineFit
+from raceway.plugins.excitations import Bidirectional
+from raceway.plugins.identifiers import SineFit
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, child, suite_of
 from raceway.testing.suite import EXPECTED_FAILURES
 from raceway.testing.units import exponents

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.plugins.executors.serial import Serial
+from raceway.plugins.processes import Serial
 from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, ReportSuite, StudySuite
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)

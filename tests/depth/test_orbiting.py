@@ -10,7 +10,7 @@ from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals.lines import phasors
 from raceway.core.signatures import Constants
-from raceway.pipeline.ball_pass import ball_pass, ball_pass_table
+from raceway.pipeline.settle import ball_pass, ball_pass_table
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene

@@ -16,8 +16,7 @@ from raceway.core.ring.start import at_rest
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
-from raceway.plugins.excitations.bidirectional import Bidirectional
-from raceway.plugins.excitations.run_up import RunUp
+from raceway.plugins.excitations import Bidirectional, RunUp
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing import b7206c
 

@@ -11,12 +11,10 @@ from raceway import build_model, load_scene, make_plan, scene_from_dict
 from raceway.core.jit import working_processor_time
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
-from raceway.pipeline.gradient.differences import WEIGHTS, derivative
-from raceway.pipeline.gradient.motion import SteadyOrbit
-from raceway.pipeline.gradient.statics import static_gradient
-from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.gradient import SteadyOrbit
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
+from raceway.pipeline.static_gradient import WEIGHTS, NoDerivative, derivative, static_gradient
 from raceway.scene.catalogue import single_presets
 from raceway.scene.continuous import continuous_keys, with_number
 from raceway.studies.band.front import band

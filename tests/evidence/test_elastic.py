@@ -20,7 +20,7 @@ import pytest
 from raceway import load_scene
 from raceway.bodies.condensed.kind import Condensed
 from raceway.bodies.meshing import mesh_scene
-from raceway.plugins.formats.vtu import Vtu
+from raceway.plugins.formats import Vtu
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.reading import scene_from_dict
 from raceway.testing import run, settled

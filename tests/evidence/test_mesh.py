@@ -15,7 +15,7 @@ import pytest
 from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.linear.statics import solve_static
-from raceway.plugins.meshers.structured import Structured
+from raceway.plugins.structured_mesh import Structured
 from validation.command_line import EXAMPLES
 from validation.natural_modes import natural_modes
 from validation.reference import annulus, elastic

@@ -11,11 +11,10 @@ import pytest
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.bodies.mesh_fit import check_sets
 from raceway.bodies.meshing import mesh_scene
-from raceway.plugins.formats.abaqus import Abaqus
-from raceway.plugins.formats.msh import Msh
-from raceway.plugins.formats.vtu import Vtu
-from raceway.plugins.meshers.file import File
-from raceway.plugins.meshers.gmsh import Gmsh
+from raceway.plugins.abaqus import Abaqus
+from raceway.plugins.formats import Msh, Vtu
+from raceway.plugins.gmsh import Gmsh
+from raceway.plugins.mesh_files import File
 from raceway.scene.tables import Supports
 from tests.mesh.solids import write
 from validation.command_line import EXAMPLES

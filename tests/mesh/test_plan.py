@@ -12,9 +12,9 @@ from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, s
 from raceway.bodies.mesh_plan import predicted_mesh
 from raceway.bodies.meshing import mesh_scene
 from raceway.commands.screen import plan_screen
-from raceway.plugins.formats.abaqus import Abaqus
-from raceway.plugins.meshers.gmsh import Gmsh
-from raceway.plugins.meshers.structured import Structured
+from raceway.plugins.abaqus import Abaqus
+from raceway.plugins.gmsh import Gmsh
+from raceway.plugins.structured_mesh import Structured
 from tests.mesh import solids
 from validation.command_line import EXAMPLES, invoke
 

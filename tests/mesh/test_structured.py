@@ -16,7 +16,7 @@ from raceway.core.mesh.ring_mesh import ring_mesh
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.core.mesh.spacing import graded, growing, halved
 from raceway.core.mesh.summary import summary
-from raceway.plugins.meshers.structured import Structured
+from raceway.plugins.structured_mesh import Structured
 from validation.command_line import EXAMPLES
 from validation.quarter import quarter_groove
 

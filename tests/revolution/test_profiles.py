@@ -13,7 +13,7 @@ from raceway.core.revolution.ball import free_ball
 from raceway.core.revolution.body import Revolution
 from raceway.core.revolution.profile import Profile, dofs
 from raceway.core.revolution.ring_profile import coarse_profile, graded_profile
-from raceway.plugins.meshers.structured import Structured
+from raceway.plugins.structured_mesh import Structured
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing import b7206c
 from tests.revolution.sections import BEARING, RADIUS, STEEL, ball

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.pipeline.result import without_nan, write_json
-from raceway.plugins.reports.pictures import save_figure
+from raceway.plugins.pictures import save_figure
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article import causes

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.framework.shown import read_in
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

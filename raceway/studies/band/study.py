@@ -12,8 +12,7 @@ from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact, Shown, number
-from raceway.pipeline.gradient.gradients import Gradients
-from raceway.pipeline.gradient.quantities import UNITS, definitions, described, values
+from raceway.pipeline.gradient import UNITS, Gradients, definitions, described, values
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress
@@ -131,7 +130,7 @@ class Band(Shown):
         RacewayError
             matplotlib is missing, or the folder cannot be written.
         """
-        from raceway.plugins.reports.pictures import save_figure
+        from raceway.plugins.pictures import save_figure
         from raceway.studies.band.picture import draw
 
         return save_figure(draw(self.to_dict()), folder / "band.png", 100)

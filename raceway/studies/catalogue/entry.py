@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 
 from raceway.framework.registry import Registry
-from raceway.pipeline.ball_pass import ball_pass
+from raceway.pipeline.settle import ball_pass
 from raceway.scene.catalogue import Preset, geometry_of
 from raceway.scene.materials import materials
 from raceway.scene.reading import scene_from_dict

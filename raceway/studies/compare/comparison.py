@@ -131,7 +131,7 @@ class Comparison(Shown, Findings):
         RacewayError
             matplotlib is missing, or a folder that cannot be written.
         """
-        from raceway.plugins.reports.pictures import save_figure
+        from raceway.plugins.pictures import save_figure
         from raceway.studies.compare.picture import draw
 
         return [save_figure(draw(self.to_dict()), folder / "comparison.png", 100)]

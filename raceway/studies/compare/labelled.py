@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.plugins.reports.labelled import labelled_dataset, labels
+from raceway.plugins.labelled import labelled_dataset, labels
 from raceway.studies.compare.findings import MOVING, Findings
 from raceway.studies.sweep.dataset import axis_labels
 

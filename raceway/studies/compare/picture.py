@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING
 
-from raceway.plugins.reports.pictures import given_axes, new_figure
+from raceway.plugins.pictures import given_axes, new_figure
 from raceway.storage.tables import Tables
 from raceway.studies.compare.findings import MOVING, STATIC, Quantity, Row
 from raceway.studies.many.axes import is_number

@@ -160,7 +160,7 @@ class Fitted(Shown):
         RacewayError
             matplotlib is missing, or the folder cannot be written.
         """
-        from raceway.plugins.reports.pictures import save_figure
+        from raceway.plugins.pictures import save_figure
         from raceway.studies.fit.picture import draw
 
         return save_figure(draw(self.to_dict()), folder / "fit.png", 110)

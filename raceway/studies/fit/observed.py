@@ -11,7 +11,7 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.framework.shown import read_in
-from raceway.pipeline.gradient.quantities import UNITS
+from raceway.pipeline.gradient import UNITS
 from raceway.scene.continuous import Key, continuous_keys, with_number
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

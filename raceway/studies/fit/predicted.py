@@ -10,11 +10,9 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.errors import SceneError
-from raceway.pipeline.gradient.gradients import Gradient, Gradients
-from raceway.pipeline.gradient.quantities import definitions, derivatives, values
-from raceway.pipeline.gradient.statics import static_gradient
-from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.gradient import Gradient, Gradients, definitions, derivatives, values
 from raceway.pipeline.settle import settle
+from raceway.pipeline.static_gradient import NoDerivative, static_gradient
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import key_of, with_number
 from raceway.scene.scene import Scene

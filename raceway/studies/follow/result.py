@@ -127,7 +127,7 @@ class Followed:
             write_whole(text.getvalue().encode(), folder / "follow.csv"),
         ]
         if picture:
-            from raceway.plugins.reports.pictures import save_figure
+            from raceway.plugins.pictures import save_figure
             from raceway.studies.follow.picture import draw
 
             files.append(save_figure(draw(content), folder / "follow.png", 110))

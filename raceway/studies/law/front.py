@@ -13,7 +13,7 @@ from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
-from raceway.pipeline.damping import damping_origin
+from raceway.pipeline.result import damping_origin
 from raceway.scene.given import Change, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
@@ -87,7 +87,7 @@ class LawCurves(Shown):
         RacewayError
             matplotlib is missing, or a folder that cannot be written.
         """
-        from raceway.plugins.reports.pictures import save_figure
+        from raceway.plugins.pictures import save_figure
         from raceway.studies.law.picture import draw
 
         return save_figure(draw(self), Path(path))

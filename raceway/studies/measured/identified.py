@@ -10,8 +10,8 @@ import numpy as np
 
 from raceway.errors import SceneError
 from raceway.framework.shown import Fact, Shown, number, number_within
-from raceway.plugins.reports.labelled import labelled_dataset
-from raceway.plugins.reports.pictures import given_axes
+from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.measured.identify import Found
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.plugins.reports.labelled import labelled_dataset, labels
+from raceway.plugins.labelled import labelled_dataset, labels
 
 if TYPE_CHECKING:
     from xarray import Dataset

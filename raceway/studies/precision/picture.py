@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.framework.options import between, option
-from raceway.plugins.reports.pictures import new_figure, save_figure
+from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.precision.labels import Label, put_beside

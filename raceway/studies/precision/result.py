@@ -12,7 +12,7 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown
-from raceway.plugins.reports.pictures import given_axes
+from raceway.plugins.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
 from raceway.studies.precision.reference import Reference, distance, main_size, minus

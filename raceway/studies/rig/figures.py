@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway import __version__
-from raceway.plugins.reports.pictures import save_figure
+from raceway.plugins.pictures import save_figure
 from raceway.storage.tables import Tables
 from raceway.studies.many.page import Page
 from raceway.studies.measured.figures import orbits, signals, spectrum

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.plugins.excitations.bidirectional import Bidirectional
+from raceway.plugins.excitations import Bidirectional
 
 if TYPE_CHECKING:
     from raceway.core.jit import Kernel

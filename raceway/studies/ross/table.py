@@ -12,8 +12,8 @@ import numpy as np
 from raceway.errors import RacewayError, extra
 from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown
-from raceway.plugins.reports.labelled import labelled_dataset
-from raceway.plugins.reports.pictures import given_axes
+from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.pictures import given_axes
 from raceway.storage.tables import Tables
 from raceway.studies.ross.coefficients import Coefficients
 from raceway.studies.ross.file import NAMES, RossFile

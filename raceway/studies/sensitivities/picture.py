@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

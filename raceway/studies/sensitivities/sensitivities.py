@@ -13,11 +13,10 @@ import numpy as np
 from raceway.core.jit import working_processor_time
 from raceway.framework.doors import member
 from raceway.framework.shown import Fact, Shown, number
-from raceway.pipeline.gradient.gradients import Gradient, Gradients
-from raceway.pipeline.gradient.quantities import UNITS, definitions, derivatives, described, values
-from raceway.pipeline.gradient.variation import NoDerivative
+from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, described, values
 from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
+from raceway.pipeline.static_gradient import NoDerivative
 from raceway.scene.continuous import Key
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
@@ -139,7 +138,7 @@ class Sensitivities(Shown):
         RacewayError
             matplotlib is missing, or the folder cannot be written.
         """
-        from raceway.plugins.reports.pictures import save_figure
+        from raceway.plugins.pictures import save_figure
         from raceway.studies.sensitivities.picture import draw
 
         return [save_figure(draw(self.to_dict()), folder / "sensitivities.png", 100)]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.plugins.excitations.bidirectional import Bidirectional
+from raceway.plugins.excitations import Bidirectional
 
 if TYPE_CHECKING:
     import numpy as np

@@ -16,7 +16,7 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
-from raceway.plugins.reports.labelled import labelled_dataset, labels
+from raceway.plugins.labelled import labelled_dataset, labels
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.files import scratch_file, write_whole

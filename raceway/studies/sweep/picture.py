@@ -11,7 +11,7 @@ import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.framework.shown import read_in
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.storage.files import write_whole
 from raceway.studies.many.axes import is_number
 from raceway.studies.many.axes import shown as _text

@@ -58,7 +58,7 @@ ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
 
 def values_of(result: Result) -> Tables:
     """Plain numbers and lists of a result; what it does not have is absent."""
-    from raceway.pipeline.error.hypotheses import closed_bound
+    from raceway.pipeline.plausible import closed_bound
 
     found, still = result.identification, result.equilibrium
     values: Tables = {}
@@ -80,7 +80,7 @@ def values_of(result: Result) -> Tables:
 
 def _loads(result: Result) -> Tables:
     """Of the motion where there is one, else of the equilibrium."""
-    from raceway.pipeline.motion import largest_contacts, motion_table, pressures
+    from raceway.pipeline.settle import largest_contacts, motion_table, pressures
 
     model, z = result.model, result.model.system.ball_count
     if result.simulation is not None:

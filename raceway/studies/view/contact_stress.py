@@ -10,7 +10,7 @@ import numpy as np
 from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
 from raceway.core.contact.subsurface import axis_shear, axis_stresses
 from raceway.core.hexahedron.recovery import von_mises
-from raceway.plugins.reports.pictures import new_figure, save_figure
+from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole
 from raceway.studies.view.fields import Fields, new_grid, vtu
 from raceway.studies.view.scene import pyvista_of, quietly

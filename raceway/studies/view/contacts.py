@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.plugins.reports.pictures import new_figure
+from raceway.plugins.pictures import new_figure
 from raceway.studies.view.bearing import INNER, OUTER, Bearing, State
 
 if TYPE_CHECKING:

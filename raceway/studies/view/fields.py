@@ -13,7 +13,7 @@ import numpy as np
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.core.elastic.contacts.stress_profile import cells_near
 from raceway.core.hexahedron.recovery import centre_stress, largest_shear, von_mises
-from raceway.pipeline.motion import pressures
+from raceway.pipeline.settle import pressures
 from raceway.storage.files import write_whole
 from raceway.studies.view.mesh_picture import _png
 from raceway.studies.view.scene import new_plotter, pyvista_of, quietly

@@ -1,6 +1,6 @@
 """The states of a result that are drawn: at rest, and through the last turn of its motion.
 
-Drawing them is the business of ``raceway.plugins.reports.view``.
+Drawing them is the business of ``raceway.studies.view``.
 """
 
 from __future__ import annotations

@@ -8,10 +8,10 @@ from textwrap import wrap
 import numpy as np
 
 from raceway.framework.shown import race_words
-from raceway.pipeline.motion import largest_contacts
 from raceway.pipeline.result import Result
+from raceway.pipeline.settle import largest_contacts
 from raceway.pipeline.simulate import OnProgress
-from raceway.plugins.reports.pictures import ball_loads, orbit, save_figure
+from raceway.plugins.pictures import ball_loads, orbit, save_figure
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.view.bearing import Bearing, State

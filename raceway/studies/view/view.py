@@ -11,7 +11,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.shown import Fact, Shown, largest_facts
-from raceway.plugins.reports.pictures import given_axes
+from raceway.plugins.pictures import given_axes
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 

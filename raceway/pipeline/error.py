@@ -5,20 +5,26 @@ Notes
 A method of order p leaves an error c dt^p.  A second run with n' instead of n steps a turn gives c, so that the error of
 the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 
-A series of equilibria has no order: see ``finer_series``.
+A series of equilibria has no such order.  Each equilibrium is exact, and over a whole turn the Fourier line of N samples errs by the
+harmonics N - 1, N + 1, 2N - 1 and so on, which no inertia keeps small.  Half the samples, or twice as many, may hold the same ones:
+45 and 90 samples of a motion with a mirror axis do.  A series of a larger number, which shares no divisor with N, has other and
+smaller ones.
 
-What a transient leaves is the distance from the steady motion (``steady_motion``) where that can be solved for and the
-motion did not start on it, and else what ``free_vibration`` sees; with friction at least the distance from ``other_start``.
-Step errors are taken from values without a transient: leakage has no order.
+What a transient leaves is the distance from the steady motion where that can be solved for and the motion did not start on it, and
+else what the window over the turns sees (``transient_error``); with friction at least the distance from another start.  Step errors
+are taken from values without a transient: leakage has no order.
+
+K and C of several whirl speeds are compared with Z of the motions at those speeds, and at the scene's own.
 
 References
 ----------
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed., 1993), section II.4 (step halving).
+Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rule).
 """
 
 from __future__ import annotations
 
-from math import ceil
+from math import ceil, pi
 from typing import Any
 
 import attrs
@@ -27,17 +33,16 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.ring import TOLERANCE
+from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.core.signals.identification import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError
-from raceway.pipeline.error.finer_series import finer_value, more_equilibria
-from raceway.pipeline.error.free_vibration import Clean, without_free_vibration
-from raceway.pipeline.error.misfit import largest_misfit
-from raceway.pipeline.error.other_start import Run, distance
-from raceway.pipeline.error.steady_motion import Settled, settled_value
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
+from raceway.pipeline.transient_error import Clean, Run, Settled, distance, settled_value, without_free_vibration
 from raceway.planning.recording import fits
 from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
+from raceway.plugins.identifiers import Fft1x
+from raceway.storage.tables import Tables
 
 #: Least steps a turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
 _LEAST_STEPS = 8
@@ -393,3 +398,93 @@ def _from_steady(settled: complex, value: complex, step: Part) -> Part:
     """Distance from Z of the steady motion, less the part of the time step; relative to the smaller of both."""
     shift = (value - settled) / min(abs(value), abs(settled)) - (step.shift or 0.0)
     return Part(float(abs(shift)), "distance from the steady motion, less the part of the time step", shift)
+
+
+#: Least equilibria a turn of a second series.
+_LEAST = 181
+
+
+def more_equilibria(steps: int) -> int:
+    """Equilibria a turn of the second series: more than twice as many, and no few."""
+    return max(2 * steps + 1, _LEAST)
+
+
+def finer_value(
+    model: Model,
+    equilibrium: Equilibrium,
+    motions: list[tuple[Model, Simulation]],
+    value: complex,
+    count: int,
+    on_progress: OnProgress | None = None,
+) -> complex:
+    """Z [N/m] of a series of ``count`` equilibria a turn, where a series of the scene's number has ``value``.
+
+    Raises
+    ------
+    ConvergenceError
+        An equilibrium that is not found.
+
+    Notes
+    -----
+    Bodies that are stepped from Python take milliseconds an equilibrium: of them the change is that of their compiled
+    surrogate, whose motion has nearly the same harmonics.
+    """
+
+    def identified(models: list[Model], steps: int) -> complex:
+        records = [simulate(one, equilibrium if one is model else settle(one), on_progress, steps).record for one in models]
+        return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
+
+    models = [one for one, _ in motions]
+    if compiled(model.system) is not None:
+        return identified(models, count)
+    models = [attrs.evolve(one, system=surrogate(one.system)) for one in models]
+    steps = motions[-1][1].whole.schedule.steps_per_turn
+    return value + identified(models, count) - identified(models, steps)
+
+
+#: Relative difference of two speeds that are one.
+_SAME = 1e-9
+#: Misfit over |Z| above which K and C are told to describe no Z.
+_MUCH = 0.05
+
+
+def largest_misfit(model: Model, equilibrium: Equilibrium, found: Identification) -> tuple[float, float]:
+    """Largest |Z - (K - m w^2 + j w C)| over |Z|, and the whirl speed [r/min] where it is.
+
+    Notes
+    -----
+    Between and beyond the speeds of a fit nothing tells what Z does, a resonance included.  Where the scene's own whirl speed,
+    whose Z and K are stated, is none of them, its motion is computed: spin and force are the same.  There the misfit is over
+    the smaller one of both Z, so that it is an error of the stated one, too.
+
+    Raises
+    ------
+    ConvergenceError, StabilityError
+        No motion at the scene's own speed.
+    """
+    series = list(found.series)
+    if all(abs(w / found.speed - 1.0) > _SAME for w, _ in series) and not model.traits.every_node:
+        record = simulate(model, equilibrium).record
+        series.append((found.speed, Fft1x().identify([record], equilibrium, model).dynamic_stiffness))
+    sizes = []
+    for w, z in series:
+        fitted = complex(found.equivalent_stiffness - found.mass_used * w**2, w * found.equivalent_damping)
+        scale = min(abs(z), abs(fitted)) if abs(w / found.speed - 1.0) <= _SAME else abs(z)
+        sizes.append((abs(z - fitted) / scale, w * 30.0 / pi))
+    return max(sizes)
+
+
+def misfit_warnings(model: Model, error: Tables) -> list[str]:
+    """Says where Z over the whirl speeds is not what K and C make of it."""
+    size = error["identification"]
+    if (
+        model.scene.excitation is None
+        or "speeds" not in model.scene.identifier.method.needs
+        or size is None
+        or size <= _MUCH
+    ):
+        return []
+    return [
+        f"Z is not of the form K - m w^2 + j w C over these whirl speeds (misfit {size:.2g} of |Z|; free tilts, gyroscopic moments, "
+        "a resonance): K and C are those of no speed, take identifier 'fft_1x' at each"
+    ]

@@ -1,4 +1,4 @@
-"""The 1x line along a changing speed."""
+"""Dynamic stiffness along a changing speed, by order tracking."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Processes of their own on this machine, by Python alone: a batch that hangs or kills its process costs that batch only."""
+"""Executors on this machine by Python alone: in this process, and in processes of their own.
+
+A batch that hangs or kills its process costs that batch only.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,18 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
     from raceway.framework.contracts import Batch
+
+
+@attrs.frozen
+class Serial:
+    """One point after the other, in this process: no start-up, and the debugger's choice."""
+
+    name: ClassVar[str] = "serial"
+
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
+        for number, points in batches:
+            yield number, work(points)
+
 
 #: What a process may take to import the program, beyond the patience with its first batch [s].
 _START_S = 120.0

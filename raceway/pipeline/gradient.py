@@ -1,4 +1,4 @@
-"""Derivatives of the dynamic stiffness of a steady orbit by a continuous key.
+"""Derivatives of a result by the continuous keys of its scene, and its band over tolerances to first order.
 
 Notes
 -----
@@ -6,16 +6,21 @@ The collocated orbit u solves R(u, p) = 0 with the exact tangent that Newton's i
 linear problem, du/dp = -R_u^-1 dR/dp round the span, dR/dp at the fixed orbit along the derivatives of the model's arrays; the 1x line
 is then differentiated along u + h du/dp, p + h.  With dashpots the rates of the balls follow the orbit, and tangents lack how
 their forces turn with the contacts: what is left of dR/dp along the line is then taken off again, until the derivative stays.
+
+Over tolerances numbers are even in their ranges and independent, as ``raceway band`` takes them; an answer is the nominal one plus the
+sum of its derivatives by each number times what that lies off.  The density of the sum is the convolution of even ones, from which the
+limits of 95 % are taken.  Tolerances that bend the answer within their range need ``raceway band``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.core.periodic.arrays import Change
 from raceway.core.periodic.collocation import Solved
@@ -33,8 +38,13 @@ from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Schedule
 from raceway.errors import ConvergenceError, SceneError
-from raceway.pipeline.gradient.statics import StaticGradient
-from raceway.pipeline.gradient.variation import Direction, NoDerivative
+from raceway.framework.shown import race_words, tilt_words
+from raceway.pipeline.settle import race_of
+from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
+from raceway.scene.continuous import Key, key_of
+from raceway.scene.given import leaves
+from raceway.scene.tolerance import tolerances_of
+from raceway.storage.tables import Tables
 
 #: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none.
 _SAMPLES, _TOLERANCE = 360, 1e-8
@@ -222,3 +232,217 @@ def _line(solved: Solved, mass: float) -> np.ndarray:
     z, amplitude = first_line(solved)
     omega = solved.problem.speed
     return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude])
+
+
+@attrs.frozen(eq=False)
+class Gradient:
+    """Derivatives by one key: of the equilibrium, and of the steady orbit where the scene has an excitation."""
+
+    statics: StaticGradient
+    motion: MotionGradient | None
+
+    @property
+    def nothing(self) -> bool:
+        """Whether the key changes nothing at all."""
+        return self.statics.step == 0.0 and (self.motion is None or self.motion.nothing)
+
+
+@attrs.frozen(eq=False)
+class Gradients:
+    """Derivatives of an equilibrium, and of the steady orbit about it.
+
+    Raises
+    ------
+    SceneError
+        Bodies whose contacts are pressures at surface points, or are not compiled.
+    """
+
+    model: Model
+    equilibrium: Equilibrium
+
+    def __attrs_post_init__(self) -> None:
+        traits = self.model.traits
+        if not (traits.compiled and traits.resultants):
+            why = "surface points open and close one by one: their forces have no derivative. Take contact.discretisation = 'resultant'"
+            raise SceneError.at("bodies.kind", self.model.scene.bodies.name, f"{why} on rigid or condensed bodies")
+
+    @cached_property
+    def orbit(self) -> SteadyOrbit | None:
+        """The steady orbit, searched for once; None in a static scene.
+
+        Raises
+        ------
+        SceneError, ConvergenceError
+            The force has none, or none was found.
+        """
+        return None if self.model.excitation is None else SteadyOrbit.of(self.model, self.equilibrium)
+
+    def by(self, key: Key) -> Gradient:
+        """By one key.
+
+        Raises
+        ------
+        NoDerivative
+            There is none, with the reason.
+        """
+        statics = static_gradient(self.model, self.equilibrium, key)
+        return Gradient(statics, None if self.orbit is None else self.orbit.gradient(statics))
+
+    def by_path(self, path: str) -> Gradient:
+        """By the key of a path, such as "load.axial".
+
+        Raises
+        ------
+        SceneError
+            No continuous key, or one without a derivative.
+        """
+        try:
+            return self.by(key_of(self.model.scene, path))
+        except NoDerivative as why:
+            raise SceneError.at(path, None, str(why)) from None
+
+
+#: Names with units, in the order of columns; what a scene does not have is left out.
+UNITS = {
+    "K": "N/m",
+    "C": "N s/m",
+    "amplitude": "m",
+    "kxx": "N/m",
+    "kyy": "N/m",
+    "kyy_tilts_follow": "N/m",
+    "x": "m",
+    "largest_ball_load": "N",
+}
+#: Part of |Z| below which w C is no number that an orbit resolves.
+_RESOLVED = 1e-6
+
+
+def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
+    """The numbers that a scene has, by their names in ``UNITS``: of the steady orbit, and at rest."""
+    found: dict[str, float] = {}
+    if orbit is not None:
+        real, damping, stiffness, amplitude = (float(one) for one in orbit.line)
+        found |= {"K": stiffness, "amplitude": amplitude}
+        if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
+            found["C"] = damping
+    found |= _at_rest(equilibrium, equilibrium)
+    if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
+        found["kyy_tilts_follow"] = follows
+    return {name: found[name] for name in UNITS if name in found}
+
+
+def described(name: str, value: float, words: dict[str, str]) -> Tables:
+    """A number as JSON files hold it; ``words`` as ``definitions`` has them."""
+    return {"value": value, "unit": UNITS[name], "definition": words[name]}
+
+
+def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:
+    """What each number of ``values`` is."""
+    inner, outer = equilibrium.contact_force.reshape(2, -1).max(axis=1).tolist()
+    return {
+        "K": "Re Z + m w^2",
+        "C": "Im Z / w",
+        "amplitude": "of the 1x motion along the force",
+        "kxx": "axial, other motions held",
+        "kyy": "radial, tilts and other motions held",
+        "kyy_tilts_follow": f"radial, {tilt_words(model.scene.supports.tilt)}: tilts follow, x and z held",
+        "x": "axial displacement under the constant loads",
+        "largest_ball_load": f"static, {race_words(race_of(inner, outer))}; the larger of both",
+    }
+
+
+def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> dict[str, float]:
+    """Of the same, by the number at the gradient's key."""
+    found: dict[str, float] = {}
+    if gradient.motion is not None:
+        one = gradient.motion
+        found |= {"K": one.equivalent_stiffness, "C": one.equivalent_damping, "amplitude": one.amplitude}
+    statics = gradient.statics
+    found |= _at_rest(equilibrium, statics)
+    if (tilt := model.scene.supports.tilt) != "locked":
+        by = float(statics.key.path == "supports.tilt")
+        found["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
+    return found
+
+
+def _at_rest(equilibrium: Equilibrium, of: Equilibrium | StaticGradient) -> dict[str, float]:
+    """The numbers that every scene has, of the equilibrium or of its slopes."""
+    largest = int(np.argmax(equilibrium.contact_force))
+    found = {"kxx": of.stiffness[0, 0], "kyy": of.stiffness[1, 1], "x": of.displacement[0]}
+    return {name: float(one) for name, one in {**found, "largest_ball_load": of.contact_force[largest]}.items()}
+
+
+def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | str, by: float) -> float:
+    """Of kyy_tilts_follow where the stiffness (5, 5) moves with ``slope``, and the shaft's against tilts with ``by``."""
+    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
+    back = np.linalg.pinv(tilts)
+    left, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
+    return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
+
+
+#: Share of the answers in a band; points of a density.
+_COVERAGE, _POINTS = 0.95, 4001
+
+
+def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
+    """The table ``tolerances`` of result.json; None where the scene has none.
+
+    Returns
+    -------
+    quantities : name -> value, unit, definition, low, high, and ``shares`` of the variance by key;  left_out : keys without a derivative, with reasons
+    why : why there are no quantities, or none of the motion; empty else
+    """
+    scene = model.scene
+    if "tolerances" not in scene.source:
+        return None
+    tolerances = tolerances_of(scene, dict(leaves(scene.source["tolerances"])))
+    orbit, why = None, ""
+    try:
+        gradients = Gradients(model, equilibrium)
+    except SceneError as none:
+        return {"quantities": {}, "left_out": [], "why": none.mistakes[0].message}
+    try:
+        orbit = gradients.orbit
+    except (SceneError, ConvergenceError) as none:
+        why = f"at rest only: {none.mistakes[0].message if isinstance(none, SceneError) else none}"
+    now, words = values(model, equilibrium, orbit), definitions(model, equilibrium)
+    slopes, left_out = {}, []
+    for one in tolerances:
+        try:
+            statics = static_gradient(model, equilibrium, one.key)
+            found = Gradient(statics, None if orbit is None else orbit.gradient(statics))
+        except NoDerivative as reason:
+            left_out.append({"key": one.key.path, "reason": str(reason)})
+            continue
+        slopes[one.key.path] = one.low - one.key.value, one.high - one.key.value, derivatives(model, equilibrium, found)
+    quantities = {}
+    for name, value in now.items():
+        ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
+        low, high = limits(ends)
+        widths = np.array([(two - one) ** 2 for one, two in ends])
+        shares = widths / widths.sum() if widths.any() else widths
+        quantities[name] = {
+            **described(name, value, words),
+            "low": value + low,
+            "high": value + high,
+            "shares": dict(zip(slopes, shares.tolist(), strict=True)),
+        }
+    return {"quantities": quantities, "left_out": left_out, "why": why}
+
+
+def limits(ends: Sequence[Sequence[float]], share: float = _COVERAGE) -> tuple[float, float]:
+    """Limits of a share of the sum of independent numbers that are even between their ends, (d, 2); 0 of none."""
+    middle = sum(0.5 * (low + high) for low, high in ends)
+    halves = [0.5 * (high - low) for low, high in ends if high > low]
+    if not halves:
+        return middle, middle
+    reach = sum(halves)
+    x = np.linspace(-reach, reach, _POINTS)
+    # The distribution of one, then its mean over each of the others in turn.
+    below = np.clip((x + halves[0]) / (2.0 * halves[0]), 0.0, 1.0)
+    for half in halves[1:]:
+        whole = np.concatenate([[0.0], np.cumsum(0.5 * (below[1:] + below[:-1]) * np.diff(x))])
+        ahead = np.interp(x + half, x, whole) + np.maximum(x + half - reach, 0.0)
+        below = (ahead - np.interp(x - half, x, whole)) / (2.0 * half)
+    out = 0.5 * (1.0 - share)
+    return middle + float(np.interp(out, below, x)), middle + float(np.interp(1.0 - out, below, x))

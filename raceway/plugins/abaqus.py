@@ -13,7 +13,7 @@ import numpy as np
 
 from raceway.errors import MeshError
 from raceway.framework.options import one_of, option
-from raceway.plugins.formats import _exchange as exchange
+from raceway.plugins import formats as exchange
 from raceway.storage.user_files import memory_for
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ import numpy as np
 
 from raceway.errors import MeshError, extra
 from raceway.framework.options import one_of, option, positive
-from raceway.plugins.formats._exchange import readable
-from raceway.plugins.meshers._bodies import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
+from raceway.plugins.formats import readable
+from raceway.plugins.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 from raceway.plugins.system_libraries import remedy
 
 if TYPE_CHECKING:
@@ -151,7 +151,7 @@ class Gmsh:
 
     def _meshed(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
         from raceway.core.mesh.hex_mesh import HexMesh
-        from raceway.plugins.formats._exchange import facets_of_quads
+        from raceway.plugins.formats import facets_of_quads
 
         self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(3)

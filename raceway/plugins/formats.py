@@ -1,12 +1,17 @@
-"""Common parts of the mesh formats: calls of meshio, the choice of hexahedra, facets from quadrilaterals."""
+"""Mesh files that meshio reads and writes: .vtu and .msh, hexahedra with their sets.
+
+.vtu   VTK's XML files of unstructured grids, with sets as fields that ParaView can colour
+.msh   files of Gmsh: physical groups of quadrilaterals and points as sets
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
+import attrs
 import numpy as np
 
 from raceway.errors import MeshError, extra
@@ -17,6 +22,7 @@ if TYPE_CHECKING:
     from meshio import Mesh
 
     from raceway.core.mesh.hex_mesh import HexMesh
+
 
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
@@ -167,3 +173,98 @@ def example() -> HexMesh:
     cells = [[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]]
     sets = {"bottom": [[0, 0], [1, 0]], "end": [[1, 3]]}
     return HexMesh(1e-3 * np.array(corner) / 3.0, np.array(cells), {"seat": [0, 3, 6, 9], "corner": [0]}, sets)
+
+
+_NODES, _FACETS = "nodes:", "facets:"
+
+
+@attrs.frozen
+class Vtu:
+    """Hexahedral meshes as .vtu; a node set is a field of 0 and 1, a facet set a field with bit k for local face k."""
+
+    name: ClassVar[str] = "vtu"
+    suffixes: ClassVar[tuple[str, ...]] = (".vtu",)
+
+    def read(self, path: Path) -> HexMesh:
+        """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
+        content = load(path, meshio().vtu.read)
+        cells, first = hexahedra(path, content)
+        nodes = {
+            name.removeprefix(_NODES): np.flatnonzero(np.asarray(values) != 0)
+            for name, values in content.point_data.items()
+            if name.startswith(_NODES)
+        }
+        facets = {}
+        for name, blocks in content.cell_data.items():
+            if name.startswith(_FACETS):
+                parts = [np.asarray(b, dtype=int) for b, start in zip(blocks, first, strict=True) if start is not None]
+                bits = np.concatenate(parts)[:, None] >> np.arange(6) & 1
+                facets[name.removeprefix(_FACETS)] = np.argwhere(bits)
+        return used_only(path, content.points, cells, nodes, facets)
+
+    def write(self, path: Path, what: HexMesh) -> None:
+        """Write a mesh with its sets."""
+        package = meshio()
+        point_data, cell_data = {}, {}
+        for name, nodes in what.node_sets.items():
+            point_data[_NODES + name] = np.isin(np.arange(len(what.points)), nodes).astype(np.uint8)
+        for name, facets in what.facet_sets.items():
+            bits = np.zeros(len(what.cells), dtype=np.uint8)
+            np.bitwise_or.at(bits, facets[:, 0], (1 << facets[:, 1]).astype(np.uint8))
+            cell_data[_FACETS + name] = [bits]
+        content = package.Mesh(what.points, [("hexahedron", what.cells)], point_data=point_data, cell_data=cell_data)
+        store(path, package.vtu.write, content)
+
+    def example_content(self) -> HexMesh:
+        return example()
+
+
+_PHYSICAL, _ENTITY = "gmsh:physical", "gmsh:geometrical"
+
+
+@attrs.frozen
+class Msh:
+    """Hexahedral meshes as .msh (read: versions 2 and 4, written: 2.2); sets are physical groups of dimension 2 and 0."""
+
+    name: ClassVar[str] = "msh"
+    suffixes: ClassVar[tuple[str, ...]] = (".msh",)
+
+    def read(self, path: Path) -> HexMesh:
+        """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
+        content = load(path, meshio().gmsh.read)
+        cells, _ = hexahedra(path, content)
+        names = {(int(tag), int(dimension)): name for name, (tag, dimension) in content.field_data.items()}
+        groups: dict[str, dict[str, list[np.ndarray]]] = {"quad": {}, "vertex": {}}
+        for block, tags in zip(content.cells, content.cell_data.get(_PHYSICAL, []), strict=False):
+            dimension = {"quad": 2, "vertex": 0}.get(block.type, -1)
+            for tag in np.unique(tags) if dimension >= 0 else ():
+                name = names.get((int(tag), dimension), f"physical_{tag}") if tag else None
+                if name is not None:
+                    groups[block.type].setdefault(name, []).append(np.asarray(block.data)[np.asarray(tags) == tag])
+        nodes = {name.removeprefix(_NODES): np.concatenate(parts).ravel() for name, parts in groups["vertex"].items()}
+        facets = {name: facets_of_quads(path, cells, np.concatenate(parts)) for name, parts in groups["quad"].items()}
+        return used_only(path, content.points, cells, nodes, facets)
+
+    def write(self, path: Path, what: HexMesh) -> None:
+        """Write a mesh; node sets become groups "nodes:NAME", because a name may stand for one group only."""
+        package = meshio()
+        blocks, tags = [("hexahedron", what.cells)], [1]
+        field_data = {"body": np.array([1, 3])}
+        for name in what.facet_sets:
+            if len(what.facet_sets[name]):
+                tags.append(len(tags) + 1)
+                blocks.append(("quad", what.facet_nodes(name)))
+                field_data[name] = np.array([tags[-1], 2])
+        for name, nodes in what.node_sets.items():
+            if len(nodes):
+                tags.append(len(tags) + 1)
+                blocks.append(("vertex", nodes[:, None]))
+                field_data[_NODES + name] = np.array([tags[-1], 0])
+        data = [np.full(len(block[1]), tag, dtype=np.int32) for block, tag in zip(blocks, tags, strict=True)]
+        content = package.Mesh(
+            what.points, blocks, cell_data={_PHYSICAL: data, _ENTITY: [d.copy() for d in data]}, field_data=field_data
+        )
+        store(path, lambda p, c: package.gmsh.write(p, c, fmt_version="2.2"), content)
+
+    def example_content(self) -> HexMesh:
+        return example()

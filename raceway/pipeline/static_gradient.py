@@ -1,0 +1,357 @@
+"""Derivatives of an equilibrium by a continuous key of the scene.
+
+Notes
+-----
+All that an equilibrium and a motion depend on are arrays of a few numbers: geometry, law parameters, loads, masses.  Their
+derivatives by the key come from models at neighbouring values, two of them, or four where building one solves for a preload or
+for loads of contacts and leaves its tolerance in them.  By the chain rule these derivatives are all that a key is.
+
+At the equilibrium r(q, p) = f(q, p) + K_s q - F(p) = 0 with the exact tangent T = dr/dq, the balls condensed.  Hence
+dq/dp = -T^-1 dr/dp, dr/dp at fixed q along the derivatives of the model's arrays.  Stiffness, damping and forces of the contacts are
+then differentiated along that line: dK/dp = d/dh K(q + h dq/dp, p + h).  Differences are central and of fourth order; their step moves
+no gap and no stiffness by more than ``_MOVED`` of itself, so that the error stays below 1e-7 of the derivative.  Coordinates that are
+held move with what holds them (``supports.axial`` = "displacement").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import attrs
+import numpy as np
+
+from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.model import Model, build_model
+from raceway.core.ring.kernels.layout import CAGE, FRICTION
+from raceway.core.ring.ring import Evaluation
+from raceway.core.ring.surrogate import surrogate
+from raceway.core.ring.system import System
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.framework.duties import renews, same_bodies
+from raceway.scene.continuous import Key, with_number
+from raceway.scene.scene import Scene
+
+#: Steps at which a function is looked at, with their weights: (8 (f_1 - f_-1) - (f_2 - f_-2)) / 12 h, its error h^4 f^(5) / 30.
+WEIGHTS = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
+
+
+def derivative(values: Mapping[int, np.ndarray], step: float) -> np.ndarray:
+    """Derivative of arrays that are given at multiples -2, -1, 1, 2 of a step."""
+    # In pairs, so that what does not change gives exactly nothing.
+    inner, outer = (values[k] - values[-k] for k in (1, 2))
+    found: np.ndarray = (WEIGHTS[1] * inner + WEIGHTS[2] * outer) / step
+    return found
+
+
+#: Least step of neighbouring models by unit, unless that is much of the number: arrays resolve it, and it changes a bearing little.
+_LEAST = {"m": 1e-7, "N": 0.1, "N m": 1e-4, "deg": 1e-2, "r/min": 1.0, "K": 0.1, "kg": 1e-4, "s": 1e-7, "N s/m": 0.1}
+_ELSE = 1e-7
+#: Step over the number, of two models and of four; errors of the arrays are its square, and its fourth power.
+_TWO, _FOUR = 5e-6, 5e-4
+#: What the least step may be of the number; first try of a step along a direction, over the number, and over the least step at 0.
+_MUCH, _FIRST, _FIRST_AT_0 = 1e-3, 1e-6, 0.01
+#: Arrays whose second difference is a larger part of the first than this have a kink; differences that are rounding.
+_KINK, _ARRAY_ROUNDING = 0.02, 1e-12
+#: Arrays of a system that forces at rest depend on, and those that only a motion does.
+_AT_REST, _IN_MOTION = ("scalars", "table", "stiffness", "load", "law_params"), ("mass", "damping", "force_params")
+
+
+class NoDerivative(Exception):  # noqa: N818  (an answer, told in the table, no failure)
+    """Why a quantity has no derivative by a key, in one sentence."""
+
+
+@attrs.frozen(eq=False)
+class Direction:
+    """Derivatives of a model's arrays by the number at a key.
+
+    Attributes
+    ----------
+    key : by which;  slopes : name of an array of the system -> its derivative, without those that do not change
+    guess : (5,) of the first guess, with a held axial displacement;  speed : of the excitation's [rad/s]
+    bends : whether arrays have a kink there;  built : models that were built
+    """
+
+    key: Key
+    slopes: dict[str, np.ndarray]
+    guess: np.ndarray
+    speed: float
+    bends: bool
+    built: int
+
+    @property
+    def tried(self) -> float:
+        """A small first step, in the unit of the key."""
+        return _FIRST * abs(self.key.value) or _FIRST_AT_0 * _least(self.key)
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether anything changes that forces at rest may depend on."""
+        return bool(self.guess.any()) or any(name in self.slopes for name in _AT_REST)
+
+    @cached_property
+    def nothing(self) -> bool:
+        """Whether nothing changes at all."""
+        return not self.slopes and not self.guess.any() and self.speed == 0.0
+
+    def moved(self, system: System, by: float) -> System:
+        """The system with its arrays moved along by a change of the number."""
+        return attrs.evolve(system, **{name: getattr(system, name) + by * slope for name, slope in self.slopes.items()})
+
+
+def direction_of(model: Model, key: Key) -> Direction:
+    """Derivatives of a model's arrays by one key.
+
+    Raises
+    ------
+    NoDerivative
+        There is none, with the reason.
+    """
+    solved = model.scene.bearing.preloaded or renews(model.scene.contact.law)
+    step, near = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solved else (_model_step(key, _TWO), (-1, 1))
+    here, slopes, bends = surrogate(model.system), {}, False
+    _scene(model, key, -step)  # a key at the end of its range is refused, whatever it does
+    ahead = _model(model, key, step)
+    if _same(model, ahead):
+        return Direction(key, {}, np.zeros(5), 0.0, False, 1)
+    models = {k: ahead if k == 1 else _model(model, key, k * step) for k in near}
+    systems = {k: surrogate(one.system) for k, one in models.items()}
+    for name in (*_AT_REST, *_IN_MOTION):
+        values = {k: getattr(one, name) for k, one in systems.items()}
+        middle = getattr(here, name)
+        if all(np.array_equal(one, middle) for one in values.values()):
+            continue
+        if any(one.shape != middle.shape for one in values.values()):
+            raise NoDerivative("switches a part of the model on or off, which is no small change")
+        slopes[name] = _derivative(values, step)
+        bends |= _bent(values, middle)
+    guess = _derivative({k: one.guess for k, one in models.items()}, step)
+    speed = 0.0
+    if model.excitation is not None and model.excitation.period_s is not None:
+        speed = float(_derivative({k: np.array(speed_of(one)) for k, one in models.items()}, step))
+    return Direction(key, slopes, guess, speed, bends, len(models))
+
+
+def _same(model: Model, other: Model) -> bool:
+    """Whether nothing differs, to the last bit."""
+    here, there = surrogate(model.system), surrogate(other.system)
+    arrays = all(np.array_equal(getattr(here, name), getattr(there, name)) for name in (*_AT_REST, *_IN_MOTION))
+    moves = model.excitation is not None and model.excitation.period_s is not None
+    return arrays and np.array_equal(model.guess, other.guess) and not (moves and speed_of(model) != speed_of(other))
+
+
+def speed_of(model: Model) -> float:
+    """Of the excitation [rad/s]."""
+    return 2.0 * np.pi / float(model.excitation.period_s)
+
+
+def _derivative(values: dict[int, np.ndarray], step: float) -> np.ndarray:
+    if 2 in values:
+        return derivative(values, step)
+    return (values[1] - values[-1]) / (2.0 * step)
+
+
+def _bent(values: dict[int, np.ndarray], middle: np.ndarray) -> bool:
+    """Whether one side differs from the other; a number whose both sides differ alike has a turning point."""
+    first, second = np.abs(values[1] - values[-1]), np.abs(values[1] + values[-1] - 2.0 * middle)
+    rounding = _ARRAY_ROUNDING * np.abs(middle).max(initial=0.0)
+    return bool(((second > _KINK * first + rounding) & (first > 0.1 * second)).any())
+
+
+def _model_step(key: Key, relative: float) -> float:
+    """Of the models, in the unit of the key."""
+    size = abs(key.value)
+    return max(relative * size, min(_least(key), _MUCH * size)) if size else _least(key)
+
+
+def _least(key: Key) -> float:
+    return _LEAST.get(key.unit, _ELSE)
+
+
+def _scene(model: Model, key: Key, step: float) -> Scene:
+    """The scene with another number at the key."""
+    try:
+        scene = with_number(model.scene, key.path, key.value + step)
+    except ValueError as why:
+        if key.value == 0.0:
+            raise NoDerivative("is 0, the end of its range: it switches a part on, which is no small change") from None
+        raise NoDerivative(f"is at the end of its range: {why}") from None
+    if not same_bodies(model.scene, scene):
+        raise NoDerivative(
+            "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. "
+            "bodies.kind = 'rigid' has one"
+        )
+    return scene
+
+
+def _model(model: Model, key: Key, step: float) -> Model:
+    """The model at another number; the plan stays."""
+    scene = _scene(model, key, step)
+    try:
+        return build_model(scene, model.plan)
+    except RacewayError as why:
+        raise NoDerivative(f"no model can be built at {key.value + step:.6g}: {why}") from None
+
+
+#: Part of a gap, and of the stiffness, that the outermost step may move; largest step over the number at the key.
+_MOVED, _LARGEST = 0.004, 0.01
+#: Part of the way to a knot of the tables of compliances that a step may go, four of which then stay on one side.
+_KNOT = 0.25
+#: A step over the number so small that rounding shows: a contact is about to open or to close.
+_ROUGH = 1e-7
+#: Gaps below this part of the deepest one count as closed contacts without load.
+_TOUCHING = 1e-9
+#: Differences of second and of fourth order of a smooth function differ by far less than this part of either, and rounding.
+_BENT, _ROUNDING, _BENDS = 0.01, 1e-7, "the model has a kink there: to either side derivatives are others"
+_AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
+
+
+@attrs.frozen(eq=False)
+class StaticGradient:
+    """Derivatives of an equilibrium, each by the number at one key.
+
+    Attributes
+    ----------
+    direction : of the model's arrays;  step : of the differences, in the unit of the key; 0 where it changes nothing at rest
+    displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
+    remark : why they may not be smooth; empty where they are
+    """
+
+    direction: Direction
+    step: float
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    contact_force: np.ndarray
+    remark: str
+
+    @property
+    def key(self) -> Key:
+        """By which."""
+        return self.direction.key
+
+    @property
+    def models(self) -> int:
+        """Models that were built."""
+        return self.direction.built
+
+
+@attrs.frozen(eq=False)
+class _State:
+    """One state of a model: residual of the balance (5,) with its tangent (5, 5), and what a result tells of the contacts."""
+
+    residual: np.ndarray
+    tangent: np.ndarray
+    contacts: Evaluation
+
+    def same(self, other: _State) -> bool:
+        """Whether nothing differs, to the last bit."""
+        pairs = [(self.residual, other.residual), (self.tangent, other.tangent)]
+        names = ("stiffness", "damping", "contact_force", "gap")
+        pairs += [(getattr(self.contacts, name), getattr(other.contacts, name)) for name in names]
+        return all(np.array_equal(one, two) for one, two in pairs)
+
+
+def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticGradient:
+    """Derivatives of an equilibrium by one key.
+
+    Raises
+    ------
+    NoDerivative
+        There is none, with the reason.
+    """
+    direction = direction_of(model, key)
+    try:
+        return _gradient(model, direction, equilibrium)
+    except ConvergenceError as why:
+        raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
+
+
+def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> StaticGradient:
+    system, q, ball = surrogate(model.system), equilibrium.displacement, equilibrium.ball
+    here = _state(system, q, ball)
+    step, remark = _difference_step(system, direction, equilibrium, here) if direction.at_rest else (0.0, "")
+    if step == 0.0:
+        size = len(here.contacts.contact_force)
+        nothing = np.zeros(5), np.zeros((5, 5)), np.zeros((5, 5)), np.zeros(size)
+        return StaticGradient(direction, 0.0, *nothing, "")
+    systems = {k: direction.moved(system, k * step) for k in WEIGHTS}
+    residual = derivative({k: _state(one, q, ball).residual for k, one in systems.items()}, step)
+    moved = _moved(system, here.tangent, residual, direction.guess)
+    states = {k: _state(one, q + k * step * moved, ball).contacts for k, one in systems.items()}
+    loaded = here.contacts.contact_force > 0.0
+    if any(((one.contact_force > 0.0) != loaded).any() for one in states.values()):
+        remark = _AT_THE_EDGE
+    stiffness, damping = {}, {}
+    for k, one in states.items():
+        still, place = systems[k].without(CAGE), q + k * step * moved
+        held = still.stiffness_at(place, one), still.damping_at(place, one)
+        stiffness[k], damping[k] = still.rows_following(place, one, *held)
+    slope = derivative(stiffness, step)
+    rounding = _ROUNDING * np.abs(stiffness[1]).max() / step
+    bent = np.abs((stiffness[1] - stiffness[-1]) / (2.0 * step) - slope).max()
+    if not remark and (direction.bends or bent > _BENT * np.abs(slope).max() + rounding):
+        remark = _BENDS
+    force = derivative({k: one.contact_force for k, one in states.items()}, step)
+    return StaticGradient(direction, step, moved, slope, derivative(damping, step), force, remark)
+
+
+def _state(system: System, q: np.ndarray, ball: np.ndarray) -> _State:
+    """As ``raceway.pipeline.settle`` evaluates it: the balance without friction, then slips at which no contact sticks."""
+    balanced = system.without(CAGE, FRICTION)
+    now = balanced.evaluate(q, ball=ball)
+    residual = now.force + system.stiffness @ q - system.load
+    tangent = balanced.stiffness_at(q, now) + system.stiffness
+    if not system.conservative:
+        place = now.ball.copy()
+        place[:, 2:4] = system.stress_free_slip(q, place)
+        now = system.without(CAGE).evaluate(q, ball=place)
+    return _State(residual, tangent, now)
+
+
+def _moved(system: System, tangent: np.ndarray, residual: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """dq/dp (5,) from dr/dp at fixed q, and from that of the coordinates that are held."""
+    free = system.free > 0.0
+    found = np.where(free, 0.0, held)
+    found[free] = np.linalg.solve(tangent[np.ix_(free, free)], -(residual + tangent @ found)[free])
+    return found
+
+
+def _difference_step(system: System, direction: Direction, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
+    """Step of the differences, and a remark where no step is smooth; 0 where the key changes nothing of the statics at all."""
+    q, ball, tried, value = equilibrium.displacement, equilibrium.ball, direction.tried, direction.key.value
+    one = direction.moved(system, tried)
+    still = _state(one, q, ball)
+    moved = _moved(system, here.tangent, (still.residual - here.residual) / tried, direction.guess)
+    if not direction.guess.any() and still.same(here):
+        return 0.0, ""
+    along = _state(one, q + tried * moved, ball)
+    gap = here.contacts.gap
+    room = np.maximum(np.abs(gap), _TOUCHING * np.abs(gap).max())
+    rates = [np.abs(each.contacts.gap - gap) / tried for each in (still, along)]
+    fastest = max(
+        float((np.maximum(*rates) / room).max()), *(_change(here, each, system.arm) / tried for each in (still, along))
+    )
+    largest = _LARGEST * abs(value) if value else 1e3 * tried
+    # Two steps to either side.
+    step = min(largest, 0.5 * _MOVED / fastest) if fastest > 0.0 else largest
+    least = _ROUGH * largest / _LARGEST
+    if step < least:
+        return least, _AT_THE_EDGE
+    place, next_place = system.table_places(q, here.contacts.ball), one.table_places(q + tried * moved, along.contacts.ball)
+    room = _KNOT * _to_a_knot(place, next_place, here.contacts.contact_force) * tried
+    return min(step, max(room, 10.0 * least)), ""
+
+
+def _to_a_knot(here: np.ndarray, there: np.ndarray, force: np.ndarray) -> float:
+    """The least distance of a loaded contact to a knot of its tables over the way from here to there, both (Z,) or (0,)."""
+    moves = (force[: len(here)] > 0.0) & (there != here)
+    left = np.abs(here - np.round(here))[moves] / np.abs(there - here)[moves]
+    return float(left.min(initial=np.inf))
+
+
+def _change(one: _State, two: _State, arm: float) -> float:
+    """Largest change of the contacts' stiffness over its largest entry, moments made forces."""
+    scale = np.outer(*2 * (np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm]),))
+    before, after = (scale * state.contacts.stiffness for state in (one, two))
+    return float(np.abs(after - before).max() / np.abs(before).max())

@@ -1,0 +1,240 @@
+"""Forces by a closed formula: harmonic along one direction, turning with the rotor, turning while the speed changes."""
+
+from __future__ import annotations
+
+from math import pi, radians
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import attrs
+
+from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from typing import Self
+
+    import numpy as np
+
+    from raceway.core.jit import Kernel
+
+
+@attrs.frozen(kw_only=True)
+class Amplitude:
+    """Options of a harmonic force: how large it is at a speed, and when it peaks."""
+
+    speed_rpm: float = option(unit="r/min", help="whirl speed = spin speed", rule=inside(0.0, 1e9))
+    amplitude: str = option(
+        "unbalance",
+        help="'unbalance': load_share * unbalance * w^2; 'constant': the same force at every speed",
+        rule=one_of("unbalance", "constant"),
+    )
+    unbalance: float | None = option(
+        None, unit="kg m", help="mass times eccentricity of the whole rotor", rule=optional(at_least(0.0))
+    )
+    load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
+    force: float | None = option(
+        None, unit="N", help="amplitude = 'constant': the force on this bearing", rule=optional(at_least(0.0))
+    )
+    reference_speed_rpm: float | None = option(
+        None,
+        unit="r/min",
+        help="amplitude = 'constant' without force: the unbalance force at this speed",
+        rule=optional(positive()),
+    )
+    phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
+    ramp_turns: float = option(0.0, help="turns over which the force grows smoothly from zero", rule=at_least(0.0))
+
+    def __attrs_post_init__(self) -> None:
+        if self.amplitude == "unbalance" and self.unbalance is None:
+            raise ValueError("`amplitude` = 'unbalance' needs the key `unbalance` (kg m)")
+        computable = self.unbalance is not None and self.reference_speed_rpm is not None
+        if self.amplitude == "constant" and self.force is None and not computable:
+            raise ValueError(
+                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
+                "compute it from"
+            )
+
+    @classmethod
+    def examples(cls, **options: Any) -> list[Self]:
+        """Instances for the conformance suite, in every way to state the amplitude."""
+        return [
+            cls(speed_rpm=12000.0, unbalance=3.2e-4, **options),
+            cls(speed_rpm=9000.0, unbalance=6e-4, load_share=0.5, phase_lag_deg=40.0, **options),
+            cls(speed_rpm=15000.0, amplitude="constant", force=300.0, phase_lag_deg=-75.0, **options),
+            cls(speed_rpm=15000.0, amplitude="constant", unbalance=6e-4, reference_speed_rpm=10980.0, **options),
+        ]
+
+    def unused_options(self) -> dict[str, str]:
+        """Options that are given and change nothing, each with the reason."""
+        unused = {}
+        if self.amplitude == "unbalance":
+            # reference_speed_rpm may stand ready for the other amplitude law: comparisons swap that one word.
+            if self.force is not None:
+                unused["force"] = "amplitude = 'unbalance' computes the force from unbalance and speed"
+        elif self.force is not None:
+            why = "the force is given"
+            unused |= {name: why for name in ("unbalance", "reference_speed_rpm") if getattr(self, name) is not None}
+            if self.load_share != 1.0:
+                unused["load_share"] = "the force is given, and it is the force on this bearing"
+        return unused
+
+    @property
+    def whirl_speed(self) -> float:
+        """W [rad/s]."""
+        return self.speed_rpm * pi / 30.0
+
+    @property
+    def frequency_hz(self) -> float:
+        return self.speed_rpm / 60.0
+
+    @property
+    def period_s(self) -> float:
+        return 60.0 / self.speed_rpm
+
+    def phase(self, time: np.ndarray) -> np.ndarray:
+        """Angle of the force (n,) [rad] at times (n,)."""
+        return self.whirl_speed * time - radians(self.phase_lag_deg)
+
+    @property
+    def amplitude_n(self) -> float:
+        """F0 on this bearing [N]."""
+        if self.amplitude == "constant" and self.force is not None:
+            return self.force
+        speed = self.speed_rpm if self.amplitude == "unbalance" else (self.reference_speed_rpm or 0.0)
+        return self.load_share * (self.unbalance or 0.0) * (speed * pi / 30.0) ** 2
+
+    def at_whirl(self, speed_rpm: float) -> Self:
+        """The same force at another whirl speed [r/min]."""
+        fixed: Tables = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
+        return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)
+
+
+@attrs.frozen(kw_only=True)
+class Unidirectional(Amplitude):
+    """F0 cos(W t - lag) along a direction in the radial plane."""
+
+    name: ClassVar[str] = "unidirectional"
+
+    direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
+
+    @classmethod
+    def examples(cls, **options: Any) -> list[Self]:
+        first, second = (
+            super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0)
+        )
+        return first + second
+
+    @property
+    def sense(self) -> int:
+        return 0
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
+        return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
+
+    def kernel(self) -> Kernel:
+        from raceway.core.excitations.harmonic import harmonic
+
+        return harmonic
+
+
+@attrs.frozen(kw_only=True)
+class Bidirectional(Amplitude):
+    """F_y = F0 cos(W t - lag), F_z = F0 sin(W t - lag); backward whirl changes the sign of F_z."""
+
+    name: ClassVar[str] = "bidirectional"
+
+    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+
+    @classmethod
+    def examples(cls, **options: Any) -> list[Self]:
+        first, second = (super(Bidirectional, cls).examples(whirl=whirl, **options) for whirl in ("forward", "backward"))
+        return first + second
+
+    @property
+    def sense(self) -> int:
+        return 1 if self.whirl == "forward" else -1
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        lag = radians(self.phase_lag_deg)
+        return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
+
+    def kernel(self) -> Kernel:
+        from raceway.core.excitations.harmonic import harmonic
+
+        return harmonic
+
+
+@attrs.frozen(kw_only=True)
+class RunUp:
+    """m e w^2 with w from ``first_speed_rpm`` to ``speed_rpm`` over ``duration_s``; identify with 'order_tracking'."""
+
+    name: ClassVar[str] = "run_up"
+
+    first_speed_rpm: float = option(unit="r/min", help="speed at the beginning", rule=inside(0.0, 1e9))
+    speed_rpm: float = option(unit="r/min", help="speed at the end", rule=inside(0.0, 1e9))
+    duration_s: float = option(unit="s", help="time between the two", rule=positive())
+    unbalance: float = option(unit="kg m", help="mass times eccentricity of the whole rotor", rule=at_least(0.0))
+    load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
+    phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
+    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+
+    period_s: ClassVar[None] = None
+
+    @classmethod
+    def examples(cls) -> list[RunUp]:
+        """Instances for the conformance suite."""
+        common: Tables = {"duration_s": 0.5, "unbalance": 3.2e-4, "phase_lag_deg": 20.0}
+        return [
+            cls(first_speed_rpm=6000.0, speed_rpm=12000.0, **common),
+            cls(first_speed_rpm=12000.0, speed_rpm=6000.0, whirl="backward", **common),
+        ]
+
+    @property
+    def frequency_hz(self) -> float:
+        """Frequency at the faster end, which sets the time step."""
+        return max(self.speed_rpm, self.first_speed_rpm) / 60.0
+
+    @property
+    def amplitude_n(self) -> float:
+        """Force at the end [N]."""
+        return self.load_share * self.unbalance * (self.speed_rpm * pi / 30.0) ** 2
+
+    @property
+    def sense(self) -> int:
+        return 1 if self.whirl == "forward" else -1
+
+    def phase(self, time: np.ndarray) -> np.ndarray:
+        """Angle of the force (n,) [rad] at times (n,)."""
+        import numpy as np
+
+        first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
+        changing = np.minimum(time, self.duration_s)
+        turned = first * changing + 0.5 * (last - first) / self.duration_s * changing**2
+        return turned + last * (time - changing) - radians(self.phase_lag_deg)
+
+    def steady(self) -> Bidirectional:
+        """The same rotor at its first speed."""
+        return Bidirectional(
+            speed_rpm=self.first_speed_rpm,
+            unbalance=self.unbalance,
+            load_share=self.load_share,
+            phase_lag_deg=self.phase_lag_deg,
+            whirl=self.whirl,
+        )
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
+        share = self.load_share * self.unbalance
+        return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
+
+    def kernel(self) -> Kernel:
+        from raceway.core.excitations.run_up import run_up
+
+        return run_up

@@ -1,6 +1,0 @@
-"""Built-in executors.
-
-serial   in this process;  processes: others on this machine, by the standard library
-joblib   processes on this machine
-dask     workers of a dask scheduler
-"""

@@ -1,0 +1,210 @@
+"""Dynamic stiffness at one frequency: of whole turns, by least squares, of the tangent, over several whirl speeds."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.framework.options import between, option, worded
+
+if TYPE_CHECKING:
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.core.signals.identification import Identification
+    from raceway.core.stepping.record import Record
+
+
+def whole_turns(record: Record) -> Record:
+    """The last whole turns of a record; the record itself where it holds nothing else or less than one turn."""
+    per_turn = record.schedule.steps_per_turn // record.schedule.stride
+    length = len(record.time) // per_turn * per_turn
+    if length in (0, len(record.time)):
+        return record
+    names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
+    return attrs.evolve(record, **{name: getattr(record, name)[-length:] for name in names})
+
+
+@attrs.frozen
+class SineFit:
+    """Mean, linear drift and the first harmonics fitted together; Z from the first."""
+
+    name: ClassVar[str] = "sine_fit"
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, least squares with drift and harmonics"
+    )
+
+    harmonics: int = option(5, help="multiples of the excitation's frequency in the fit", rule=between(1, 50))
+
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+
+        record, frequency = records[0], model.excitation.frequency_hz
+        signals = np.hstack([record.force, record.displacement])
+        lines, rest = fit_lines(record.time, signals, frequency, self.harmonics)
+        force, line = lines[0, :5], lines[0, 5:]
+        whole = stiffness(force, line)
+        per_turn = record.schedule.steps_per_turn // record.schedule.stride
+        straight = without_drift(record.time, signals, frequency)
+        single = []
+        for turn in range(len(record.time) // per_turn):
+            part = slice(turn * per_turn, (turn + 1) * per_turn)
+            one, _ = fit_lines(record.time[part], straight[part], frequency, self.harmonics)
+            single.append(stiffness(one[0, :5], one[0, 5:]))
+        scale = np.linalg.norm(line[1:3]) * np.sqrt(0.5 * len(record.time))
+        other = stiffness(
+            fourier_line(record.time, record.force, frequency), fourier_line(record.time, record.displacement, frequency)
+        )
+        return identification(
+            self.definition, frequency, force, line, model.mass_used,
+            residual=float(np.linalg.norm(rest[:, 6:8]) / scale) if scale > 0 else None,
+            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if len(single) > 1 else None,
+            window=float(abs(other - whole) / abs(whole)),
+        )  # fmt: skip
+
+
+@attrs.frozen
+class Tangent:
+    """Response of M q'' + C q' + K q = F e^{jwt} with the 5x5 tangent of the equilibrium; no time integration."""
+
+    name: ClassVar[str] = "tangent"
+    needs: ClassVar[frozenset[str]] = frozenset({"equilibrium", "period"})
+    definition: ClassVar[str] = (
+        "tangent: small harmonic force about the static equilibrium, tilts as supported, in the direction of the force; balls "
+        "between damped contacts follow at its frequency"
+    )
+
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals.identification import identification
+
+        system, excitation = model.system, model.excitation
+        w = 2.0 * np.pi * excitation.frequency_hz
+        samples = 64
+        force = np.zeros(5, dtype=complex)
+        for k in range(samples):
+            phase = np.exp(-2j * np.pi * k / samples)
+            force += 2.0 / samples * phase * system.outer_force(k / samples / excitation.frequency_hz)
+        chosen = system.free > 0.0
+        viscous = system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
+        dynamic = equilibrium.stiffness_rows_held + viscous + system.stiffness - w**2 * system.mass + 1j * w * system.damping
+        line = np.zeros(5, dtype=complex)
+        line[chosen] = np.linalg.solve(dynamic[np.ix_(chosen, chosen)], force[chosen])
+        return identification(self.definition, excitation.frequency_hz, force, line, model.system.mass[1, 1])
+
+
+@attrs.frozen
+class Fft1x:
+    """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
+
+    name: ClassVar[str] = "fft_1x"
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
+    )
+
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+
+        record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
+        force = fourier_line(record.time, record.force, frequency)
+        line = fourier_line(record.time, record.displacement, frequency)
+        whole = stiffness(force, line)
+        other, _ = fit_lines(record.time, np.hstack([record.force, record.displacement]), frequency, 3)
+        per_turn = record.schedule.steps_per_turn // record.schedule.stride
+        turns = len(record.time) // per_turn
+        single = []
+        if turns > 1:
+            force_straight = without_drift(record.time, record.force, frequency)
+            straight = without_drift(record.time, record.displacement, frequency)
+        for turn in range(turns if turns > 1 else 0):
+            part = slice(turn * per_turn, (turn + 1) * per_turn)
+            force_1 = fourier_line(record.time[part], force_straight[part], frequency)
+            single.append(stiffness(force_1, fourier_line(record.time[part], straight[part], frequency)))
+        motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
+        wt = 2.0 * np.pi * frequency * record.time[:, None]
+        pure = (line[:3] * np.exp(1j * wt)).real
+        scale = np.sqrt((pure**2).sum())
+        return identification(
+            self.definition, frequency, force, line, model.mass_used,
+            residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
+            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if single else None,
+            window=float(abs(stiffness(other[0, :5], other[0, 5:]) - whole) / abs(whole)),
+        )  # fmt: skip
+
+
+#: Share by which the largest speed exceeds the smallest.  What Z has beyond its form, e w^2 with w over the mean speed, shifts K by e
+#: and is seen as a misfit of e times that share: where the time step's error is as large, K is off by 1 / 0.05 = 20 times that error.
+_APART = 0.05
+_RULE = (
+    f"at least two speeds greater than 0, the largest {100.0 * _APART:g} % or more above the smallest: closer ones hide a K that is off by "
+    f"{1.0 / _APART:g} times the time step's error"
+)
+
+
+def _speeds(_instance: object, _attribute: object, value: tuple[float, ...]) -> None:
+    if len(value) < 2 or min(value) <= 0.0 or max(value) < (1.0 + _APART) * min(value):
+        raise ValueError(f"must be a list of {_RULE}")
+
+
+@attrs.frozen
+class ImpedanceFit:
+    """K and C of Z(w) = K - m w^2 + j w C by least squares over whirl speeds, at the scene's spin speed and force; m is known.
+
+    Notes
+    -----
+    K changes with the spin speed of the balls and with the amplitude: a fitted m would take what K loses over the speeds.  So
+    spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, as in every K of this program.
+    Free tilts lean with a shape that changes with w, and gyroscopic moments are linear in w: Z is of another form then, and the
+    misfit tells.  ``window`` is the largest misfit over the whirl speeds, over |Z| there.
+    """
+
+    name: ClassVar[str] = "impedance_fit"
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period", "speeds"})
+    definition: ClassVar[str] = (
+        "secant: K and C of Z = K - m w^2 + j w C, m known, by least squares over several whirl speeds at one spin speed"
+    )
+
+    speeds_rpm: tuple[float, ...] = option(
+        unit="r/min",
+        help="whirl speeds of the force that are run at the scene's spin speed, at least two; best around the scene's own",
+        rule=worded(_speeds, _RULE),
+    )
+
+    @classmethod
+    def examples(cls) -> list[ImpedanceFit]:
+        """Instances for the conformance suite."""
+        return [cls(speeds_rpm=(7200.0, 9600.0, 12000.0, 14400.0, 16800.0))]
+
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals.identification import fourier_line, identification, stiffness
+
+        records = [whole_turns(record) for record in records]
+        w = np.array([2.0 * pi / (r.schedule.dt * r.schedule.steps_per_turn) for r in records])
+        lines = [
+            (fourier_line(r.time, r.force, s / (2.0 * pi)), fourier_line(r.time, r.displacement, s / (2.0 * pi)))
+            for r, s in zip(records, w, strict=True)
+        ]
+        z = np.array([stiffness(force, line) for force, line in lines])
+        own, mass = 2.0 * pi * model.excitation.frequency_hz, model.mass_used
+        nearest = int(np.argmin(np.abs(w - own)))
+        k, damping = float((z.real + mass * w**2).mean()), float((w @ z.imag) / (w @ w))
+        fitted, here = k - mass * w**2 + 1j * w * damping, complex(k - mass * own**2, own * damping)
+        away = np.abs(z - fitted)
+        found = identification(self.definition, own / (2.0 * pi), *lines[nearest], mass_used=mass)
+        return attrs.evolve(
+            found,
+            dynamic_stiffness=here,
+            residual=float(np.sqrt(np.mean(away**2)) / abs(z).mean()),
+            window=float((away / np.abs(z)).max()),
+            series=tuple((float(s), complex(one)) for s, one in zip(w, z, strict=True)),
+        )
