@@ -19,7 +19,6 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
-    explained,
     on_scene,
     out_folder,
     plugin_files,
@@ -116,7 +115,6 @@ class RunOptions(NamedTuple):
     pictures: bool
     patience: float
     plugins: tuple[Path, ...]
-    explain: bool
     as_json: bool
 
 
@@ -130,7 +128,6 @@ class RunOptions(NamedTuple):
     help="Stop a run that takes this many times its planned time, or far more memory than planned; inf: never.",
 )  # fmt: skip
 @plugin_files
-@explained
 @common
 @record(RunOptions)
 def run(given: RunOptions) -> int:
@@ -174,7 +171,7 @@ def run(given: RunOptions) -> int:
         failed = write_reports(chosen, result, folder, files)
     from raceway.commands.screen.result import run_screen
 
-    show(content, given.as_json, failed, lambda: run_screen(content, files, given.explain))
+    show(content, given.as_json, failed, lambda: run_screen(content, files))
     return 0
 
 

@@ -60,14 +60,13 @@ COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "-
 #: commands left.
 COMMANDS = {
     "run": ("run", ARTICLE, "--pictures", "--out", "OUT"),
-    "run, explained": ("run", MINIMAL, "--set", "supports.tilt=free", "--explain", "--out", "OUT"),
+    "run, free tilts": ("run", MINIMAL, "--set", "supports.tilt=free", "--out", "OUT"),
     "run, pair": ("run", EXAMPLES / "duplex_db.toml", "--out", "OUT"),
     "run, static": ("run", "STATIC", "--set", "supports.tilt=free", "--out", "OUT"),
     "plan": ("plan", ARTICLE),
     "plan, elastic": ("plan", EXAMPLES / "b7206_elastic.toml"),
     "check": ("check", ARTICLE),
     "compare": ("compare", ARTICLE, *FAST, *FIVE, "--out", "OUT"),
-    "compare, explained": ("compare", ARTICLE, *FAST, *FIVE, "--explain", "--no-pictures", "--out", "OUT"),
     "verify": ("verify", "--only", "harris-table-6.1"),
     "verify, all": ("verify", "--only", "harris-table-6.1", "--all"),
     "precision": ("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--repeats", "1", "--out", "OUT"),
@@ -489,7 +488,7 @@ def test_pictures_of_a_command_leave_pyplot_alone():
     """Figures of their own; only ``plot()``, in a notebook, hands out those of pyplot."""
     sources = Path(rw.__file__).parent.rglob("*.py")
     having = {path.name for path in sources if "import pyplot" in path.read_text(encoding="utf-8")}
-    assert having == {"pictures.py", "plot.py"}
+    assert having == {"pictures.py"}
 
 
 def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):

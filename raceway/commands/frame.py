@@ -64,9 +64,6 @@ def common(command: F) -> F:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 
 
-explained = click.option("--explain", is_flag=True, help="Notes on the screen in full, as they stand in the results.")
-
-
 def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
     """The innermost decorator of a command with many options: they come as one record, a named tuple with their names."""
 

@@ -1,4 +1,4 @@
-"""What is known of an error in a few words; result.json and ``--explain`` have the whole of it."""
+"""What is known of an error in a few words; result.json has the sentences."""
 
 from __future__ import annotations
 

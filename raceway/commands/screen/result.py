@@ -27,22 +27,21 @@ from raceway.storage.tables import ReadTables
 _LEFT_OUT_SHOWN = 3
 
 
-def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) -> RenderableType:
+def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
     """One run.
 
     Parameters
     ----------
     result : content of result.json;  files : what was written
-    explain : notes as they stand in result.json, and all that is left out, instead of a few words
     """
     rows = [
         *answer_rows(result),
         *equilibrium_rows(result),
         *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
-        *stiffness_rows(result, explain),
+        *stiffness_rows(result),
         *tolerance_rows(result.get("tolerances")),
-        *error_rows(result, explain),
+        *error_rows(result),
     ]
     rows = only_resolved(rows, result["error"])
     rows += bodies_rows(result.get("model"))
@@ -54,19 +53,17 @@ def run_screen(result: ReadTables, files: Sequence[str], explain: bool = False) 
         Words(result["title"], "bold"),
         Words(_bearing(result), "dim"),
         sections(rows),
-        Words(_left_out(result, explain), "dim"),
+        Words(_left_out(result), "dim"),
+        Words("notes in full: result.json", "dim"),
     ]
-    if not explain:
-        parts.append(Words("notes in full: raceway run ... --explain, or result.json", "dim"))
     return Group(*parts, *written(files))
 
 
-def _left_out(result: ReadTables, explain: bool) -> str:
+def _left_out(result: ReadTables) -> str:
     left_out = result["plan"]["left_out"]
-    some = left_out if explain else left_out[:_LEFT_OUT_SHOWN]
-    told = "; ".join(f"{one['part']} ({one['why']})" for one in some)
-    more = len(left_out) - len(some)
-    return f"left out: {told}{f'; and {more} more, see raceway plan' if more else ''}"
+    parts = "; ".join(f"{row['part']} ({row['why']})" for row in left_out[:_LEFT_OUT_SHOWN])
+    more = len(left_out[_LEFT_OUT_SHOWN:])
+    return f"left out: {parts}{f'; and {more} more, see raceway plan' if more else ''}"
 
 
 def _bearing(result: ReadTables) -> str:

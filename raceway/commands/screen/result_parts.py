@@ -104,7 +104,7 @@ def tolerance_rows(found: ReadTables | None) -> list[Row]:
     return rows
 
 
-def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
+def stiffness_rows(result: ReadTables) -> list[Row]:
     """Parts of Z and the force that they belong to."""
     found = result["identification"]
     if found is None:
@@ -113,7 +113,7 @@ def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
     excited = result["scene"]["excitation"]["kind"]
     lag = found["phase_lag_deg"], found["phase_lag_error_deg"]
     return [
-        ("Dynamic stiffness Z", "", definition if explain else definition.partition(", ")[0]),
+        ("Dynamic stiffness Z", "", definition.partition(", ")[0]),
         ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
         ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
         within("Z imaginary", z["imag"], across, 1e-6, "N/µm", "w C"),
@@ -121,19 +121,16 @@ def stiffness_rows(result: ReadTables, explain: bool) -> list[Row]:
     ]
 
 
-def error_rows(result: ReadTables, explain: bool) -> list[Row]:
+def error_rows(result: ReadTables) -> list[Row]:
     """Relative errors of Z, each with how it was estimated; of a static scene those that are known."""
-    error, told = result["error"], {}
-    for name, how in error["how"].items():
-        told[name] = how if explain else short(how)
+    error = result["error"]
+    notes = {name: short(how) for name, how in error["how"].items()}
     rows: list[Row] = [("Relative error of Z", "", "")]
     static = result["identification"] is None
     for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
         value = error.get(name)
         if value is not None or not static:
-            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", told.get(name, "")))
-    if explain and "model" in told:
-        rows.append(("model", "beside K", told["model"]))
+            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", notes.get(name, "")))
     if static:
         return [("Relative error of stiffness", "", ""), *rows[1:]] if rows[1:] else []
     known = [one for one in result["identification"].get("series", []) if one["error"] is not None]

@@ -10,7 +10,6 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
-    explained,
     keeping,
     on_scene,
     out_folder,
@@ -30,7 +29,6 @@ from raceway.storage.files import writable
 @out_folder
 @click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
 @plugin_files
-@explained
 @common
 def compare(
     scene: Path,
@@ -39,7 +37,6 @@ def compare(
     out: Path | None,
     pictures: bool,
     plugins: tuple[Path, ...],
-    explain: bool,
     as_json: bool,
 ) -> int:
     """Vary some keys of a scene and say which of them causes what: main effects and interactions.
@@ -80,8 +77,7 @@ def compare(
         failed = attempt(lambda: comparison.picture(folder), files)
     from raceway.studies.compare.screen import compare_screen
 
-    words = comparison.words if explain else comparison.short_words
-    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), words, files, not explain))
+    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), comparison.short_words, files))
     with keeping("runs", kept):
         if stopped is not None:
             raise stopped

@@ -51,7 +51,7 @@ class Comparison(Shown, Findings):
 
     @cached_property
     def short_words(self) -> list[str]:
-        """Those of the words that a screen shows unless it is asked for all."""
+        """Those of the words that a screen shows."""
         return in_few_words(self)
 
     def to_dict(self) -> Tables:

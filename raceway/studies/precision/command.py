@@ -11,7 +11,6 @@ from raceway.commands.frame import (
     RESULTS,
     attempt,
     common,
-    explained,
     keeping,
     out_option,
     plugin_files,
@@ -39,7 +38,6 @@ class PrecisionOptions(NamedTuple):
     out: Path | None
     pictures: bool
     plugins: tuple[Path, ...]
-    explain: bool
     as_json: bool
 
 
@@ -56,7 +54,6 @@ class PrecisionOptions(NamedTuple):
 @out_option(f"{RESULTS}/TITLE-precision")
 @click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
 @plugin_files
-@explained
 @common
 @record(PrecisionOptions)
 def precision(given: PrecisionOptions) -> int:
@@ -100,7 +97,7 @@ def precision(given: PrecisionOptions) -> int:
         content,
         given.as_json,
         failed,
-        lambda: precision_screen(content["title"], found.table(), content["words"], files, given.explain),
+        lambda: precision_screen(content["title"], found.table(), content["words"], files),
     )
     return 0
 
