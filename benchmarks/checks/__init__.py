@@ -5,6 +5,7 @@ damage                stores and caches that were damaged
 signals               commands that are asked to end, or killed
 dask                  workers that are killed, unfit or silent
 pages                 pages in a real browser
+unchanged             numbers of results, compared with another commit: --base COMMIT
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 

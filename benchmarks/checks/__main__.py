@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from importlib import import_module
 
@@ -9,8 +10,13 @@ from benchmarks.checks import Row, names, show
 
 
 def rows_of(name: str) -> list[Row]:
-    rows: list[Row] = import_module(f"benchmarks.checks.{name}").rows()
+    options = {"base": arguments.base} if name == "unchanged" else {}
+    rows: list[Row] = import_module(f"benchmarks.checks.{name}").rows(**options)
     return rows
 
 
-sys.exit(show(sys.argv[1:], names(), rows_of))
+parser = argparse.ArgumentParser(prog="python -m benchmarks.checks", description=__doc__)
+parser.add_argument("names", nargs="*", metavar="NAME")
+parser.add_argument("--base", default="", metavar="COMMIT", help="commit that `unchanged` compares with [the last tag]")
+arguments = parser.parse_args()
+sys.exit(show(arguments.names, names(), rows_of))
