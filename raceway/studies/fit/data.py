@@ -24,11 +24,11 @@ def over_time(data: Any, columns: Mapping[str, str] | None) -> bool:
     """
     if hasattr(data, "data_vars"):
         return True
-    heads = _heads(Path(data)) if isinstance(data, str | Path) else read(data)[0].header
+    heads = _heads(Path(data)) if isinstance(data, str | Path) else read_table(data)[0].header
     return any(quantity_of((columns or {}).get(head, head)) == "time" for head in heads)
 
 
-def read(data: Any) -> tuple[NumberTable, str]:
+def read_table(data: Any) -> tuple[NumberTable, str]:
     """Numbers below their heads, and their source: a CSV file's path, or "data".
 
     Raises
@@ -46,7 +46,7 @@ def read(data: Any) -> tuple[NumberTable, str]:
         raise SceneError.at(
             "data", type(data).__name__, "must be a CSV file's path, a mapping of arrays or a pandas.DataFrame"
         )
-    return _from_arrays({str(head): values for head, values in data.items()}), "data"
+    return _table_of_arrays({str(head): values for head, values in data.items()}), "data"
 
 
 def _heads(path: Path) -> list[str]:
@@ -54,7 +54,7 @@ def _heads(path: Path) -> list[str]:
         return read_heads(path)
 
 
-def _from_arrays(given: Mapping[str, Any]) -> NumberTable:
+def _table_of_arrays(given: Mapping[str, Any]) -> NumberTable:
     if not given:
         raise SceneError.at("data", None, "is empty: heads and numbers are needed")
     found = {}

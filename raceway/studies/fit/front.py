@@ -12,7 +12,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.scene.given import as_scene
 from raceway.studies.fit.data import over_time
-from raceway.studies.fit.data import read as read_data
+from raceway.studies.fit.data import read_table
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.kinds import of_record, of_rig, of_table
 from raceway.studies.fit.observed import observed
@@ -101,7 +101,7 @@ def fit(
             "slow roll",
             "belongs to the signals of a rig over time; the data are a table",
         )
-        table, source = read_data(data)
+        table, source = read_table(data)
         told("searching", 1, 2)
         return of_table(observed(table, source, read, columns), read, names)
 

@@ -41,8 +41,8 @@ def signals(found: Found) -> Figure:
         turn = np.minimum((angle / (2.0 * np.pi)).astype(int), found.turning.turns - 1)
         counts = np.maximum(np.bincount(turn), 1)
         whole.plot(np.bincount(turn, record.time) / counts, _MICRO * np.bincount(turn, values) / counts, color=colour)
-    _label(first, "turns", "gap [µm]")
-    _label(whole, "time [s]", "mean of a turn [µm]")
+    _axis_labels(first, "turns", "gap [µm]")
+    _axis_labels(whole, "time [s]", "mean of a turn [µm]")
     first.legend(loc="upper right", ncols=2, frameon=False)
     return figure
 
@@ -66,7 +66,7 @@ def draw_spectrum(found: Found, axes: Axes) -> None:
     shown = shown[np.argsort(order[shown])]
     axes.semilogy(order[shown], _MICRO * np.maximum(lines[shown], 1e-14), color=_Y, linewidth=0.9)
     axes.set_xticks(range(-int(_ORDERS_SHOWN), int(_ORDERS_SHOWN) + 1))
-    _label(axes, "order (positive: turning with the shaft)", "amplitude [µm]")
+    _axis_labels(axes, "order (positive: turning with the shaft)", "amplitude [µm]")
 
 
 def orbits(found: Found) -> Figure:
@@ -94,10 +94,10 @@ def draw_orbits(found: Found, axes: Axes) -> None:
         curve = _MICRO * abs(line) * circle
         axes.plot(curve.real, curve.imag, color=colour, linestyle=style, label=f"{name}, {_MICRO * abs(line):.3g} µm")
     axes.set_aspect("equal")
-    _label(axes, "y [µm]", "z [µm]")
+    _axis_labels(axes, "y [µm]", "z [µm]")
 
 
-def _label(axes: Axes, x: str, y: str) -> None:
+def _axis_labels(axes: Axes, x: str, y: str) -> None:
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.grid(color="#d8dee4", linewidth=0.7)
