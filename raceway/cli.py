@@ -52,7 +52,7 @@ _LATER = {
     "catalogue": ("raceway.studies.catalogue.command", "List, search and draw the bearings of the catalogue."),
     "law": ("raceway.studies.law.command", "What a contact law does: force, stiffness, damping, energy a cycle."),
     "fit": ("raceway.studies.fit.command", "Numbers of a scene from measured data, with intervals."),
-    "identify": ("raceway.studies.measured.command", "K and C of a bearing from measured signals."),
+    "identify": ("raceway.studies.fit.command", "K and C of a bearing from measured signals."),
     "view": ("raceway.studies.view.command", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
     "mesh": ("raceway.studies.view.mesh_command", "Mesh the bodies of a scene: counts, quality, files."),
     "new-scene": ("raceway.commands.new_scene", "Write a scene to start from."),

@@ -23,12 +23,12 @@ from raceway.studies.band import picture as band_picture
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
 from raceway.studies.fit import picture as fits
+from raceway.studies.fit import picture as measured
+from raceway.studies.fit.shaft_angle import turning
+from raceway.studies.fit.synchronous import order
 from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
-from raceway.studies.measured import figures as measured
-from raceway.studies.measured.angle import turning
-from raceway.studies.measured.orders import order
 from raceway.studies.precision import picture as precision
 from raceway.studies.rig import figures as rig
 from raceway.studies.sensitivities import picture as bars

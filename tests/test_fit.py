@@ -11,14 +11,11 @@ from raceway import ConvergenceError, SceneError, load_scene
 from raceway.scene.continuous import with_number
 from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
-from raceway.studies.fit.disturbed import aliased, spectrum, tone, uneven
-from raceway.studies.fit.estimate import estimate, judged
-from raceway.studies.fit.free import Free, free_keys
+from raceway.studies.fit.disturbances import aliased, spectrum, tone, uneven
+from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
 from raceway.studies.fit.linear import Linear, free_parts, lines_of
-from raceway.studies.fit.observed import observed
-from raceway.studies.fit.predicted import Predicted
-from raceway.studies.measured.recording import write_recording
-from raceway.studies.measured.signals import signals_of
+from raceway.studies.fit.signals import signals_of, write_recording
+from raceway.studies.fit.table import Predicted, observed
 from raceway.studies.rig.sensors import record as rig_record
 from raceway.studies.rig.sensors import response, slow_roll_record, white_noise
 from raceway.studies.shaft.balance import balance

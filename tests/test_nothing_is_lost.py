@@ -14,7 +14,7 @@ from raceway.planning.closed_form import highest_frequency
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats import Vtu
 from raceway.plugins.mesh_files import File
-from raceway.studies.measured.recording import read_recording
+from raceway.studies.fit.signals import read_recording
 from raceway.testing import b7206c, run
 from validation.command_line import ARTICLE, MINIMAL, invoke
 from validation.cubes import block

@@ -22,13 +22,11 @@ from raceway.scene.catalogue import catalogue
 from raceway.scene.continuous import with_number
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
-from raceway.studies.fit.front import fit
-from raceway.studies.measured.from_files import from_files
-from raceway.studies.measured.front import identify as identify_files
-from raceway.studies.measured.identify import identify
-from raceway.studies.measured.inversion import values
-from raceway.studies.measured.recording import write_recording
-from raceway.studies.measured.run_out import slow_roll
+from raceway.studies.fit.fit import fit
+from raceway.studies.fit.identification import from_files, identify, values
+from raceway.studies.fit.identify import identify as identify_files
+from raceway.studies.fit.signals import write_recording
+from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.error_split import silent
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
 from raceway.studies.rig.study import study

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.measured.inversion import invert, scatter, values, with_moment, with_tilt_of
+from raceway.studies.fit.identification import invert, scatter, values, with_moment, with_tilt_of
 from raceway.studies.shaft.balance import find_root
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor, shaft

@@ -8,9 +8,8 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.storage.number_table import read_numbers
-from raceway.studies.measured.heads import columns_of
-from raceway.studies.measured.recording import read_recording
-from raceway.studies.measured.signals import read_signals, signals_of
+from raceway.studies.fit.column_headers import columns_of
+from raceway.studies.fit.signals import read_recording, read_signals, signals_of
 from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"

@@ -10,11 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.studies.measured.angle import turning
-from raceway.studies.measured.marks import marks_of
-from raceway.studies.measured.orders import Order, order
-from raceway.studies.measured.recording import Recording
-from raceway.studies.measured.run_out import less_response
+from raceway.studies.fit.shaft_angle import marks_of, turning
+from raceway.studies.fit.signals import Recording
+from raceway.studies.fit.synchronous import Order, less_response, order
 from raceway.studies.shaft.rotor import rotor
 
 LINE = 3e-6 * np.exp(0.7j)

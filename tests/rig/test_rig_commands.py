@@ -11,8 +11,8 @@ import pytest
 
 from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.scene.rig import Signals
-from raceway.studies.measured.identify import identify
-from raceway.studies.measured.recording import read_recording, write_recording
+from raceway.studies.fit.identification import identify
+from raceway.studies.fit.signals import read_recording, write_recording
 from raceway.studies.rig.error_split import silent
 from raceway.studies.rig.sensors import record, response
 from raceway.studies.shaft.balance import balance

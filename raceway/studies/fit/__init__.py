@@ -1,11 +1,11 @@
-"""``raceway fit``: numbers of a scene, or of a linear model, from measured data.
+"""Numbers from measured data: ``raceway fit`` (numbers of a scene or a linear model) and ``raceway identify`` (K and C of a bearing in a rig).
 
-front           ``raceway.fit``;  fitted: its answer;  command, screen: ``raceway fit``;  picture: data, fit, residuals, region
-free            the numbers that are free, with their ranges
-uncertain       numbers that are not free, and by how much they may be off
-estimate        least squares, confidence region, combinations that the data do not determine
-kinds           fits by kind of data;  data: which kind it is
-rig_line        the rig's line at its sensor beside a record's;  linear: K, C, mass from force and displacement
-disturbed       what disturbs such a record: hum, coloured noise, a force sampled without a filter
-observed        a table of measured K, C, displacements over keys of the scene;  predicted: the scene's answers beside it
+fit, identify    the public functions;  command: their commands;  fitted: the answer of a fit;  picture: figures of both
+signals          records and tables in files or in memory;  column_headers: names of a record's columns
+shaft_angle      angle of the shaft from keyphasor pulses or speed;  synchronous: 1x component over speed, run-out
+identification   from the 1x component at the sensor to force, motion, K and C of the bearing
+estimate         free and uncertain numbers, least squares, confidence region, combinations that the data do not determine
+table            measured K, C, displacements over keys of the scene, compared with the scene's answers
+rig              the rig's 1x component compared with the record's
+linear           K, C, mass from force and displacement;  disturbances: hum, coloured noise, aliasing of such a record
 """

@@ -20,9 +20,114 @@ from raceway.commands.frame import (
     show_progress,
 )
 from raceway.commands.inputs import columns_by_head, has_matplotlib, load, slug, tell_faults
+from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
-from raceway.studies.measured.command import run_out_of, run_out_option, slow_roll_option
+
+
+class IdentifyOptions(NamedTuple):
+    """What ``raceway identify`` is given."""
+
+    signals: Path
+    scene: Path
+    slow_roll: Path | None
+    run_out: str | None
+    columns: tuple[str, ...]
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
+
+
+slow_roll_option = click.option(
+    "--slow-roll", type=PATH, metavar="FILE.csv",
+    help="Signals at a low speed, whose run-out is subtracted.",
+)  # fmt: skip
+run_out_option = click.option(
+    "--run-out", metavar="UM,DEG", help="The run-out itself: amplitude [µm] and angle from the mark [deg]."
+)
+
+
+@click.command(short_help="K and C of a bearing from measured signals.")
+@click.argument("signals", type=PATH)
+@click.option(
+    "--scene", required=True, type=PATH, metavar="SCENE",
+    help="The rig: a scene with a table [rig]; load.axial as in the measurement.",
+)  # fmt: skip
+@slow_roll_option
+@run_out_option
+@click.option(
+    "--map", "columns", multiple=True, metavar='"HEAD=NAME"',
+    help='A column by its head: "X [um]=y_um", or =ignore; repeat for more.',
+)  # fmt: skip
+@set_keys
+@out_option(f"{RESULTS}/SIGNALS")
+@click.option("--pictures", is_flag=True, help="Also draw signals, spectrum and orbits as PNG.")
+@plugin_files
+@common
+@record(IdentifyOptions)
+def identify(given: IdentifyOptions) -> int:
+    """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.
+
+    SIGNALS is a CSV file whose first line names its columns: time_s, y_um, z_um and key (once-per-turn probe) or speed_rpm,
+    or as other programs do, Time (s), X [um], Y [um]; semicolons, tabs and decimal commas are read. Samples may be uneven
+    and the speed may change by some per cent. Writes identify.json.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --out rig
+      raceway identify rig/signals-13000rpm-400N.csv \\
+          --scene examples/test_rig.toml --set load.axial=400 \\
+          --slow-roll rig/slow-roll-13000rpm-400N.csv
+      raceway identify orbit.csv --scene examples/test_rig.toml \\
+          --map "Ch 1=y_um" --map "Ch 2=z_um"
+    """
+    from raceway.scene.reading import rig_of
+
+    registry = registry_with(given.plugins)
+    loaded = load(given.scene, given.changes, registry)
+    rig_of(loaded)
+    vector, columns = run_out_of(given.run_out), columns_by_head(given.columns)
+    if vector is not None and given.slow_roll is not None:
+        raise SceneError.at("--run-out", given.run_out, "the slow roll tells it already: leave one of them out")
+    changed = loaded.title.partition("\n")[1:]
+    folder = writable(given.out or RESULTS / f"{slug(''.join([given.signals.stem, *changed]))}-identified")
+    pictures = given.pictures and has_matplotlib()
+    tell_faults(registry)
+    with show_progress() as progress:
+        from raceway.pipeline.result import write_json
+        from raceway.studies.fit.identify import CONTENT
+        from raceway.studies.fit.identify import identify as study
+
+        found = study(given.signals, loaded, slow_roll=given.slow_roll, run_out=vector, columns=columns, progress=progress)
+    content, files = found.to_dict(), list[str]()
+    failed = attempt(lambda: [write_json(content, folder / CONTENT)], files)
+    if pictures and failed is None:
+        from raceway.studies.fit.picture import write_figures
+
+        failed = attempt(lambda: write_figures(found.found, folder), files)
+    from raceway.studies.rig.screen import identify_screen
+
+    show(content, given.as_json, failed, lambda: identify_screen(content, files))
+    return 0
+
+
+def run_out_of(text: str | None) -> tuple[float, float] | None:
+    """Amplitude [m] and angle [deg] from ``UM,DEG``."""
+    if text is None:
+        return None
+    from math import isfinite
+
+    try:
+        amplitude, angle = (float(word) for word in text.split(","))
+    except ValueError:
+        amplitude, angle = float("nan"), 0.0
+    if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
+        raise SceneError.at(
+            "--run-out", text, "must be an amplitude of at least 0 µm and an angle in deg, for instance 5.0,70"
+        )
+    return 1e-6 * amplitude, angle
 
 
 class FitOptions(NamedTuple):
@@ -87,7 +192,7 @@ def fit(given: FitOptions) -> int:
     folder = writable(given.out or RESULTS / f"{slug(given.data.stem)}-fitted")
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.studies.fit.front import fit as study
+        from raceway.studies.fit.fit import fit as study
 
         found = study(
             given.data,
@@ -104,7 +209,7 @@ def fit(given: FitOptions) -> int:
     failed = attempt(lambda: [found.save(folder)], files)
     if failed is None and given.pictures and has_matplotlib():
         failed = attempt(lambda: [found.picture(folder)], files)
-    from raceway.studies.fit.screen import fit_screen
+    from raceway.studies.fit.fitted import fit_screen
 
     show(content, given.as_json, failed, lambda: fit_screen(content, files))
     return 0

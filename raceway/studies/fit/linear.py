@@ -24,10 +24,9 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.studies.fit.disturbed import TONES, aliased, spectrum, tone, uneven
-from raceway.studies.fit.estimate import Estimate, estimate, judged
-from raceway.studies.fit.free import Free
-from raceway.studies.measured.signals import Signals
+from raceway.studies.fit.disturbances import TONES, aliased, spectrum, tone, uneven
+from raceway.studies.fit.estimate import Estimate, Free, estimate, judged
+from raceway.studies.fit.signals import Signals
 
 #: Part of the force's power that lies below and above the band of lines that are used, and how far these reach beyond it.
 _OUTSIDE, _WIDER = 5e-4, 0.5

@@ -20,7 +20,7 @@ import attrs
 import numpy as np
 
 from raceway.scene.rig import Rig
-from raceway.studies.measured.angle import Turning
+from raceway.studies.fit.shaft_angle import Turning
 from raceway.studies.shaft.bearing import Bearing
 from raceway.studies.shaft.rotor import shaft
 

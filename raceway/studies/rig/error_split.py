@@ -12,11 +12,10 @@ import attrs
 import numpy as np
 
 from raceway.scene.rig import Rig, Signals
-from raceway.studies.measured.angle import turning
-from raceway.studies.measured.identify import changed_rotors, identify
-from raceway.studies.measured.inversion import invert, with_moment, with_tilt_of
-from raceway.studies.measured.recording import Recording
-from raceway.studies.measured.run_out import slow_roll
+from raceway.studies.fit.identification import changed_rotors, identify, invert, with_moment, with_tilt_of
+from raceway.studies.fit.shaft_angle import turning
+from raceway.studies.fit.signals import Recording
+from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.as_printed import amplitude, readings
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
 from raceway.studies.shaft.balance import State

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from raceway import __version__
 from raceway.plugins.pictures import save_figure
 from raceway.storage.tables import Tables
+from raceway.studies.fit.picture import orbits, signals, spectrum
 from raceway.studies.many.page import Page
-from raceway.studies.measured.figures import orbits, signals, spectrum
 from raceway.studies.rig.figures import causes, procedures
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.scene.rig import Rig, Signals
-from raceway.studies.measured.recording import Recording
+from raceway.studies.fit.signals import Recording
 from raceway.studies.shaft.balance import State, balance
 from raceway.studies.shaft.bearing import Bearing
 from raceway.studies.shaft.rotor import rotor

@@ -15,12 +15,12 @@ from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
+from raceway.studies.fit.identification import Found, identify
+from raceway.studies.fit.shaft_angle import turning
+from raceway.studies.fit.signals import Recording, write_recording
+from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
-from raceway.studies.measured.angle import turning
-from raceway.studies.measured.identify import Found, identify
-from raceway.studies.measured.recording import Recording, write_recording
-from raceway.studies.measured.run_out import slow_roll
 from raceway.studies.rig.as_printed import Reading, amplitude, critical_speed, readings
 from raceway.studies.rig.error_split import Cause, split
 from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise

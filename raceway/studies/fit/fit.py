@@ -1,25 +1,33 @@
-"""Fits by kind of data: a table of measured quantities, the signals of a rig, a record of force and displacement."""
+"""Numbers from measured data, for Python and the command line alike: ``raceway.fit``."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+from raceway.commands.progress import telling
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import Registry
+from raceway.framework.doors import door
+from raceway.framework.registry import Registry, registry_with
 from raceway.scene.continuous import continuous_keys
+from raceway.scene.given import as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
-from raceway.studies.fit.estimate import Estimate, estimate
+from raceway.studies.fit.estimate import Estimate, estimate, free_keys
 from raceway.studies.fit.fitted import Derived, Fitted, Series
-from raceway.studies.fit.free import free_keys
+from raceway.studies.fit.identification import roll_of
 from raceway.studies.fit.linear import Linear, fit_lines, free_parts, lines_of
-from raceway.studies.fit.observed import MEASURED, Observed, refuse_few
-from raceway.studies.fit.predicted import Predicted
-from raceway.studies.fit.rig_line import RigLine, refuse_across
-from raceway.studies.measured.orders import Order
-from raceway.studies.measured.recording import recording_of
-from raceway.studies.measured.run_out import RunOut
-from raceway.studies.measured.signals import Signals
+from raceway.studies.fit.rig import RigLine, refuse_across
+from raceway.studies.fit.signals import Signals, over_time, read_table, recording_of, signals_of
+from raceway.studies.fit.synchronous import Order, RunOut, given
+from raceway.studies.fit.table import MEASURED, Observed, Predicted, observed, refuse_few
+
+if TYPE_CHECKING:
+    from raceway.commands.progress import ShowProgress
+
 
 #: Words of keys by which a bearing is damped: without a free one C is the scene's, not the signals'.
 _DAMPING = ("damping", "time_constant", "loss_factor")
@@ -180,3 +188,91 @@ def _series(
         )
         for k, (name, values) in enumerate(data.values.items())
     ]  # fmt: skip
+
+
+@door
+def fit(
+    data: Any,
+    scene: Any = None,
+    free: Iterable[str] | str = (),
+    *,
+    mass: float | None = None,
+    slow_roll: Any = None,
+    run_out: tuple[float, float] | None = None,
+    columns: Mapping[str, str] | None = None,
+    plugins: Iterable[str | Path] = (),
+    progress: ShowProgress = None,
+) -> Fitted:
+    """Numbers of a scene from measured data, by least squares with the scene's exact derivatives.
+
+    Parameters
+    ----------
+    data : CSV file, mapping of heads to arrays (n,) or pandas.DataFrame: a table of measured quantities over keys of the scene,
+        ``load.axial [N], K [N/um], K error [N/um]``, errors as half-widths at 95 %; or the signals of a rig that ``identify`` reads;
+        or a record of force and displacement, ``time_s, force_n, x_um``, of one axis or two
+    scene : Scene, path, TOML text or dict of tables; with a table ``rig`` for signals; None for a record of force and displacement
+    free : keys such as "bearing.contact_angle_deg", a search begins at the scene's numbers; of a record "K", "C", "mass"
+    mass : that moves with a record's displacement, where it is known [kg]; None: it is free
+    slow_roll, run_out : of a rig's signals, as ``identify`` takes them
+    columns : head -> what it is taken for, or "ignore"
+    plugins : files of one-off plug-ins that the scene uses
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+
+    Returns
+    -------
+    Fitted
+        ``found[key]`` the number, ``found.half_width(key)`` that of its interval at 95 %, ``warnings`` what the data do not determine
+
+    Raises
+    ------
+    SceneError
+        What is wrong with data, keys or scene.
+    ConvergenceError
+        The scene has no answer where the search begins, or the search finds no end.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> data = {"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [39.38, 67.43, 98.77]}
+    >>> found = rw.fit(data, {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, "bearing.contact_angle_deg")
+    >>> found.determined, found.estimate.freedom
+    (True, 2)
+    """
+    names = [part for word in free for part in word.split(",")]
+    registry = registry_with(plugins)
+    with telling(progress) as told:
+        told("reading", 0, 2)
+        record = signals_of(data, columns) if over_time(data, columns) else None
+        if record is not None and any(name.startswith("force") for name in record.columns):
+            refuse(
+                scene is not None,
+                "scene",
+                "a record of force and displacement is fitted by a linear model, not by a scene: leave it out",
+            )
+            refuse(
+                slow_roll is not None or run_out is not None, "slow roll", "belongs to the signals of a rig, without a force"
+            )
+            told("searching", 1, 2)
+            return of_record(record, names, mass)
+        refuse(mass is not None, "mass", "belongs to a record of force and displacement; a scene has its own")
+        refuse(scene is None, "scene", "is missing: give --scene, whose answers the data are fitted by")
+        read = as_scene(scene, plugins=plugins)
+        if record is not None:
+            roll = roll_of(None if slow_roll is None else signals_of(slow_roll, columns))
+            told("searching", 1, 2)
+            known = None if run_out is None else given(*run_out)
+            return of_rig(record, read, names, registry, known, roll)
+        refuse(
+            slow_roll is not None or run_out is not None,
+            "slow roll",
+            "belongs to the signals of a rig over time; the data are a table",
+        )
+        table, source = read_table(data)
+        told("searching", 1, 2)
+        return of_table(observed(table, source, read, columns), read, names)
+
+
+def refuse(wrong: bool, path: str, why: str) -> None:
+    """``SceneError`` at an argument that does not belong to the data."""
+    if wrong:
+        raise SceneError.at(path, None, why)

@@ -20,15 +20,12 @@ from raceway.pipeline.result import Result
 from raceway.scene.continuous import key_of, with_number
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
-from raceway.studies.fit.free import Free
-from raceway.studies.fit.observed import COVERAGE
-from raceway.studies.fit.uncertain import uncertain
-from raceway.studies.measured.angle import turning
-from raceway.studies.measured.from_files import refuse_no_load
-from raceway.studies.measured.identify import seen
-from raceway.studies.measured.orders import Order, order
-from raceway.studies.measured.recording import Recording
-from raceway.studies.measured.run_out import RunOut
+from raceway.studies.fit.estimate import Free, uncertain
+from raceway.studies.fit.identification import refuse_no_load, seen
+from raceway.studies.fit.shaft_angle import turning
+from raceway.studies.fit.signals import Recording
+from raceway.studies.fit.synchronous import Order, RunOut, order
+from raceway.studies.fit.table import COVERAGE
 from raceway.studies.shaft.balance import State, balance
 from raceway.studies.shaft.bearing import bearing
 from raceway.studies.shaft.rotor import rotor
