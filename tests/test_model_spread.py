@@ -7,6 +7,7 @@ import pytest
 
 import raceway as rw
 from raceway.commands.screen.result_answer import model_rows
+from raceway.framework.estimate import Estimate
 from raceway.studies.sweep.variables import values_of
 from validation.command_line import EXAMPLES
 
@@ -129,7 +130,7 @@ def test_the_screen_says_it_beside_k():
 def test_a_change_above_all_of_k_is_a_number_that_people_read():
     rows = model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
         {"key": "kinematics.ring_growth", "value": True, "kyy": 3.7},
-    ]}, "how": {"model": ""}}}, "kyy")  # fmt: skip
+    ]}, "short": {"model": ""}}}, "kyy")  # fmt: skip
     assert [row[2] for row in rows] == ["model: ring growth would give kyy +370 %: kinematics.ring_growth"]
 
 
@@ -138,7 +139,7 @@ def test_the_screen_says_where_the_spread_is_not_estimated():
     result = rw.run(EXAMPLES / "run_up.toml").to_dict()
     (row,) = model_rows(result, "equivalent_stiffness", "kyy")
     assert result["error"]["how"]["model"].startswith("not estimated: ") and result["error"]["how"]["model"] in row[2]
-    assert model_rows({"error": {"model": None, "how": {"model": "nothing turns"}}}, "kyy") == []
+    assert model_rows({"error": {"model": None, "short": {"model": Estimate.NOTHING_TURNS().short}}}, "kyy") == []
 
 
 def test_what_is_left_out_by_default_is_said_so():

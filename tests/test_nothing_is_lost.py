@@ -9,6 +9,7 @@ import pytest
 
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.mesh.hex_mesh import HexMesh
+from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
 from raceway.planning.closed_form import highest_frequency
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
@@ -54,7 +55,7 @@ def test_more_harmonics_than_samples_are_refused_by_the_plan():
 
 
 def test_a_number_below_its_error_is_not_resolved(monkeypatch):
-    table = {**no_error("a test"), "total": 1.3}
+    table = {**no_error(Estimate.BEYOND_PLAN()), "total": 1.3}
     monkeypatch.setattr("raceway.pipeline.run.error_table", lambda *_: table)
     result = run(
         scene_from_dict(

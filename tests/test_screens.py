@@ -2,6 +2,7 @@
 
 import ast
 import json
+import pickle
 import re
 from pathlib import Path
 
@@ -12,8 +13,8 @@ from rich.console import Console
 import raceway as rw
 from raceway.bodies.equilibrium import tilts_follow
 from raceway.commands.screen import Words, rows_table
-from raceway.commands.screen.notes import short
 from raceway.commands.screen.result_parts import cost_rows, equilibrium_rows
+from raceway.framework.estimate import Estimate, short
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
@@ -113,28 +114,21 @@ def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
 
 def test_notes_are_short_on_the_screen_and_sentences_in_the_result(tmp_path):
     screen = invoke("run", MINIMAL, "--out", tmp_path).stdout
-    how = json.loads((tmp_path / "result.json").read_text())["error"]["how"]
-    assert "Hann" in how["transient"] and "Hann" not in screen
-    assert all(len(short(note)) <= 48 for note in how.values())
-    assert "notes in full: result.json" in screen
+    error = json.loads((tmp_path / "result.json").read_text())["error"]
+    assert "Hann" in error["how"]["transient"] and "Hann" not in screen
+    assert error["short"].keys() == error["how"].keys() and all(len(words) <= 48 for words in error["short"].values())
+    assert error["short"]["transient"] in screen and "notes in full: result.json" in screen
 
 
-@pytest.mark.parametrize(
-    "note",
-    [
-        "distance from the steady motion, less the part of the time step",
-        "friction remembers how the motion began: 0.0012 between this start and 'ramp'; and free vibration: its leakage",
-        "largest misfit of K - m w^2 + j w C, over |Z| there: at 12000 r/min",
-        "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration; of the "
-        "last window alone, at 15000 r/min",
-        "a stranger's estimate: with a clause, and another one, that goes on for longer than a line of a screen can hold at all",
-    ],
-)
-def test_numbers_of_a_note_stay_and_clauses_go(note):
-    told = short(note)
-    assert len(told) <= 60 < len(note)
-    if "stranger" not in note:
-        assert {word for word in note.split() if word[0].isdigit()} <= {*told.split()}
+@pytest.mark.parametrize("estimate", Estimate, ids=lambda one: one.name)
+def test_numbers_of_a_note_stay_and_clauses_go(estimate):
+    values = dict.fromkeys(("size", "stiffness", "approach", "bound", "ripple", "rpm"), 0.0012)
+    values |= {"steps": 90, "count": 181, "order": 2, "kind": "ramp", "part": "transient"}
+    values |= dict.fromkeys(("reasons", "change", "why", "how", "transient"), "a reason: with a clause, and another one")
+    note = estimate(**values)
+    assert len(note.short) <= 95 and len(note.short) <= len(note) and note.estimate is estimate
+    assert pickle.loads(pickle.dumps(note)).short == note.short
+    assert short("a plain sentence: with a clause") == "a plain sentence: with a clause"
 
 
 def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):

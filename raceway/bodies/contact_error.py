@@ -15,6 +15,7 @@ import numpy as np
 
 from raceway.bodies.pressure import law_of_pair
 from raceway.framework.duties import renews
+from raceway.framework.estimate import Estimate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,7 +30,7 @@ _ROUNDING = 1e-8
 def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
     """Largest relative difference of a loaded contact's approach or stiffness from Hertz's at the same load."""
     if renews(model.scene.contact.law):
-        return None, f"not estimated: what law '{model.scene.contact.kind}' adds to Hertz at the running speed is no error"
+        return None, Estimate.BEYOND_HERTZ(kind=model.scene.contact.kind)
     loaded = equilibrium.contact_force > 0.0
     split = model.system.ball_count
     force = equilibrium.contact_force
@@ -41,11 +42,8 @@ def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
     ])  # fmt: skip
     stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
     if max(off, stiffness) < _ROUNDING:
-        return None, "the law is Hertz's: what it assumes (smooth, dry half-spaces) is not estimated"
-    return max(off, stiffness), (
-        f"largest difference of a contact's stiffness ({stiffness:.1e}) or approach ({off:.1e}) from exact Hertz at the same "
-        "load; not part of the total"
-    )
+        return None, Estimate.HERTZ_ITSELF()
+    return max(off, stiffness), Estimate.AGAINST_HERTZ(stiffness=stiffness, approach=off)
 
 
 def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told:
@@ -56,12 +54,9 @@ def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told
         for name in ("approach_penetration", "approach")
     )
     share = float((left / np.maximum(approach, 1e-300)).max())
-    return share, "largest share of a contact's approach that the law lets the surfaces overlap; not part of the total"
+    return share, Estimate.OVERLAP()
 
 
 def untold(model: Model) -> Told:
     """Of laws that are calibrated to Hertz and nothing more is known of."""
-    return None, (
-        f"law '{model.scene.contact.kind}' is calibrated to Hertz on elastic bodies, and nothing in a run tells how well: compare "
-        "with contact.discretisation = 'nodal' (docs/condensed.md has both for B7206C)"
-    )
+    return None, Estimate.LAW_UNKNOWN(kind=model.scene.contact.kind)

@@ -36,6 +36,7 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.surrogate import compiled, surrogate
 from raceway.core.signals.identification import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError
+from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Run, Settled, distance, settled_value, without_free_vibration
@@ -59,6 +60,8 @@ _REPEATS = 1e-2
 #: What an estimate is good to: a factor of so much.
 _RIGHT = 3.0
 
+#: Why there is no total, of a Z that is identified.
+_TOTAL_UNKNOWN = (Estimate.MESH_UNKNOWN, Estimate.TURNS_DIFFER, Estimate.PART_UNKNOWN)
 _NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
 #: Difference of a contact law from Hertz's that is reported: one of pressures over overlaps is a third off by its form.
 _OTHER_LAW = 0.5
@@ -73,7 +76,7 @@ class Part:
     shift: complex | None = None
 
 
-def no_error(how: str) -> dict[str, Any]:
+def no_error(how: Note) -> dict[str, Any]:
     """The table without numbers, and one reason."""
     return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
 
@@ -101,18 +104,18 @@ def error_warnings(error: dict[str, Any], identified: bool) -> list[str]:
             f"the contact law is off Hertz's by {contact:.2g}, which is not part of the stated error: {error['how']['contact']}"
         )
     why = error["how"]["total"]
-    if identified and error["total"] is None and why.startswith("not estimated: "):
+    if identified and why.estimate in _TOTAL_UNKNOWN:
         found.append(f"the error of Z is {why}")
     return found
 
 
-def body_errors(model: Model, equilibrium: Equilibrium, how: str = "") -> dict[str, Any]:
+def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> dict[str, Any]:
     """The table with what the equilibrium tells, errors of mesh and contacts; of all else ``how``."""
     table = no_error(how)
     table["mesh"], table["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
     loaded = (equilibrium.contact_force > 0.0).any()
-    known = model.bearing.contact_error(model, equilibrium) if loaded else (None, "no contact carries anything")
-    table["contact"], table["how"]["contact"] = known
+    contact = model.bearing.contact_error(model, equilibrium) if loaded else (None, Estimate.UNLOADED())
+    table["contact"], table["how"]["contact"] = contact
     return table
 
 
@@ -132,11 +135,10 @@ def error_table(
     steady : steady motions of an excitation that changes its speed
     on_progress : called in further runs and searches; the error of one that it ends is not known
     """
-    table = body_errors(model, equilibrium)
+    table = body_errors(model, equilibrium, Estimate.NO_MOTION())
     how: dict[str, str] = table["how"]
     if not motions:
-        how |= dict.fromkeys(("transient", "identification"), "no motion is recorded")
-        parts = {"time_step": Part(TOLERANCE, "no time step; residual that the equilibrium is solved to")}
+        parts = {"time_step": Part(TOLERANCE, Estimate.NO_TIME_STEP())}
     else:
         step, second = _time_step(model, equilibrium, motions, found.dynamic_stiffness, on_progress)
         transient = _transient(model, equilibrium, motions, found, step, steady, on_progress)
@@ -156,23 +158,21 @@ def error_table(
     table["bodies"] = sum(parts[name].size or 0.0 for name in ("mesh", "contact") if name in parts)
     for name, part in parts.items():
         table[name], how[name] = part.size, part.how
-    how["total"] = (
-        "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration"
-    )
-    if found.series_error:
-        how["total"] += f"; of the last window alone, at {60.0 * found.frequency_hz:.6g} r/min"
     if model.traits.every_node:
-        how["total"] = "not estimated: that of the mesh is not known, and is the largest"
+        how["total"] = Estimate.MESH_UNKNOWN()
         return table
     if motions and _wanders(motions[-1][1], found):
-        how["total"] = "not estimated: no steady motion was found, and the turns that are used do not repeat"
+        how["total"] = Estimate.TURNS_DIFFER()
         return table
     needed = ("time_step", "transient", *(("identification",) if "speeds" in model.scene.identifier.method.needs else ()))
     unknown = [name for name in needed if motions and parts[name].size is None]
     if unknown:
-        reasons = (f"that of the {name.replace('_', ' ')} is not known ({how[name]})" for name in unknown)
-        how["total"] = f"not estimated: {' and '.join(reasons)}"
+        names = [name.replace("_", " ") for name in unknown]
+        reasons = [f"that of the {name} is not known ({parts[key].how})" for key, name in zip(unknown, names, strict=True)]
+        how["total"] = Estimate.PART_UNKNOWN(reasons=" and ".join(reasons), part=names[0])
         return table
+    one_window = bool(found.series_error)
+    how["total"] = Estimate.SUM_OF_LAST_WINDOW(rpm=60.0 * found.frequency_hz) if one_window else Estimate.SUM()
     table["total"] = _total(parts)
     return table
 
@@ -196,14 +196,14 @@ def _total(parts: dict[str, Part]) -> float | None:
 
 def _identification(model: Model, equilibrium: Equilibrium, found: Identification) -> Part:
     if found.window is None:
-        return Part(None, f"identifier '{model.scene.identifier.kind}' gives no estimate")
+        return Part(None, Estimate.NOT_BY_IDENTIFIER(kind=model.scene.identifier.kind))
     if "speeds" not in model.scene.identifier.method.needs:
-        return Part(found.window, "Fourier line against least squares")
+        return Part(found.window, Estimate.TWO_FITS())
     try:
         size, rpm = largest_misfit(model, equilibrium, found)
     except ConvergenceError as why:
-        return Part(None, f"no motion at the scene's own whirl speed, which is none of those of the fit: {why}")
-    return Part(max(size, found.window), f"largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min")
+        return Part(None, Estimate.NO_MOTION_AT_SPEED(why=why))
+    return Part(max(size, found.window), Estimate.MISFIT(rpm=rpm))
 
 
 def _time_step(
@@ -222,10 +222,9 @@ def _time_step(
     """
     method, first = model.scene.integrator.method, motions[-1][1]
     if method.steady:
-        own = first.whole.counts.get("error")
-        return Part(own, "the method's own estimate, of the displacement over its amplitude"), None
+        return Part(first.whole.counts.get("error"), Estimate.OF_INTEGRATOR()), None
     if model.traits.every_node:
-        return Part(None, "not estimated: a second run of all nodes would cost as much as the first"), None
+        return Part(None, Estimate.SECOND_RUN_COSTS()), None
     if not method.inertial:
         return _sampling(motions, equilibrium, model, value, on_progress), None
     steps = first.whole.schedule.steps_per_turn
@@ -235,13 +234,13 @@ def _time_step(
     other = given or other_steps(steps, bound)
     turns = model.plan.turns if other < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, other, model.system.ball_count):
-        return Part(None, f"not estimated: the record of a second run with {other} steps a turn would not fit"), None
+        return Part(None, Estimate.SECOND_RUN_TOO_LARGE(steps=other)), None
     try:
         again = [
             simulate(_over(one, turns), _at(one, model, equilibrium), on_progress, other, begun=m) for one, m in motions
         ]
     except (ConvergenceError, BeyondPlanError) as why:
-        return Part(None, f"the run with {other} steps a turn failed: {why}"), None
+        return Part(None, Estimate.SECOND_RUN_FAILED(steps=other, why=why)), None
     second = Run.of(model, equilibrium, again[-1]) if other < steps and remembers_its_start(model.scene) else None
     fine, coarse = value, 0j
     # Several speeds are told apart by the identifier alone.
@@ -256,9 +255,9 @@ def _time_step(
         coarse = model.scene.identifier.method.identify([a.record for a in again], equilibrium, model).dynamic_stiffness
     shift = (fine - coarse) / ((steps / other) ** method.order - 1.0) / abs(value)
     if not np.isfinite(abs(shift)):
-        return Part(None, f"the run with {other} steps a turn gives no dynamic stiffness"), second
+        return Part(None, Estimate.SECOND_RUN_WITHOUT_Z(steps=other)), second
     words = "half as many steps" if 2 * other == steps else f"{other} instead of {steps} steps a turn"
-    return Part(float(abs(shift)), f"run with {words}, order {method.order}", -shift), second
+    return Part(float(abs(shift)), Estimate.SECOND_RUN(change=words, order=method.order), -shift), second
 
 
 def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> bool:
@@ -288,14 +287,14 @@ def _sampling(
     steps = motions[-1][1].whole.schedule.steps_per_turn
     count = more_equilibria(steps)
     if not fits(model.plan.turns, count, model.system.ball_count, inertial=False):
-        return Part(None, f"not estimated: the record of a second series with {count} equilibria a turn would not fit")
+        return Part(None, Estimate.SECOND_SERIES_TOO_LARGE(count=count))
     try:
         shift = (value - finer_value(model, equilibrium, motions, value, count, on_progress)) / abs(value)
     except (ConvergenceError, BeyondPlanError) as why:
-        return Part(None, f"the series of {count} equilibria a turn failed: {why}")
+        return Part(None, Estimate.SECOND_SERIES_FAILED(count=count, why=why))
     if abs(shift) <= tolerance:
-        return Part(tolerance, "residual that each equilibrium is solved to; more of them change less")
-    return Part(float(abs(shift)), f"series of {count} instead of {steps} equilibria a turn: harmonics beyond them", shift)
+        return Part(tolerance, Estimate.RESIDUAL())
+    return Part(float(abs(shift)), Estimate.SECOND_SERIES(count=count, steps=steps), shift)
 
 
 def _at(one: Model, model: Model, equilibrium: Equilibrium) -> Equilibrium:
@@ -332,23 +331,23 @@ def _transient(
 ) -> Part:
     method, value, simulation = model.scene.integrator.method, found.dynamic_stiffness, motions[-1][1]
     if method.steady:
-        return Part(0.0, "one turn of the steady motion: nothing dies out")
+        return Part(0.0, Estimate.STEADY())
     memory = not model.system.conservative or model.scene.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):
-        return Part(0.0, "a series of equilibria: nothing dies out")
+        return Part(0.0, Estimate.EQUILIBRIA())
     if compares_with_steady_motion(model.scene):
         try:
             settled = settled_value(model, equilibrium, motions, found, steady, on_progress)
         except BeyondPlanError as why:
-            return Part(None, f"the search for the steady motion was {why}")
+            return Part(None, Estimate.STEADY_BEYOND_PLAN(why=why))
         if settled is not None:
             return _from_steady(settled, value, step)
     if "speeds" in model.scene.identifier.method.needs:
-        return Part(None, "a steady motion of each speed could not be solved for")
+        return Part(None, Estimate.STEADY_SPEEDS_UNKNOWN())
     clean = without_free_vibration(model, equilibrium, simulation)
-    by_turns = Part(found.spread, "largest deviation of a single turn from all turns that are used")
+    by_turns = Part(found.spread, Estimate.TURN_BY_TURN())
     if clean is None:
-        return Part(None, "a single turn tells nothing of a transient") if found.spread is None else by_turns
+        return Part(None, Estimate.SINGLE_TURN()) if found.spread is None else by_turns
     shift = (value - clean.value + clean.lasting) / abs(value)
     if (found.spread or 0.0) > abs(shift) and _unresolved(model, simulation, clean, abs(shift * value)):
         return by_turns
@@ -384,20 +383,20 @@ def _from_other_start(
     model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, own: Part, on_progress: OnProgress | None
 ) -> Part:
     """With friction the transient, and how far away another start leads."""
-    words = "friction remembers how the motion began"
     try:
         size, kind = distance(model, equilibrium, first, run, on_progress)
     except (ConvergenceError, BeyondPlanError) as why:
-        return Part(None, f"{words}, and runs from other starts failed: {why}")
+        return Part(None, Estimate.OTHER_START_FAILED(why=why))
     if not np.isfinite(size):
-        return Part(None, f"{words}, and start '{kind}' gives no dynamic stiffness")
-    return Part(float((own.size or 0.0) + size), f"{words}: {size:.2g} between this start and '{kind}'; and {own.how}")
+        return Part(None, Estimate.OTHER_START_WITHOUT_Z(kind=kind))
+    how = Estimate.OTHER_START(size=size, kind=kind, transient=own.how)
+    return Part(float((own.size or 0.0) + size), how)
 
 
 def _from_steady(settled: complex, value: complex, step: Part) -> Part:
     """Distance from Z of the steady motion, less the part of the time step; relative to the smaller of both."""
     shift = (value - settled) / min(abs(value), abs(settled)) - (step.shift or 0.0)
-    return Part(float(abs(shift)), "distance from the steady motion, less the part of the time step", shift)
+    return Part(float(abs(shift)), Estimate.FROM_STEADY(), shift)
 
 
 #: Least equilibria a turn of a second series.

@@ -35,6 +35,7 @@ from raceway.core.signals.identification import Identification, stiffness
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
+from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import pressures, settle
 from raceway.pipeline.simulate import Simulation
 from raceway.pipeline.transient_error import last_turn
@@ -190,14 +191,14 @@ Secant = Callable[[Model, Equilibrium], float]
 
 def model_spread(
     model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None
-) -> tuple[Tables | None, str]:
+) -> tuple[Tables | None, Note]:
     """``error.model`` of result.json, and ``error.how.model``."""
     values, why = _alternatives(model)
-    if not values:
+    if isinstance(why, Note):
         return None, why
     bound = _bound(model, equilibrium, values)
     if bound < NEGLIGIBLE:
-        return _table([], bound), f"not solved: a closed bound of the change of kyy is {bound:.1e}{why}"
+        return _table([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, found, simulation)
     scene, own = model.scene, {key: getattr(model.scene.kinematics, key) for key in values}
     rows: list[tuple[Tables, Tables]] = []
@@ -219,7 +220,7 @@ def model_spread(
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
             how += f"; not under {changed}: {str(error).splitlines()[0]}"
         rows.append((changed, change))
-    return _table(rows, bound), f"equilibria under each hypothesis and under all; K: {how}{why}"
+    return _table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
@@ -229,17 +230,17 @@ def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
 
 
 def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
-    """Values of the keys left at their defaults that the scene can run with, and what it cannot."""
+    """Values of the keys left at their defaults that the scene can run with, and what it cannot; a note where there are none."""
     scene = model.scene
     if scene.spin_speed == 0.0:
-        return {}, "nothing turns"
+        return {}, Estimate.NOTHING_TURNS()
     left = [key for key in HYPOTHESES if not scene.says(f"kinematics.{key}")]
     if not left:
-        return {}, "every hypothesis of [kinematics] is stated by the scene"
+        return {}, Estimate.HYPOTHESES_STATED()
     if compiled(model.system) is None:
-        return {}, f"not estimated: equilibria of bodies '{scene.bodies.name}' at surface points take too long"
+        return {}, Estimate.POINTS_TOO_SLOW(kind=scene.bodies.name)
     if scene.contact.law.state_size > 0 or scene.spin_changes:
-        return {}, "not estimated: a law with memory or a speed that changes has no steady motion to compare with"
+        return {}, Estimate.NO_STEADY_MOTION()
     values: dict[str, list[Any]] = {}
     why = ""
     for key in left:
@@ -250,7 +251,7 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
                 why = f"{why}; without kinematics.{key}: {error.mistakes[0].message}"
                 break
             values.setdefault(key, []).append(value)
-    return values, why if values else f"no other hypothesis can be run here{why}"
+    return values, why if values else Estimate.NO_OTHER_HYPOTHESIS(why=why)
 
 
 def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> float:

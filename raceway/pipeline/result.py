@@ -20,6 +20,7 @@ from raceway.bodies.running import report_of
 from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line
+from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
 from raceway.pipeline.plausible import NEGLIGIBLE
 from raceway.pipeline.settle import ball_pass_table, largest_contacts, motion_table, pressures
@@ -178,7 +179,7 @@ class Result(Shown):
         return first_order_band(self.model, self.equilibrium)
 
     @cached_property
-    def model_spread(self) -> tuple[Tables | None, str]:
+    def model_spread(self) -> tuple[Tables | None, Note]:
         """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
         from raceway.pipeline.plausible import model_spread
 
@@ -262,8 +263,10 @@ class Result(Shown):
         )
 
     def _errors(self) -> Tables:
-        model, how = self.model_spread
-        return {**self.error, "model": model, "how": {**self.error["how"], "model": how}}
+        model, note = self.model_spread
+        notes = {**self.error["how"], "model": note}
+        how, few = ({name: words(note) for name, note in notes.items()} for words in (str, short))
+        return {**self.error, "model": model, "how": how, "short": few}
 
     def _motion(self) -> Tables | None:
         found = self.simulation

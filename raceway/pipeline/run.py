@@ -27,6 +27,7 @@ from raceway.core.signals.identification import Identification
 from raceway.core.signals.lines import Line, lines
 from raceway.core.stepping.energy import drift, friction_lost, largest_share
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError
+from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
 from raceway.pipeline.plausible import (
@@ -195,7 +196,7 @@ def _run(
 
     equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
     if scene.excitation is None:
-        found = _Found(body_errors(model, equilibrium, "the scene is static: nothing is identified"))
+        found = _Found(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:
         found = _dynamic(model, equilibrium, allowance, partial(_moved, model, equilibrium, progress, near, stay))
     found.error["unresolved"] = unresolved(found.error)
@@ -260,7 +261,7 @@ def _dynamic(
     begun, warned, steady = working_clock(), [], Settled(model)
     if allowance.spent:  # what is computed is kept
         warned.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
-        error = no_error("the run went far beyond its plan")
+        error = no_error(Estimate.BEYOND_PLAN())
     else:
         error = error_table(model, equilibrium, motions, identification, steady, allowance.check)
     identification = with_series_error(model, identification, error, steady, allowance.check)

@@ -46,6 +46,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.core.signals.identification import Identification, fourier_line, stiffness, without_drift
 from raceway.core.stepping.record import Motion, Record, Schedule
 from raceway.errors import BeyondPlanError, ConvergenceError, SceneError, StabilityError
+from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate
 from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
@@ -223,7 +224,7 @@ class Clean:
 
     value: complex
     lasting: complex
-    how: str
+    how: Note
     halves: float | None = None
 
 
@@ -238,12 +239,12 @@ def without_free_vibration(model: Model, equilibrium: Equilibrium, simulation: S
         value, half = _windowed(record, slice(None), frequency), samples // per_turn // 2 * per_turn
         ends = (slice(half), slice(samples - half, None))
         parts = [_windowed(record, one, frequency) for one in ends] if half >= 2 * per_turn else []
-        how = "free vibration: its leakage, a plain against Hann's window over all turns that are used, and its shift of Z"
-        return Clean(value, _lasting(model, equilibrium, record, value), how, abs(parts[0] - parts[1]) if parts else None)
+        halves = abs(parts[0] - parts[1]) if parts else None
+        return Clean(value, _lasting(model, equilibrium, record, value), Estimate.LEAKAGE(), halves)
     if len(whole.time) <= per_turn or not model.scene.integrator.method.inertial:
         return None
     value = _closed(model, equilibrium, whole, per_turn)
-    return Clean(value, 0j, "free vibration that does not close the turn, in the natural modes of the equilibrium")
+    return Clean(value, 0j, Estimate.OPEN_TURN())
 
 
 def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:

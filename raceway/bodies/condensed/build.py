@@ -23,6 +23,7 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.estimate import Estimate
 from raceway.planning.plan import Plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -110,11 +111,11 @@ class CondensedBearing(Bearing):
         try:
             q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
         except ConvergenceError as why:
-            return None, f"no equilibrium with the coarser mesh: {why}"
+            return None, Estimate.COARSER_MESH_FAILED(why=why)
         chosen = np.flatnonzero(model.system.free > 0.0)
         fine = np.diag(equilibrium.stiffness_rows_held)[chosen]
         other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
-        return float(np.abs(other / fine - 1.0).max()), "largest change of a diagonal stiffness from a mesh twice as coarse"
+        return float(np.abs(other / fine - 1.0).max()), Estimate.COARSER_MESH()
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""

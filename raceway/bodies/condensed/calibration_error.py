@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from raceway.framework.estimate import Estimate
+
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
@@ -23,17 +25,14 @@ def calibration_error(
     """
     at_inner, at_outer = compliances.calibrations
     if at_inner is None or at_outer is None:
-        return None, "compliances are matched at depth: no contact at surface points was found to calibrate them on"
+        return None, Estimate.NOT_CALIBRATED()
     z = model.system.ball_count
     force = equilibrium.contact_force
     loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
     if not loaded.any():
-        return None, "no ball carries anything"
+        return None, Estimate.NO_BALL_LOADED()
     inner, outer = force[:z][loaded], force[z:][loaded]
     give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
     give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
     left = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
-    return float((left / give).max()), (
-        "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's "
-        "compliance"
-    )
+    return float((left / give).max()), Estimate.CALIBRATED()

@@ -20,6 +20,7 @@ from raceway.core.ring.ring import COORDINATES, Ring
 from raceway.core.ring.surrogate import surrogate
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Motion
+from raceway.framework.estimate import Estimate
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -141,7 +142,7 @@ class ElasticBodies(Bearing):
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         """Not estimated: a second mesh costs more than the run."""
-        return None, "not estimated: run the scene with a finer mesh, or with bodies.kind = 'condensed'"
+        return None, Estimate.FINER_MESH()
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Elements that lock."""

@@ -11,6 +11,7 @@ from raceway.bodies.condensed.calibration_error import calibration_error
 from raceway.bodies.contact_error import untold
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.model import Told
+from raceway.framework.estimate import Estimate
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -85,7 +86,7 @@ class ElasticResultants(ElasticBodies):
         contact: Any = self.bearing.system.contact
         spread = 0.5 * max(float(one.spread) for one in contact.touches)
         size, how = calibration_error(self.compliances, model, equilibrium, spread)
-        return size, how if size is None else how + ", with half the spread over depths of what is taken off the mesh"
+        return size, how if size is None else Estimate.CALIBRATED_ON_MESH()
 
     def _uncertainty(self, model: Model, equilibrium: Equilibrium) -> float:
         """Half the spread over depths of what is taken off, over the compliance of the most loaded contact."""

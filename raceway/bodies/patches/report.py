@@ -22,6 +22,7 @@ from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
 from raceway.core.ring.system import System
 from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError, RacewayError
+from raceway.framework.estimate import Estimate
 from raceway.scene.inner_ring import load_at_edge
 from raceway.storage.tables import Tables
 
@@ -166,9 +167,8 @@ class NodalBearing(Bearing):
             return error, how
         ripple = self._ripple(model, equilibrium)
         if error is not None and error >= ripple:
-            return error, f"{how}; stiffness ripples less, by {ripple:.2g}, with the places of the points"
-        told = "" if error is None else f"; {how} is {error:.2g}"
-        return ripple, f"ripple: radial stiffness at one place of the points over its mean over all places{told}"
+            return error, Estimate.FEWER_POINTS_NOT_RIPPLE(ripple=ripple)
+        return ripple, Estimate.RIPPLE(change="" if error is None else f"; {how} is {error:.2g}")
 
     def _ripple(self, model: Model, equilibrium: Equilibrium) -> float:
         """Largest relative difference of a radial tangent at the equilibrium from the mean over all places of the points."""
@@ -177,7 +177,7 @@ class NodalBearing(Bearing):
 
     def _change_from_coarser(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         if self.coarser is None:
-            return None, "no fewer points to compare with"
+            return None, Estimate.FEWEST_POINTS()
         state = model.system.load.tobytes() + equilibrium.displacement.tobytes()
         if state not in self._errors:
             self._errors[state] = self._compared(self.coarser, model, equilibrium)
@@ -189,10 +189,10 @@ class NodalBearing(Bearing):
             coarse = coarser()
             q, _, _ = attrs.evolve(coarse, load=model.system.load).settle(equilibrium.displacement)
         except RacewayError as why:
-            return None, f"no equilibrium with half as many points: {why}"
+            return None, Estimate.FEWER_POINTS_FAILED(why=why)
         weight = np.array([1.0, 1.0, 1.0, model.system.arm, model.system.arm])
         change = np.abs((q - equilibrium.displacement) * weight).max() / np.abs(equilibrium.displacement * weight).max()
-        return float(change) / 3.0, "a third of the displacement's change from half as many points per semi-axis (order 2)"
+        return float(change) / 3.0, Estimate.FEWER_POINTS()
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few; elements that lock."""

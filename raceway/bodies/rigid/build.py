@@ -16,6 +16,7 @@ from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
+from raceway.framework.estimate import Estimate
 from raceway.framework.plugin_kernel import plugin_kernel
 from raceway.framework.probe import probe_excitation, probe_law
 from raceway.planning.plan import Plan
@@ -35,7 +36,7 @@ class RigidBearing(Bearing):
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """None."""
-        return None, "rigid bodies have no mesh"
+        return None, Estimate.NO_MESH()
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Against Hertz."""

@@ -3,7 +3,6 @@
 text          sections, numbers with units
 rows          a table of rows with the same keys
 wrapping      lines that end between words
-notes         what is known of an error, in a few words
 result        one run;  result_answer: what stands first;  result_parts, result_model: its sections below
 plan          what a scene needs
 kept          the caches

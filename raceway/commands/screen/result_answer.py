@@ -73,13 +73,9 @@ def _range(ends: Sequence[float], unit: str = "") -> str:
 
 def model_rows(result: ReadTables, *quantities: str) -> list[Row]:
     """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
-    spread, why = result["error"]["model"], result["error"]["how"]["model"]
+    spread, why = result["error"]["model"], result["error"]["short"]["model"]
     if spread is None:
-        return (
-            [("", "", f"model: change by hypotheses left at their defaults {why}")]
-            if why.startswith("not estimated")
-            else []
-        )
+        return [("", "", f"model: change by hypotheses left at their defaults {why}")] if why else []
     name = next((one for one in quantities if spread[one] is not None), "")
     of = "" if name in ("", "equivalent_stiffness") else f"{name.replace('_', ' ')} "
     rows: list[Row] = []

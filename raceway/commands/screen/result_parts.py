@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raceway.commands.screen.notes import short
 from raceway.commands.screen.result_answer import loaded_balls, tangent_rows
 from raceway.commands.screen.text import Row, number, tilt_words
 from raceway.framework.shown import in_micro, read_in, within
@@ -124,13 +123,12 @@ def stiffness_rows(result: ReadTables) -> list[Row]:
 def error_rows(result: ReadTables) -> list[Row]:
     """Relative errors of Z, each with how it was estimated; of a static scene those that are known."""
     error = result["error"]
-    notes = {name: short(how) for name, how in error["how"].items()}
     rows: list[Row] = [("Relative error of Z", "", "")]
     static = result["identification"] is None
     for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
         value = error.get(name)
         if value is not None or not static:
-            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", notes.get(name, "")))
+            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", error["short"][name]))
     if static:
         return [("Relative error of stiffness", "", ""), *rows[1:]] if rows[1:] else []
     known = [one for one in result["identification"].get("series", []) if one["error"] is not None]
