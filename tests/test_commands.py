@@ -432,6 +432,7 @@ SLIPS = {
     "file that is there": (["new-scene", "--out", MINIMAL], "exists", ""),
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),
     "unknown format": (["mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, vtu", ""),
+    "format that only reads": (["mesh", MINIMAL, "--format", "msh"], "'msh' only reads; files are written as abaqus, vtu", ""),
     "unknown executor": (["sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"], "dask, joblib, processes, serial", ""),
     "unknown mesher": (["check", MINIMAL, "--set", "mesh.kind=moon"], "installed: file, gmsh, structured", ""),
     "size of no mesh": (["mesh", MINIMAL, *COARSE, "--set", "mesh.element_size=1.0"], "element_size", ""),

@@ -260,7 +260,8 @@ class Format(attrs.AttrsInstance, Protocol):
     """A file format, of meshes (``HexMesh``) or of anything else.
 
     1. ``suffixes``: file endings with the dot.
-    2. ``write(path, what)``, ``read(path)``: what is written is read back the same, sets too, real numbers at least to ten figures.
+    2. ``read(path)``.  ``write(path, what)``, which a format that only reads leaves out: what is written is read back the same, sets
+       too, real numbers at least to ten figures.
     3. A file that is missing or malformed raises a ``RacewayError`` that names it.
     """
 
@@ -432,7 +433,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "steady", "scheme")),
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
-    "format": ("raceway_formats", ("suffixes", "read", "write")),
+    "format": ("raceway_formats", ("suffixes", "read")),
     "bodies": (
         "raceway_bodies",
         ("faults", "traits", "stable_step", "decide", "unused", "cost", "build"),

@@ -1,7 +1,7 @@
-"""Mesh files that meshio reads and writes: .vtu and .msh, hexahedra with their sets.
+"""Mesh files by meshio: hexahedra with their sets.
 
 .vtu   VTK's XML files of unstructured grids, with sets as fields that ParaView can colour
-.msh   files of Gmsh: physical groups of quadrilaterals and points as sets
+.msh   files of Gmsh, read only: physical groups of quadrilaterals and points as sets
 """
 
 from __future__ import annotations
@@ -219,12 +219,12 @@ class Vtu:
         return example()
 
 
-_PHYSICAL, _ENTITY = "gmsh:physical", "gmsh:geometrical"
+_PHYSICAL = "gmsh:physical"
 
 
 @attrs.frozen
 class Msh:
-    """Hexahedral meshes as .msh (read: versions 2 and 4, written: 2.2); sets are physical groups of dimension 2 and 0."""
+    """Reads hexahedral meshes from .msh (versions 2 and 4); sets are physical groups of dimension 2 and 0."""
 
     name: ClassVar[str] = "msh"
     suffixes: ClassVar[tuple[str, ...]] = (".msh",)
@@ -244,27 +244,3 @@ class Msh:
         nodes = {name.removeprefix(_NODES): np.concatenate(parts).ravel() for name, parts in groups["vertex"].items()}
         facets = {name: facets_of_quads(path, cells, np.concatenate(parts)) for name, parts in groups["quad"].items()}
         return used_only(path, content.points, cells, nodes, facets)
-
-    def write(self, path: Path, what: HexMesh) -> None:
-        """Write a mesh; node sets become groups "nodes:NAME", because a name may stand for one group only."""
-        package = meshio()
-        blocks, tags = [("hexahedron", what.cells)], [1]
-        field_data = {"body": np.array([1, 3])}
-        for name in what.facet_sets:
-            if len(what.facet_sets[name]):
-                tags.append(len(tags) + 1)
-                blocks.append(("quad", what.facet_nodes(name)))
-                field_data[name] = np.array([tags[-1], 2])
-        for name, nodes in what.node_sets.items():
-            if len(nodes):
-                tags.append(len(tags) + 1)
-                blocks.append(("vertex", nodes[:, None]))
-                field_data[_NODES + name] = np.array([tags[-1], 0])
-        data = [np.full(len(block[1]), tag, dtype=np.int32) for block, tag in zip(blocks, tags, strict=True)]
-        content = package.Mesh(
-            what.points, blocks, cell_data={_PHYSICAL: data, _ENTITY: [d.copy() for d in data]}, field_data=field_data
-        )
-        store(path, lambda p, c: package.gmsh.write(p, c, fmt_version="2.2"), content)
-
-    def example_content(self) -> HexMesh:
-        return example()

@@ -61,7 +61,9 @@ class FormatSuite(Suite):
         require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
 
     @duty("what is written is read back the same, real numbers to ten figures, with every suffix")
-    def test_round_trip(self, form: Format) -> None:
+    def test_round_trip(self, form: Format) -> str | None:
+        if not hasattr(form, "write"):
+            return "reads only"
         what = self._content(form)
         with tempfile.TemporaryDirectory() as folder:
             for suffix in form.suffixes:
@@ -72,6 +74,7 @@ class FormatSuite(Suite):
                     same(form.read(path), what, TEN_FIGURES),
                     f"`content{suffix}` is read back different from what was written",
                 )
+        return None
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
     def test_bad_files(self, form: Format) -> None:

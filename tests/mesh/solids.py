@@ -1,8 +1,14 @@
-"""Solids for the gmsh mesher, made by Gmsh."""
+"""Solids for the gmsh mesher, made by Gmsh, and meshes as Gmsh writes them."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from raceway.core.mesh.hex_mesh import HexMesh
 
 
 def write(path: Path, solid: str) -> str:
@@ -21,3 +27,21 @@ def write(path: Path, solid: str) -> str:
     finally:
         gmsh.finalize()
     return str(path)
+
+
+def write_msh(path: Path, mesh: HexMesh) -> None:
+    """Write a mesh as .msh 2.2; facet sets are physical groups of quadrilaterals, node sets groups "nodes:NAME" of points."""
+    import meshio
+
+    blocks, tags, names = [("hexahedron", mesh.cells)], [1], {"body": np.array([1, 3])}
+    for name, members, kind, dimension in (
+        *((name, mesh.facet_nodes(name), "quad", 2) for name in mesh.facet_sets),
+        *((f"nodes:{name}", nodes[:, None], "vertex", 0) for name, nodes in mesh.node_sets.items()),
+    ):
+        tags.append(len(tags) + 1)
+        blocks.append((kind, members))
+        names[name] = np.array([tags[-1], dimension])
+    data = [np.full(len(members), tag, dtype=np.int32) for (_, members), tag in zip(blocks, tags, strict=True)]
+    cell_data = {"gmsh:physical": data, "gmsh:geometrical": [part.copy() for part in data]}
+    content = meshio.Mesh(mesh.points, blocks, cell_data=cell_data, field_data=names)
+    meshio.gmsh.write(path, content, fmt_version="2.2")

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     default="vtu",
     show_default=True,
     metavar="NAME",
-    help="Format of the files by its name or ending: vtu, abaqus or inp, msh; plug-ins bring more.",
+    help="Format of the files by its name or ending: vtu, abaqus or inp; plug-ins bring more.",
 )
 @click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
 @plugin_files
@@ -106,10 +106,12 @@ def mesh(
 
 def _format(registry: Registry, word: str) -> Entry:
     """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
-    names = registry.names("format")
+    names = [name for name in registry.names("format") if hasattr(registry.find("format", name).plugin, "write")]
     of_ending = [name for name in names if f".{word}" in registry.find("format", name).plugin.suffixes]
     found = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
-    if found.plugin.__module__.startswith("raceway.plugins.formats") and find_spec("meshio") is None:
+    if found.name not in names:
+        raise RacewayError(f"`--format {word}`: '{found.name}' only reads; files are written as {', '.join(names)}")
+    if found.plugin.__module__ == "raceway.plugins.formats" and find_spec("meshio") is None:
         raise RacewayError(f"files of meshes in the format '{found.name}' need the package meshio: {extra('mesh')}")
     return found
 
