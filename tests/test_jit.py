@@ -8,12 +8,16 @@ import shutil
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
+from ctypes import CFUNCTYPE, c_double
+from itertools import count
 from pathlib import Path
 
 import numba
 import numpy as np
 import pytest
+from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile
+from numba.experimental.function_type import _get_wrapper_address
 
 import raceway
 from raceway import LAW, PluginError, jit
@@ -224,6 +228,20 @@ def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeyp
     loaded = clock["loaded"]
     assert [scaled(factor)(1.0) for factor in (2.0, 3.0)] == [2.0, 3.0]
     assert clock["loaded"] == loaded + 2
+
+
+def test_variants_of_a_closure_from_two_processes_are_loaded_apart(tmp_path, monkeypatch):
+    """numba counts the functions of a process: the symbols of both may have one number."""
+    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
+    for factor in (2.0, 3.0):
+        monkeypatch.setattr(FunctionIdentity, "_unique_ids", count(10**6))
+        scaled(factor).compile()
+    loaded, kernels = clock["loaded"], [scaled(2.0), scaled(3.0)]
+    for kernel in kernels:
+        kernel.compile()
+    assert clock["loaded"] == loaded + 2
+    addresses = [_get_wrapper_address(kernel, kernel.signature) for kernel in kernels]
+    assert [CFUNCTYPE(c_double, c_double)(address)(1.0) for address in addresses] == [2.0, 3.0]
 
 
 def test_division_by_zero_is_not_an_exception():

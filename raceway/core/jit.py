@@ -19,11 +19,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
+from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
@@ -110,6 +112,22 @@ def _numba_cache_in(folder: Path) -> Iterator[None]:
         yield
     finally:
         config.CACHE_DIR = before
+
+
+@contextmanager
+def _numbered_from(base: str) -> Iterator[None]:
+    """Number functions from a number of the kernel's own, by the name of its files.
+
+    Symbols of machine code end in numba's count of the functions of a process.  Two variants of a closure that two processes compile
+    may have one number, and so one symbol: a process that loads both would run the first one for either.
+    """
+    before = FunctionIdentity._unique_ids
+    first = int.from_bytes(hashlib.blake2b(base.encode(), digest_size=7).digest(), "big")
+    FunctionIdentity._unique_ids = count(first)
+    try:
+        yield
+    finally:
+        FunctionIdentity._unique_ids = before
 
 
 _Dispatcher: Any = CPUDispatcher  # numba types a part of it only
@@ -202,7 +220,8 @@ class Kernel(_Dispatcher):
                 with _numba_cache_in(folder.path):
                     files = self._open_cache()
                     files.discard_damaged()
-                    super().compile(self.signature)
+                    with _numbered_from(files.base):
+                        super().compile(self.signature)
                 if not self.stats.cache_hits:
                     files.note_digests()
                     if folder.unwritable:
