@@ -27,11 +27,11 @@ def pictures(content: ReadTables) -> list[Picture]:
     found = []
     with_points = [row for row in rest if row["from_hertz"]["inner"] is not None or row["from_hertz"]["outer"] is not None]
     if with_points:
-        found.append(_pressures(with_points))
+        found.append(_pressure_picture(with_points))
     if rest:
-        found.append(_ball_loads(rest))
+        found.append(_load_picture(rest))
     if moving:
-        found.append(_stiffness(moving))
+        found.append(_stiffness_picture(moving))
     return found
 
 
@@ -43,7 +43,7 @@ def _cases(rows: list[Tables]) -> dict[str, list[Tables]]:
     return out
 
 
-def _pressures(rows: list[Tables]) -> Picture:
+def _pressure_picture(rows: list[Tables]) -> Picture:
     panels = []
     for race in RACES:
         shown = [row for row in rows if row["from_hertz"][race] is not None]
@@ -79,7 +79,7 @@ def _first(axes: Axes, row: Tables) -> str | None:
     return None if row["bodies"] in axes.get_legend_handles_labels()[1] else row["bodies"]
 
 
-def _ball_loads(rows: list[Tables]) -> Picture:
+def _load_picture(rows: list[Tables]) -> Picture:
     panels = []
     for case, some in _cases(rows).items():
         told = "; ".join(f"{row['bodies']} {min(_loads(row)):.0f} to {max(_loads(row)):.0f} N" for row in some)
@@ -102,7 +102,7 @@ def _draw_loads(case: str, rows: list[Tables], axes: Axes) -> None:
     finish(axes, case, "azimuth [deg]", "ball load [N]", 3)
 
 
-def _stiffness(rows: list[Tables]) -> Picture:
+def _stiffness_picture(rows: list[Tables]) -> Picture:
     parts = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))
     panels = []
     for key, name, unit, word in parts:

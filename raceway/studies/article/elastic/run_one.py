@@ -55,7 +55,7 @@ def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fol
         result = run(scene, registry, tell)
         found, cost = _numbers(result.to_dict()), begun.cost(result)
         if folder is not None:
-            found |= _drawn(result, folder)
+            found |= _section(result, folder)
         del result
     except RacewayError as why:
         status, reason = "failed" if why.exit_code == 1 else "refused", " ".join(str(why).split())
@@ -110,7 +110,7 @@ def _numbers(result: ReadTables) -> Tables:
     }
 
 
-def _drawn(result: Result, folder: Path) -> Tables:
+def _section(result: Result, folder: Path) -> Tables:
     """The section below the most loaded contact of each race, where a picture can be made; why not, elsewhere."""
     from raceway.studies.view.contact_stress import write_contact_stress
 

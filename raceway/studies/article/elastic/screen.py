@@ -19,8 +19,8 @@ def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     content : what ``--json`` prints;  files : what was written
     """
     rows = content["rows"]
-    at_rest = [_at_rest(row) for row in rows if row["phase"] == "static"]
-    moving = [_moving(row) for row in rows if row["phase"] == "motion"]
+    at_rest = [_rest_cells(row) for row in rows if row["phase"] == "static"]
+    moving = [_motion_cells(row) for row in rows if row["phase"] == "motion"]
     cost = content["cost"]
     lines = [
         f"{row['phase']} {row['case']}, {row['bodies']} bodies: {row['status']}: {row['reason']}"
@@ -40,7 +40,7 @@ def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     )  # fmt: skip
 
 
-def _at_rest(row: ReadTables) -> Tables:
+def _rest_cells(row: ReadTables) -> Tables:
     hertz, other = row.get("from_hertz") or {}, row.get("from_condensed") or {}
     return {
         "load N": f"{row['axial_n']:g}" + (f" + {row['radial_n']:g}" if row["radial_n"] else ""),
@@ -51,11 +51,11 @@ def _at_rest(row: ReadTables) -> Tables:
         "x %": _percent(other.get("x")),
         "y %": _percent(other.get("y")),
         "kyy %": _percent(other.get("kyy")),
-        **_cost(row),
+        **_cost_cells(row),
     }
 
 
-def _moving(row: ReadTables) -> Tables:
+def _motion_cells(row: ReadTables) -> Tables:
     found, other = row.get("identified") or {}, row.get("from_condensed") or {}
     balance = row.get("energy_balance")
     return {
@@ -68,11 +68,11 @@ def _moving(row: ReadTables) -> Tables:
         "wC %": _percent(other.get("wc")),
         "|Z| %": _percent(other.get("abs_z")),
         "energy": "-" if balance is None else f"{balance:.1e}",
-        **_cost(row),
+        **_cost_cells(row),
     }
 
 
-def _cost(row: ReadTables) -> Tables:
+def _cost_cells(row: ReadTables) -> Tables:
     cost = row["cost"]
     return {"CPU s": f"{cost['cpu_s']:.1f}", "GiB": gib(cost)}
 

@@ -42,13 +42,13 @@ class Told:
         planned, taken = self._seconds[self._place], time.monotonic() - self._begun
         gone = sum(s for place, s in self._seconds.items() if place < self._place) + min(taken, planned)
         whole = sum(self._seconds.values())
-        left = "end unknown" if taken > planned else _words(whole - gone)
+        left = "end unknown" if taken > planned else _time_left(whole - gone)
         far = f" {done} of {total}" if total else ""
         # A terminal cuts what is longer than 76 characters: the time first, then what is done.
         run = f"run {self._order[self._place]} of {len(self._order)}"
         self._tell(f"{run}: {left}, {self._name}: {what}{far}", round(gone), round(whole))
 
 
-def _words(left: float) -> str:
+def _time_left(left: float) -> str:
     """Seconds that are left, in words."""
     return f"{left:.0f} s left" if left < 90.0 else f"{left / 60.0:.0f} min left"
