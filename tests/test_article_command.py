@@ -12,15 +12,19 @@ import pytest
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.scene.file import read_toml
-from raceway.studies.article import causes, runs
-from raceway.studies.article import expected as trends
+from raceway.studies.article import runs
 from raceway.studies.article import study as driver
-from raceway.studies.article.curves import ROTATING
-from raceway.studies.article.design import ARTICLE, FRICTIONS, Setting, article_tables, design, shaft_tilt_stiffness
-from raceway.studies.article.figures import pictures
-from raceway.studies.article.files import write
-from raceway.studies.article.panel import Picture
-from raceway.studies.article.report import page
+from raceway.studies.article.design import (
+    ARTICLE,
+    FRICTIONS,
+    ROTATING,
+    Setting,
+    article_tables,
+    design,
+    shaft_tilt_stiffness,
+)
+from raceway.studies.article.figures import Picture, drawings
+from raceway.studies.article.page import page, write
 from raceway.studies.follow.instead import FAILED, Instead
 from tests.test_commands import SMALL
 from validation.article_study import curves, row, study
@@ -31,8 +35,8 @@ from validation.command_line import EXAMPLES, invoke
 def quick(monkeypatch):
     """Leave out what other tests compute: static pressures, and all but two tilt stiffnesses and one trend."""
     monkeypatch.setattr(driver, "static_pressures", lambda *_: [])
-    monkeypatch.setattr(causes, "STIFFNESSES", (1e3, 1e6))
-    monkeypatch.setattr(trends, "TRENDS", dict(list(trends.TRENDS.items())[-1:]))
+    monkeypatch.setattr(runs, "STIFFNESSES", (1e3, 1e6))
+    monkeypatch.setattr(runs, "TRENDS", dict(list(runs.TRENDS.items())[-1:]))
 
 
 @pytest.mark.slow
@@ -48,13 +52,13 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
 
     stop.__qualname__ = real.__qualname__  # a part of the key of finished work
     monkeypatch.setattr(driver, "curve", stop)
-    monkeypatch.setattr(causes, "curve", stop)
+    monkeypatch.setattr(runs, "curve", stop)
     words = ("study", "article", *SMALL, "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert "go on" in found.stderr or "goes on from there" in found.stderr
     monkeypatch.setattr(driver, "curve", real)
-    monkeypatch.setattr(causes, "curve", real)
+    monkeypatch.setattr(runs, "curve", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0
     content = json.loads(found.stdout)
@@ -102,7 +106,7 @@ def made_page(monkeypatch):
 
     def make(k, bodies=("rigid", "condensed"), **options) -> str:
         found = study(curves(k, bodies, **options))
-        return page(found, pictures(found), "raceway study article").html()
+        return page(found, drawings(found), "raceway study article").html()
 
     return make
 
@@ -175,7 +179,7 @@ def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_p
 
 def test_a_picture_is_drawn():
     found = study(curves(lambda s, load, w: 1e8 * (1.0 + w)))
-    drawn = next(one for one in pictures(found) if one.name == "tilt-stiffness")
+    drawn = next(one for one in drawings(found) if one.name == "tilt-stiffness")
     assert isinstance(drawn, Picture) and drawn.figure().axes[0].get_xscale() == "log"
 
 

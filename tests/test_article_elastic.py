@@ -13,13 +13,9 @@ import pytest
 import raceway as rw
 from raceway import ConvergenceError, SceneError
 from raceway.scene.file import read_toml
-from raceway.studies.article.elastic import design as designs
-from raceway.studies.article.elastic import deviations, run_one
-from raceway.studies.article.elastic import study as driver
-from raceway.studies.article.elastic.design import SCENE, Design, Run, design
-from raceway.studies.article.elastic.figures import pictures
-from raceway.studies.article.elastic.report import page
-from raceway.studies.article.elastic.told import Told
+from raceway.studies.article import elastic
+from raceway.studies.article.elastic import SCENE, Design, Run, Told, design
+from raceway.studies.article.elastic_page import drawings, page
 from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
 from validation.command_line import EXAMPLES, invoke
@@ -45,8 +41,8 @@ def tables(**more):
 def short(monkeypatch):
     """One load case, one excitation, a dozen steps: seconds."""
     monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0)]))
-    monkeypatch.setattr(designs, "CLAIMED", designs.CLAIMED[:1])
-    monkeypatch.setattr(designs, "STEPS", 12)
+    monkeypatch.setattr(elastic, "CLAIMED", elastic.CLAIMED[:1])
+    monkeypatch.setattr(elastic, "STEPS", 12)
 
 
 def test_the_scene_is_the_article_s_mesh_of_the_examples():
@@ -62,7 +58,7 @@ def test_the_scene_is_the_article_s_mesh_of_the_examples():
 
 @pytest.mark.slow
 def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_runs(tmp_path, short, monkeypatch):
-    done, real = [], driver.row_of
+    done, real = [], elastic.row_of
 
     def stop(*given):
         if len(done) == 4:
@@ -70,14 +66,14 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
         done.append(1)
         return real(*given)
 
-    monkeypatch.setattr(driver, "row_of", stop)
+    monkeypatch.setattr(elastic, "row_of", stop)
     words = (*WORDS, "--turns", "1", "--no-pictures", "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert found.stderr.count("goes on from there") == 1
     kept = tmp_path / "article-elastic-rows.jsonl"
     assert len(kept.read_text(encoding="utf-8").split()) > 0
-    monkeypatch.setattr(driver, "row_of", real)
+    monkeypatch.setattr(elastic, "row_of", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0, found.output
     content = json.loads(found.stdout)
@@ -110,8 +106,8 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
                 assert row["identified"]["k"] == alone["identification"]["equivalent_stiffness"]
                 assert row["identified"]["c"] == alone["identification"]["equivalent_damping"]
                 assert row["energy_balance"] == alone["stability"]["energy_drift"]
-    elastic, condensed = rows["static", "elastic"], rows["static", "condensed"]
-    assert elastic["from_condensed"]["x"] == elastic["displacement"]["x"] / condensed["displacement"]["x"] - 1.0
+    elastic_row, condensed = rows["static", "elastic"], rows["static", "condensed"]
+    assert elastic_row["from_condensed"]["x"] == elastic_row["displacement"]["x"] / condensed["displacement"]["x"] - 1.0
     assert condensed["from_condensed"] is None and rows["static", "rigid"]["from_hertz"]["inner"] is None
 
 
@@ -175,8 +171,8 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
 @pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
     monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
-    monkeypatch.setattr(designs, "CLAIMED", ())
-    real, wrong, tried = run_one.run, [MemoryError(), ConvergenceError("no equilibrium")], []
+    monkeypatch.setattr(elastic, "CLAIMED", ())
+    real, wrong, tried = elastic.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
     def fail(scene, *given):
         if scene.bodies.name == "elastic":
@@ -185,7 +181,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
                 raise wrong.pop(0)
         return real(scene, *given)
 
-    monkeypatch.setattr(run_one, "run", fail)
+    monkeypatch.setattr(elastic, "run", fail)
     found = invoke(*WORDS, "--out", tmp_path)
     assert found.exit_code == 0, found.output
     content = json.loads((tmp_path / "article-elastic.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
@@ -204,7 +200,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
 def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
     monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
     content = elastic_study().to_dict()
-    text = page(content, pictures(content), None, "raceway study article --bodies elastic").html()
+    text = page(content, drawings(content), None, "raceway study article --bodies elastic").html()
     images = re.findall(r'<img alt="([^"]+)"', text)
     assert len(images) == 2 + 4 + 3 and all(len(words) > 40 for words in images)
     assert not re.findall(r'(?:src|href)="(?!data:|#)', text)
@@ -226,16 +222,16 @@ def test_deviations_are_those_of_rows_made_by_hand():
     """Pressures of elastic bodies are 2 % above Hertz's, of the ball with the least load 3 %; K 1 % above that of condensed bodies."""
     study = elastic_study()
     row, other = (study.row("static", "1000 N axial + 500 N radial", kind) for kind in ("elastic", "condensed"))
-    hertz = deviations.from_hertz(row)["inner"]
+    hertz = elastic.from_hertz(row)["inner"]
     assert hertz["most_loaded"] == pytest.approx(0.02) and hertz["largest"] == pytest.approx(0.03)
     assert hertz["ball"] == 0 and hertz["loaded_balls"] == 3  # of four, one of which carries nothing
-    off = deviations.at_rest(row, other)
+    off = elastic.at_rest(row, other)
     assert off["x"] == pytest.approx(-0.01) and off["kyy"] == pytest.approx(0.004) and off["y"] is not None
     assert off["ball_loads"] == pytest.approx(0.005)
     axial = [study.row("static", "400 N axial", kind) for kind in ("elastic", "condensed")]
-    assert deviations.at_rest(*axial)["y"] is None
+    assert elastic.at_rest(*axial)["y"] is None
     moving = [study.row("motion", "bidirectional unbalance force", kind) for kind in ("elastic", "condensed")]
-    off = deviations.in_motion(*moving)
+    off = elastic.in_motion(*moving)
     assert off["k"] == pytest.approx(0.01) and off["c"] == pytest.approx(0.5)
     # w 50 N s/m over |Z|
     assert off["wc"] == pytest.approx(
@@ -255,7 +251,7 @@ def test_a_missing_reference_leaves_differences_out():
 
 def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now, told = [0.0], []
-    monkeypatch.setattr("raceway.studies.article.elastic.told.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("raceway.studies.article.elastic.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
     progress = Told({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "elastic at rest", "400 N axial")

@@ -7,9 +7,7 @@ import pytest
 
 from raceway.studies.article import rules
 from raceway.studies.article.claims import verdicts
-from raceway.studies.article.power_law import exponent
-from raceway.studies.article.regions import Finding, where
-from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, judge
+from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding, exponent, judge, where
 from validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)

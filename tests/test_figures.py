@@ -18,7 +18,6 @@ from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.plugins import pictures
 from raceway.studies.article import figures as article
-from raceway.studies.article import panel
 from raceway.studies.band import picture as band_picture
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
@@ -30,7 +29,7 @@ from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
 from raceway.studies.precision import picture as precision
-from raceway.studies.rig import figures as rig
+from raceway.studies.rig import page as rig
 from raceway.studies.sensitivities import picture as bars
 from raceway.studies.sweep import picture as store_picture
 from raceway.studies.sweep.plotting import layout
@@ -118,7 +117,7 @@ def of_the_article() -> list[Figure]:
         return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
 
     found = article_study.study(article_study.curves(k))
-    return [panel.figure() for panel in article.pictures(found)]
+    return [panel.figure() for panel in article.drawings(found)]
 
 
 def of_a_rig() -> list[Figure]:
@@ -199,7 +198,7 @@ def of_fits() -> list[Figure]:
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision,
-    panel: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
+    article: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
     fits: of_fits,
     band_picture: of_a_band,

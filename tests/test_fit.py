@@ -16,10 +16,9 @@ from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
 from raceway.studies.fit.linear import Linear, free_parts, lines_of
 from raceway.studies.fit.signals import signals_of, write_recording
 from raceway.studies.fit.table import Predicted, observed
-from raceway.studies.rig.sensors import record as rig_record
-from raceway.studies.rig.sensors import response, slow_roll_record, white_noise
-from raceway.studies.shaft.balance import balance
-from raceway.studies.shaft.bearing import bearing
+from raceway.studies.rig.signals import record as rig_record
+from raceway.studies.rig.signals import response, slow_roll_record, white_noise
+from raceway.studies.shaft.bearing import balance, bearing
 from raceway.studies.shaft.rotor import rotor
 from raceway.testing import b7206c, default_registry
 from validation.command_line import EXAMPLES, invoke

@@ -7,12 +7,9 @@ from typing import Any
 
 from raceway.scene.file import read_toml
 from raceway.storage.tables import Tables
-from raceway.studies.article import causes, expected
-from raceway.studies.article.curves import Curves
-from raceway.studies.article.design import article_tables, design
-from raceway.studies.article.elastic import design as elastic
-from raceway.studies.article.elastic.design import Run
-from raceway.studies.article.elastic.study import ElasticArticle
+from raceway.studies.article import elastic, runs
+from raceway.studies.article.design import Curves, article_tables, design
+from raceway.studies.article.elastic import ElasticArticle, Run
 from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
@@ -61,13 +58,11 @@ def static(deviation: float | None) -> list[dict[str, Any]]:
 
 def study(found: Curves) -> Article:
     """A whole study around invented curves."""
-    trends = tuple(
-        expected.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in expected.TRENDS.items()
-    )
+    trends = tuple(runs.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in runs.TRENDS.items())
     scan = {
-        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(causes.STIFFNESSES))
+        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(runs.STIFFNESSES))
                for speed in (10980.0, 15000.0)]
-        for load in causes.scan_loads(found.design)
+        for load in runs.scan_loads(found.design)
     }  # fmt: skip
     rig = tuple(
         {"tilt": tilt, "bodies": "rigid", **row(speed, load, 2e8)}

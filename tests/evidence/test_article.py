@@ -20,12 +20,12 @@ import pytest
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.scene.reading import scene_from_dict
-from raceway.studies.article.curves import ROTATING
 from raceway.studies.article.design import (
     FRICTION_ERROR,
     FRICTION_STEPS,
     FRICTION_TURNS,
     FRICTIONS,
+    ROTATING,
     Setting,
     article_tables,
     design,

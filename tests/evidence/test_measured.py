@@ -27,13 +27,10 @@ from raceway.studies.fit.identification import from_files, identify, values
 from raceway.studies.fit.identify import identify as identify_files
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
-from raceway.studies.rig.error_split import silent
-from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
+from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise
 from raceway.studies.rig.study import study
-from raceway.studies.shaft.balance import balance
-from raceway.studies.shaft.beam import beam
-from raceway.studies.shaft.bearing import bearing
-from raceway.studies.shaft.rotor import rotor, shaft
+from raceway.studies.shaft.bearing import balance, bearing
+from raceway.studies.shaft.rotor import beam, rotor, shaft
 from raceway.testing import b7206c, default_registry
 from validation.shaker import hammer_record
 from validation.shaker import record as record_of_shaker

@@ -15,7 +15,7 @@ from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.friction import friction_energy
 from raceway.core.signals.lines import phasors, sharpest
-from raceway.studies.article.expected import SPEEDS, TRENDS
+from raceway.studies.article.runs import SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
@@ -25,7 +25,7 @@ from validation.scenes import random_tables
 from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 SOLVER = "another rigid-ring solver (validation/expected_values.py)"
-TURNING = "another rigid-ring solver (raceway/studies/article/expected.py)"
+TURNING = "another rigid-ring solver (raceway/studies/article/runs.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}
 CONVEX = "the potential of loaded rings is convex: there is an equilibrium"

@@ -8,10 +8,8 @@ import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.studies.fit.identification import invert, scatter, values, with_moment, with_tilt_of
-from raceway.studies.shaft.balance import find_root
-from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.bearing import bearing, find_root, shaft_load
 from raceway.studies.shaft.rotor import rotor, shaft
-from raceway.studies.shaft.shaft_load import shaft_load
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from raceway.scene.rig import Rig
-from raceway.studies.rig.as_printed import critical_speed, readings
-from raceway.studies.shaft.beam import beam
-from raceway.studies.shaft.rotor import shaft
+from raceway.studies.rig.signals import critical_speed, readings
+from raceway.studies.shaft.rotor import beam, shaft
 from tests.rig.conftest import SPEED
 
 E, NU, RHO, D = 212e9, 0.29, 7810.0, 0.03

@@ -13,10 +13,8 @@ from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.scene.rig import Signals
 from raceway.studies.fit.identification import identify
 from raceway.studies.fit.signals import read_recording, write_recording
-from raceway.studies.rig.error_split import silent
-from raceway.studies.rig.sensors import record, response
-from raceway.studies.shaft.balance import balance
-from raceway.studies.shaft.bearing import bearing
+from raceway.studies.rig.signals import record, response, silent
+from raceway.studies.shaft.bearing import balance, bearing
 from raceway.studies.shaft.rotor import rotor
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED

@@ -21,23 +21,22 @@ def _command(file: str, *words: Any) -> Callable[[Path], Path]:
 
 def _article(folder: Path) -> Path:
     """The page of the article's study around invented curves, which costs no run; its figures are all there."""
-    from raceway.studies.article.figures import pictures
-    from raceway.studies.article.report import page
+    from raceway.studies.article.figures import drawings
+    from raceway.studies.article.page import page
     from validation.article_study import curves, study
 
     found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
-    return page(found, pictures(found), "raceway study article").write(folder / "article.html")
+    return page(found, drawings(found), "raceway study article").write(folder / "article.html")
 
 
 def _article_elastic(folder: Path) -> Path:
     """The page of elastic bodies around invented rows."""
-    from raceway.studies.article.elastic.figures import pictures
-    from raceway.studies.article.elastic.report import page
+    from raceway.studies.article.elastic_page import drawings, page
     from validation.article_study import elastic_study
 
     content = elastic_study().to_dict()
     command = "raceway study article --bodies elastic"
-    return page(content, pictures(content), None, command).write(folder / "article-elastic.html")
+    return page(content, drawings(content), None, command).write(folder / "article-elastic.html")
 
 
 _POINT = ("rig.speeds_rpm=[13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.25")

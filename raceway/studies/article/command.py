@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -28,6 +28,59 @@ from raceway.errors import ConvergenceError, Mistake, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.registry import Registry
+
+
+def study_elastic(
+    scene: Path | None,
+    changes: tuple[str, ...],
+    friction: float | None,
+    turns: int | None,
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+    command: str,
+    registry: Registry,
+) -> int:
+    """Run it, write everything, show the table.
+
+    Parameters
+    ----------
+    as given on the command line;  command : what was typed
+
+    Raises
+    ------
+    RacewayError
+        Mistakes of the scene, before anything is run; a folder that cannot be written; every run failed.
+    """
+    from raceway.studies.article.elastic import SCENE, TURNS, design
+
+    tables, mistakes = changed_tables(scene or SCENE, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    made = design(tables, friction, TURNS if turns is None else turns)
+    name = "article-elastic" if scene is None else f"{slug(str(tables['title']))}-article-elastic"
+    folder = writable(out or RESULTS / name)
+    draw = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "article-elastic-rows.jsonl"
+    with keeping("runs", kept), show_progress() as progress:
+        from raceway.studies.article.elastic import elastic_article
+        from raceway.studies.article.elastic_page import write
+
+        found = elastic_article(made, folder if draw else None, kept, registry, plugins, progress)
+        progress("writing", 0, 0)
+        content, files = found.to_dict(), list[str]()
+        failed = attempt(lambda: write(found, folder, draw, command), files) or found.fault
+    if failed is None and found.failed == len(found.rows):
+        failed = ConvergenceError(f"every run failed; the first reason: {found.rows[0]['reason']}")
+    from raceway.studies.article.elastic_page import elastic_screen
+
+    show(content, as_json, failed, lambda: elastic_screen(content, files))
+    return 0
 
 
 class ArticleOptions(NamedTuple):
@@ -99,8 +152,6 @@ def article(given: ArticleOptions) -> int:
     _refuse_unused(click.get_current_context(), elastic)
     registry = registry_with(given.plugins)
     if elastic:
-        from raceway.studies.article.elastic.command import study_elastic
-
         command = _command(click.get_current_context())
         return study_elastic(given.scene, given.changes, given.friction, given.turns, given.out, given.pictures, given.plugins,
                              given.as_json, command, registry)  # fmt: skip
@@ -120,7 +171,7 @@ def article(given: ArticleOptions) -> int:
     tell_faults(registry)
     kept = folder / "article-rows.jsonl"
     with keeping("curves", kept), show_progress() as progress:
-        from raceway.studies.article.files import write
+        from raceway.studies.article.page import write
         from raceway.studies.article.study import article as study
 
         found = study(made, given.processes, kept, registry, given.plugins, progress)
@@ -129,7 +180,7 @@ def article(given: ArticleOptions) -> int:
         failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault
     if failed is None and all(row["status"] == "failed" for row in content["rows"]):
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
-    from raceway.studies.article.screen import article_screen
+    from raceway.studies.article.page import article_screen
 
     show(content, given.as_json, failed, lambda: article_screen(content, files))
     return 0

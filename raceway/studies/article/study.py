@@ -15,12 +15,11 @@ from raceway.pipeline.result import without_nan
 from raceway.pipeline.simulate import OnProgress
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
-from raceway.studies.article import causes, expected
+from raceway.studies.article import runs
 from raceway.studies.article.claims import verdicts
-from raceway.studies.article.curves import ANSWERED, ROTATING, Curves
-from raceway.studies.article.design import TILTS, Design, Setting
+from raceway.studies.article.design import ANSWERED, ROTATING, TILTS, Curves, Design, Setting
+from raceway.studies.article.rules import Verdict
 from raceway.studies.article.runs import Row, Task, curve, work
-from raceway.studies.article.verdict import Verdict
 from raceway.studies.many.engine import processor_time
 from raceway.studies.many.reference import reference_cases
 from raceway.studies.many.row_store import RowStore
@@ -48,7 +47,7 @@ class Article:
     curves: Curves
     rig: tuple[Row, ...]
     static: tuple[Row, ...]
-    trends: tuple[expected.Trend, ...]
+    trends: tuple[runs.Trend, ...]
     scan: dict[float, list[Row]]
     seconds: float
     cpu_s: float
@@ -89,15 +88,15 @@ class Article:
                 "shaft_tilt_stiffness": made.shaft,
                 "bodies": made.bodies,
                 "friction": made.friction if len(made.frictions) > 1 else 0.0,
-                "friction_trends": causes.friction_trends(self.curves),
+                "friction_trends": runs.friction_trends(self.curves),
                 "verdicts": [one.to_dict() for one in self.verdicts],
                 "quasi_static": [one.to_dict() for one in self.trends],
                 "static": self.static,
                 "rig": self.rig,
-                "causes": {f"{load:g}": dict(causes.one_at_a_time(self.curves, load)) for load in made.loads},
+                "causes": {f"{load:g}": dict(runs.one_at_a_time(self.curves, load)) for load in made.loads},
                 "tilt_stiffness": [
-                    {"axial_n": load, "stiffness": causes.STIFFNESSES, "ratio": causes.hardening(rows).tolist(),
-                     "turning_point": causes.turning_point(causes.hardening(rows))}
+                    {"axial_n": load, "stiffness": runs.STIFFNESSES, "ratio": runs.hardening(rows).tolist(),
+                     "turning_point": runs.turning_point(runs.hardening(rows))}
                     for load, rows in self.scan.items()
                 ],
                 "rows": rows,
@@ -143,8 +142,8 @@ def article(
     found, reused = work(tasks, processes, kept, registry, plugins, on_progress)
     results = iter(found)
     static = next(results)
-    trends = [expected.trend(given, next(results)) for given in expected.TRENDS]
-    scan = {load: next(results) for load in causes.scan_loads(made)}
+    trends = [runs.trend(given, next(results)) for given in runs.TRENDS]
+    scan = {load: next(results) for load in runs.scan_loads(made)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(made) for row in next(results)]
     curves = Curves(made, dict(zip(settings, results, strict=True)))
     taken = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own
@@ -161,8 +160,8 @@ def _checked(made: Design, registry: Registry) -> str:
 
 def _tasks(made: Design, settings: Sequence[tuple[Setting, float]], registry: Registry) -> list[Task]:
     tasks = [Task("static verification", static_pressures, _STATIC)]
-    tasks += [Task("quasi-static trends", expected.secants, list(given)) for given in expected.TRENDS]
-    tasks += causes.scan_tasks(made, registry)
+    tasks += [Task("quasi-static trends", runs.secants, list(given)) for given in runs.TRENDS]
+    tasks += runs.scan_tasks(made, registry)
     for setting in _rig_settings(made):
         points = [made.point(setting, load, speed, registry) for load in RIG_LOADS for speed in RIG_SPEEDS]
         tasks.append(Task("the rig's speeds", curve, points))

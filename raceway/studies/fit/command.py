@@ -107,7 +107,7 @@ def identify(given: IdentifyOptions) -> int:
         from raceway.studies.fit.picture import write_figures
 
         failed = attempt(lambda: write_figures(found.found, folder), files)
-    from raceway.studies.rig.screen import identify_screen
+    from raceway.studies.rig.page import identify_screen
 
     show(content, given.as_json, failed, lambda: identify_screen(content, files))
     return 0

@@ -26,8 +26,7 @@ from raceway.storage.tables import Tables
 from raceway.studies.fit.shaft_angle import Turning, turning
 from raceway.studies.fit.signals import Recording, Signals, read_signals, recording_of
 from raceway.studies.fit.synchronous import Order, RunOut, given, less_response, order, slow_roll
-from raceway.studies.shaft.balance import State, find_root
-from raceway.studies.shaft.bearing import Bearing, bearing
+from raceway.studies.shaft.bearing import Bearing, State, bearing, find_root
 from raceway.studies.shaft.rotor import Rotor, rotor
 
 

@@ -26,8 +26,7 @@ from raceway.studies.fit.shaft_angle import turning
 from raceway.studies.fit.signals import Recording
 from raceway.studies.fit.synchronous import Order, RunOut, order
 from raceway.studies.fit.table import COVERAGE
-from raceway.studies.shaft.balance import State, balance
-from raceway.studies.shaft.bearing import bearing
+from raceway.studies.shaft.bearing import State, balance, bearing
 from raceway.studies.shaft.rotor import rotor
 
 #: Step of differences over the size of a number: rounding of the balance is 1e-4 of them, and so is their curvature.

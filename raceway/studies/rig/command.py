@@ -73,7 +73,7 @@ def rig(
             written = list[str]()
             failed = attempt(lambda: found.write_signals(folder), written)
             files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
-    from raceway.studies.rig.screen import rig_screen
+    from raceway.studies.rig.page import rig_screen
 
     show(content, as_json, failed, lambda: rig_screen(content, files))
     return 1 if found.failed else 0

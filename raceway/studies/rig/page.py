@@ -1,21 +1,174 @@
-"""The page of a rig's study, and its figures as PNG."""
+"""Figures, page and table of a rig's study."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
+import numpy as np
+from rich.console import Group, RenderableType
+
 from raceway import __version__
-from raceway.plugins.pictures import save_figure
-from raceway.storage.tables import Tables
+from raceway.commands.screen import Words, number, rows_table, sections, written
+from raceway.plugins.pictures import new_figure, save_figure
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.picture import orbits, signals, spectrum
 from raceway.studies.many.page import Page
-from raceway.studies.rig.figures import causes, procedures
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from raceway.studies.rig.study import RigStudy
+
+
+_COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3")
+_KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "window": "#8a4fa3", "run-out": "#b58a00", "model": "#555f6b"}  # fmt: skip
+#: Errors below this are drawn at the edge.
+_LEAST_PERCENT = 1e-4
+
+
+def procedures(study: RigStudy) -> Figure:
+    """True K over speed, and what each correction makes of it."""
+    figure = new_figure(9.2, 3.8)
+    loads = list(dict.fromkeys(point.axial for point in study.points))
+    for panel, axial in zip(np.atleast_1d(figure.subplots(1, len(loads), sharey=True)), loads, strict=True):
+        points = [point for point in study.points if point.axial == axial]
+        speeds = [30.0 / np.pi * point.state.speed for point in points]
+        panel.plot(speeds, [1e-6 * p.state.stiffness for p in points], color="#1c2733", marker="o", label="true")
+        found = [1e-6 * p.found.state.stiffness for p in points]
+        panel.plot(speeds, found, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
+        for place, style in ((0, "--"), (3, ":"), (5, "-.")):
+            name = points[0].readings[place].correction
+            values = [1e-6 * p.readings[place].stiffness for p in points]
+            label = {"none": "no correction"}.get(name, name)
+            panel.plot(speeds, values, color=_COLOURS[1], linestyle=style, marker=".", label=label)
+        panel.set_title(f"{axial:g} N axial", fontsize=11)
+        panel.set_xlabel("speed [r/min]")
+        panel.set_xticks(speeds)
+        panel.grid(color="#d8dee4", linewidth=0.7)
+    # One scale for all panels, and set when all are drawn: a limit that is set holds, whatever comes after it.
+    figure.axes[0].set_ylim(bottom=0.0)
+    figure.axes[0].set_ylabel("K [N/µm]")
+    figure.legend(
+        *figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9
+    )
+    return figure
+
+
+def causes(study: RigStudy) -> Figure:
+    """Error of K by one cause at a time: a dot for each speed and load, on a logarithmic scale."""
+    names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
+    figure = new_figure(9.2, 0.34 * len(names) + 1.1)
+    axes: Axes = figure.subplots()
+    for row, (kind, what) in enumerate(reversed(names)):
+        errors = [100.0 * abs(c.error) for p in study.points for c in p.causes if (c.kind, c.what) == (kind, what)]
+        sizes = np.maximum(errors, _LEAST_PERCENT)
+        axes.plot(sizes, np.full(len(sizes), row), "o", color=_KINDS[kind], markersize=5, alpha=0.75)
+    words = [fill(f"{kind}: {what}" if kind != "none" else what, 46) for kind, what in reversed(names)]
+    axes.set_yticks(range(len(names)), words, fontsize=8)
+    axes.set_xscale("log")
+    largest = 100.0 * max(abs(cause.error) for point in study.points for cause in point.causes)
+    axes.set_xlim(0.8 * _LEAST_PERCENT, max(200.0, 1.5 * largest))
+    for limit in (1.0, 3.0):
+        axes.axvline(limit, color="#1c2733", linewidth=0.8, linestyle="--")
+        axes.annotate(
+            f"{limit:g} %", (limit, 1.0), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
+            ha="center", va="bottom", fontsize=8,
+        )  # fmt: skip
+    axes.set_xlabel("error of K by this cause alone [%]")
+    axes.grid(color="#d8dee4", linewidth=0.7)
+    axes.set_axisbelow(True)
+    return figure
+
+
+#: Corrections of the article's kind that the screen shows; all of them are in rig.json.
+_SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
+
+
+def rig_screen(study: ReadTables, files: Sequence[str]) -> RenderableType:
+    """A line for each speed and load: the true bearing, the article's procedure, the beam inverted."""
+    rows = [_point(row) for row in study["rows"]]
+    worst = study["worst"]
+    speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in study["critical_speed_rpm"].items())
+    parts: list[RenderableType] = [
+        Words(study["title"], "bold"),
+        Words(f"first critical speed {speeds}", "dim"),
+        rows_table(rows),
+        Words(
+            "x: the bearing's own motion; printed, derived: K by such a correction over the true K; found: by the inverted beam"
+        ),
+        Words(
+            f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
+        ),
+        rows_table(_causes(study["worst_by_cause"]), "Largest error of K by one cause at a time"),
+    ]
+    parts += [
+        Words(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", "red")
+        for one in study["failed"]
+    ]
+    return Group(*parts, *written(files))
+
+
+def _point(row: ReadTables) -> dict[str, str]:
+    true, found = row["true"], row["identified"]
+    ratios = {one["correction"]: one["over_true"] for one in row["printed"]}
+    return {
+        "r/min": f"{row['speed_rpm']:.0f}",
+        "axial N": f"{row['axial_n']:.0f}",
+        "x µm": f"{1e6 * true['deflection_m']:.2f}",
+        "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
+        "K N/µm": f"{1e-6 * true['equivalent_stiffness']:.2f}",
+        **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
+        "found %": f"{100 * found['error']:+.3f}",
+        "+- %": f"{100 * found['relative_uncertainty']:.2f}",
+    }
+
+
+def _causes(causes: Sequence[ReadTables]) -> list[dict[str, str]]:
+    return [{"cause": one["kind"], "what": one["what"], "error %": f"{100 * one['error']:+.3g}"} for one in causes]
+
+
+def identify_screen(found: ReadTables, files: Sequence[str]) -> RenderableType:
+    """Signals, line, bearing, K and C."""
+    signals, line, run_out, bearing = found["signals"], found["line"], found["run_out"], found["bearing"]
+    known, speed = found["identification"], signals["speed_rpm"]
+    z = known["dynamic_stiffness"]
+    angle = "" if line["angle_deg"] is None else f"{line['angle_deg']:.2f} deg from the mark"
+    uncertain = f"+- {number(1e-6 * known['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
+    rows = [
+        ("Signals", "", f"{signals['samples']} samples, {signals['turns']} turns, angle from {signals['angle_from']}"),
+        ("speed", number(speed["mean"], "r/min", 6), f"{speed['lowest']:.1f} to {speed['highest']:.1f} r/min"),
+        ("1x line, forward", number(1e6 * line["forward_m"], "µm"), angle),
+        ("1x line, backward", number(1e6 * line["backward_m"], "µm", 3), f"fit leaves {100 * line['residual']:.2g} %"),
+        ("run-out", number(1e6 * run_out["amplitude_m"], "µm", 4), run_out["how"]),
+        ("Bearing", "", "what the inverted beam makes of it"),
+        ("deflection", number(1e6 * bearing["deflection_m"], "µm"), f"of {1e6 * bearing['sensor_m']:.4g} µm at the sensor"),
+        ("force, moment", number(bearing["force_n"], "N"), f"{bearing['moment_nm']:.4g} N m, slope {bearing['slope_rad']:.3g} rad"),
+        (f"Dynamic stiffness at {known['speed_rpm']:.0f} r/min", "", known["definition"]),
+        ("|Z|", number(1e-6 * z["abs"], "N/µm"), "force over deflection"),
+        ("K", number(1e-6 * known["equivalent_stiffness"], "N/µm"), f"{uncertain}; Re Z + m w^2, m = {known['mass_used_kg']:.4g} kg"),
+    ]  # fmt: skip
+    if known["equivalent_damping"] is not None:
+        wide = known["equivalent_damping_error"]
+        resolved = abs(known["equivalent_damping"]) > wide
+        value = number(known["equivalent_damping"], "N s/m", 4) if resolved else "not resolved"
+        rows.append(
+            ("C", value, f"+- {wide:.2g} N s/m at 95 %" if resolved else f"below its uncertainty of {wide:.2g} N s/m")
+        )
+    rows.append(
+        ("K of the scene's bearing", number(1e-6 * known["scene_stiffness"], "N/µm"), "under the same force and moment")
+    )
+    locked = known["tilt_locked"]
+    wide = f"+- {number(1e-6 * locked['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
+    rows.append(("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{wide}; {locked['definition']}"))
+    rows.append(("Relative change of K if", "", "what is taken as known were otherwise"))
+    rows += [(one["change"], f"{100 * one['stiffness']:+.2f} %", "") for one in found["sensitivities"]]
+    parts: list[RenderableType] = [Words(found["title"], "bold"), sections(rows)]
+    parts += [Words(f"warning: {text}", "yellow") for text in found["warnings"]]
+    return Group(*parts, *written(files))
 
 
 def write_page(study: RigStudy, folder: Path) -> list[Path]:

@@ -21,11 +21,19 @@ from raceway.studies.fit.signals import Recording, write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, row_key
-from raceway.studies.rig.as_printed import Reading, amplitude, critical_speed, readings
-from raceway.studies.rig.error_split import Cause, split
-from raceway.studies.rig.sensors import record, response, slow_roll_record, white_noise
-from raceway.studies.shaft.balance import State, balance
-from raceway.studies.shaft.bearing import Bearing, bearing
+from raceway.studies.rig.signals import (
+    Cause,
+    Reading,
+    amplitude,
+    critical_speed,
+    readings,
+    record,
+    response,
+    slow_roll_record,
+    split,
+    white_noise,
+)
+from raceway.studies.shaft.bearing import Bearing, State, balance, bearing
 from raceway.studies.shaft.rotor import rotor
 
 OnProgress = Callable[[str, int, int], None]

@@ -11,7 +11,7 @@ import numpy as np
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.studies.ross.bearing import RollingBearing
 from raceway.studies.ross.node_bearing import NodeBearing
-from raceway.studies.shaft.balance import find_root
+from raceway.studies.shaft.bearing import find_root
 
 _HALVINGS = 6
 

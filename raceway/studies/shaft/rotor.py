@@ -1,4 +1,19 @@
-"""The rig's shaft and disc: what the tested bearing and the sensor do under unbalance, bearing force and moment."""
+"""A round shaft as Timoshenko elements, in forward whirl.
+
+Notes
+-----
+Deflection w = y + j z and slope s = y' + j z' of a shaft that whirls with e^{j lambda t} while it spins with Omega:
+
+    (K - lambda^2 (M_t + M_r) + lambda Omega G) q = f,    q = (w_0, s_0, w_1, s_1, ...)
+
+G = 2 M_r for a round section (I_p = 2 I_t).  Force and moment are conjugate to w and s; a moment is M_z - j M_y, the slope
+theta_z - j theta_y.  The shape functions are those of the exact static solution, so that a beam loaded at its nodes is exact.
+
+References
+----------
+Przemieniecki, Theory of Matrix Structural Analysis (1968), sections 5.6 and 11.3; Friswell, Penny, Garvey, Lees, Dynamics of
+Rotating Machines (2010), sections 5.4.3 to 5.4.6.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +24,132 @@ import attrs
 import numpy as np
 
 from raceway.scene.rig import Rig
-from raceway.studies.shaft.beam import Beam, beam
+
+#: Two points a node less would still integrate the stiffness exactly; mass needs degree 6.
+_POINTS, _WEIGHTS = (
+    0.5 * (values + shift) for values, shift in zip(np.polynomial.legendre.leggauss(4), (1.0, 0.0), strict=True)
+)
+
+
+@attrs.frozen(eq=False)
+class Beam:
+    """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n).
+
+    Attributes
+    ----------
+    stiffness, mass, rotary : K, M_t, M_r; a disc's are added to the last two
+    polar : G / 1, the gyroscopic matrix over lambda Omega
+    """
+
+    nodes: np.ndarray
+    stiffness: np.ndarray
+    mass: np.ndarray
+    rotary: np.ndarray
+    polar: np.ndarray
+
+    def node(self, place: float) -> int:
+        """The node at a place [m]."""
+        return int(np.argmin(np.abs(self.nodes - place)))
+
+    def dynamic(self, whirl: float, spin: float) -> np.ndarray:
+        """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
+        return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
+
+    def with_disc(self, place: float, mass: float, transverse: float, polar: float) -> Beam:
+        """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
+        k = 2 * self.node(place)
+        m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
+        m[k, k] += mass
+        r[k + 1, k + 1] += transverse
+        p[k + 1, k + 1] += polar
+        return attrs.evolve(self, mass=m, rotary=r, polar=p)
+
+    def with_spring(self, place: float, stiffness: float, tilt: float = 0.0) -> Beam:
+        """A copy with a spring against the ground at a node [N/m, N m/rad]."""
+        k = 2 * self.node(place)
+        s = self.stiffness.copy()
+        s[k, k] += stiffness
+        s[k + 1, k + 1] += tilt
+        return attrs.evolve(self, stiffness=s)
+
+    def critical_speeds(self) -> np.ndarray:
+        """Speeds [rad/s], ascending, at which forward whirl with the spin is a free motion."""
+        inertia = self.mass + self.rotary - self.polar  # indefinite: a disc's polar inertia exceeds its transverse one
+        values = np.linalg.eigvals(np.linalg.solve(self.stiffness, inertia))
+        real = values.real[(np.abs(values.imag) < 1e-9 * np.abs(values).max()) & (values.real > 0.0)]
+        return np.sort(1.0 / np.sqrt(real))
+
+
+def beam(
+    nodes: np.ndarray,
+    diameter: float,
+    young: float,
+    poisson: float,
+    density: float,
+    shear: bool = True,
+    stiff: np.ndarray | None = None,
+) -> Beam:
+    """A round shaft of one diameter.
+
+    Parameters
+    ----------
+    nodes : (n,) ascending [m]
+    shear : False gives an Euler-Bernoulli beam
+    stiff : (n - 1,) diameters that bend, where something stiffens the shaft [m]; its mass is not added
+
+    Notes
+    -----
+    Shear coefficient of a solid round section: 6 (1 + nu) / (7 + 6 nu) (Cowper 1966).
+    """
+    area, inertia = pi / 4.0 * diameter**2, pi / 64.0 * diameter**4
+    bending = np.full(len(nodes) - 1, diameter) if stiff is None else stiff
+    modulus = 6.0 * (1.0 + poisson) / (7.0 + 6.0 * poisson) * young / (2.0 * (1.0 + poisson))
+    size = 2 * len(nodes)
+    k, m, r = (np.zeros((size, size)) for _ in range(3))
+    for i, length in enumerate(np.diff(nodes)):
+        part = slice(2 * i, 2 * i + 4)
+        bend_stiffness, shear_stiffness = young * pi / 64.0 * bending[i] ** 4, modulus * pi / 4.0 * bending[i] ** 2
+        phi = 12.0 * bend_stiffness / (shear_stiffness * length**2) if shear else 0.0
+        for x, weight in zip(_POINTS, _WEIGHTS * length, strict=True):
+            w, slope, turn, bend = _shapes(x, length, phi)
+            k[part, part] += weight * bend_stiffness * np.outer(bend, bend)
+            if shear:
+                k[part, part] += weight * shear_stiffness * np.outer(slope - turn, slope - turn)
+            m[part, part] += weight * density * area * np.outer(w, w)
+            r[part, part] += weight * density * inertia * np.outer(turn, turn)
+    return Beam(np.asarray(nodes), k, m, r, 2.0 * r)
+
+
+def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Deflection, its derivative, section's rotation and its derivative (4,) at x in 0..1 for w_0, s_0, w_1, s_1."""
+    one = 1.0 / (1.0 + phi)
+    half = 0.5 * phi * length
+    w = [
+        1.0 - 3.0 * x**2 + 2.0 * x**3 + phi * (1.0 - x),
+        length * (x - 2.0 * x**2 + x**3) + half * (x - x**2),
+        3.0 * x**2 - 2.0 * x**3 + phi * x,
+        length * (x**3 - x**2) - half * (x - x**2),
+    ]
+    slope = [
+        -6.0 * x + 6.0 * x**2 - phi,
+        length * (1.0 - 4.0 * x + 3.0 * x**2) + half * (1.0 - 2.0 * x),
+        6.0 * x - 6.0 * x**2 + phi,
+        length * (3.0 * x**2 - 2.0 * x) - half * (1.0 - 2.0 * x),
+    ]
+    turn = [
+        6.0 * (x**2 - x) / length,
+        1.0 - 4.0 * x + 3.0 * x**2 + phi * (1.0 - x),
+        6.0 * (x - x**2) / length,
+        3.0 * x**2 - 2.0 * x + phi * x,
+    ]
+    bend = [
+        6.0 * (2.0 * x - 1.0) / length,
+        6.0 * x - 4.0 - phi,
+        6.0 * (1.0 - 2.0 * x) / length,
+        6.0 * x - 2.0 + phi,
+    ]
+    return one * np.array(w), one * np.array(slope) / length, one * np.array(turn), one * np.array(bend) / length
+
 
 #: Longest element over the shaft's diameter: halving it moves no answer of the rig by 1e-6.
 _ELEMENT = 0.25

@@ -3,16 +3,216 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+from rich.console import Group, RenderableType
+
+from raceway.commands.screen import Words, rows_table, written
+from raceway.pipeline.result import write_json
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.article.elastic.deviations import RACES
-from raceway.studies.article.elastic.figures import ARTICLE_DEVIATION
-from raceway.studies.article.elastic.words import gib, per_cent
+from raceway.studies.article.elastic import RACES
+from raceway.studies.article.figures import Panel, Picture, finish
+from raceway.studies.article.page import save_pictures, write_csv
 from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
-    from raceway.studies.article.panel import Picture
+    from matplotlib.axes import Axes
+
+    from raceway.studies.article.elastic import ElasticArticle
+
+
+def per_cent(part: float | None) -> str:
+    """A relative difference; a dash where there is none."""
+    return "-" if part is None else f"{100.0 * part:+.2f} %"
+
+
+def gib(cost: ReadTables) -> str:
+    """Memory at the peak of a row [GiB]."""
+    peak = cost["peak_memory_bytes"]
+    return "-" if peak is None else f"{peak / 2**30:.2f}"
+
+
+#: The article's largest deviation of a peak pressure from exact Hertz, section 3.2.
+ARTICLE_DEVIATION = 0.0242
+LOOKS = {"elastic": ("#c8501e", "o"), "condensed": ("#0b5fa5", "s"), "rigid": ("#5b6570", "^")}
+
+
+def drawings(content: ReadTables) -> list[Picture]:
+    """All that there are completed runs for."""
+    rows = [row for row in content["rows"] if row["status"] == "completed"]
+    rest = [row for row in rows if row["phase"] == "static"]
+    moving = [row for row in rows if row["phase"] == "motion"]
+    found = []
+    with_points = [row for row in rest if row["from_hertz"]["inner"] is not None or row["from_hertz"]["outer"] is not None]
+    if with_points:
+        found.append(_pressure_picture(with_points))
+    if rest:
+        found.append(_load_picture(rest))
+    if moving:
+        found.append(_stiffness_picture(moving))
+    return found
+
+
+def _cases(rows: list[Tables]) -> dict[str, list[Tables]]:
+    """Rows by case, in their order."""
+    out: dict[str, list[Tables]] = {}
+    for row in rows:
+        out.setdefault(row["case"], []).append(row)
+    return out
+
+
+def _pressure_picture(rows: list[Tables]) -> Picture:
+    panels = []
+    for race in RACES:
+        shown = [row for row in rows if row["from_hertz"][race] is not None]
+        told = "; ".join(
+            f"{row['case']}, {row['bodies']} {100.0 * row['from_hertz'][race]['most_loaded']:+.2f} %" for row in shown
+        )
+        panels.append(Panel(partial(_draw_pressures, shown, race), f"Deviation of the nodal peak pressure on the {race} race from Hertz's at the same ball load, "
+                            f"most loaded ball: {told}.", f"{race} race; whiskers: the largest deviation of any loaded ball"))  # fmt: skip
+    return Picture("article-elastic-pressures", "Peak pressure against Hertz at the same ball load", tuple(panels))
+
+
+def _draw_pressures(rows: list[Tables], race: str, axes: Axes) -> None:
+    cases = list(_cases(rows))
+    kinds = list(dict.fromkeys(row["bodies"] for row in rows))
+    for row in rows:
+        colour, _ = LOOKS[row["bodies"]]
+        found = row["from_hertz"][race]
+        x = cases.index(row["case"]) + 0.34 * (kinds.index(row["bodies"]) - 0.5 * (len(kinds) - 1))
+        axes.bar(x, 100.0 * found["most_loaded"], 0.3, color=colour, label=_first(axes, row))
+        axes.plot(
+            [x, x], [100.0 * found["most_loaded"], 100.0 * found["largest"]], color="#20262c", linewidth=1.2, marker="_"
+        )
+    for sign in (1.0, -1.0):
+        axes.axhline(sign * 100.0 * ARTICLE_DEVIATION, color="#20262c", linewidth=0.9, linestyle="--",
+                     label="the article's largest, 2.42 %" if sign > 0.0 else None)  # fmt: skip
+    finish(axes, f"{race} race", "", "deviation [%]", 3)
+    axes.set_xticks(range(len(cases)), [case.replace(" + ", "\n+ ").replace(" axial", "\naxial", 1) for case in cases])
+    axes.axhline(0.0, color="#20262c", linewidth=0.6)
+
+
+def _first(axes: Axes, row: Tables) -> str | None:
+    """The kind of bodies where it has no name in the legend yet."""
+    return None if row["bodies"] in axes.get_legend_handles_labels()[1] else row["bodies"]
+
+
+def _load_picture(rows: list[Tables]) -> Picture:
+    panels = []
+    for case, some in _cases(rows).items():
+        told = "; ".join(f"{row['bodies']} {min(_loads(row)):.0f} to {max(_loads(row)):.0f} N" for row in some)
+        panels.append(Panel(partial(_draw_loads, case, some), f"Ball loads on the inner race around the ring under {case}: {told}.", case))  # fmt: skip
+    return Picture("article-elastic-ball-loads", "Ball loads on the inner race", tuple(panels))
+
+
+def _loads(row: Tables) -> list[float]:
+    return [ball["load_inner_n"] for ball in row["balls"]]
+
+
+def _draw_loads(case: str, rows: list[Tables], axes: Axes) -> None:
+    for row in rows:
+        colour, mark = LOOKS[row["bodies"]]
+        azimuth = np.array([ball["azimuth_deg"] for ball in row["balls"]])
+        order = np.argsort(azimuth)
+        axes.plot(azimuth[order], np.array(_loads(row))[order], mark, color=colour, fillstyle="none", markersize=6,
+                  linestyle="-", linewidth=0.8, label=row["bodies"])  # fmt: skip
+    axes.set_ylim(0.0, 1.08 * max(max(_loads(row)) for row in rows))
+    finish(axes, case, "azimuth [deg]", "ball load [N]", 3)
+
+
+def _stiffness_picture(rows: list[Tables]) -> Picture:
+    parts = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))
+    panels = []
+    for key, name, unit, word in parts:
+        told = "; ".join(f"{row['case']}, {row['bodies']} {unit * row['identified'][key]:.4g}" for row in rows)
+        panels.append(Panel(partial(_draw_bars, rows, key, unit, f"{name} [{word}]"), f"{name} in {word}: {told}.", name))
+    return Picture("article-elastic-stiffness", "K, |Z| and C of the operating point", tuple(panels))
+
+
+def _draw_bars(rows: list[Tables], key: str, unit: float, label: str, axes: Axes) -> None:
+    cases = list(_cases(rows))
+    for row in rows:
+        place = list(LOOKS).index(row["bodies"])
+        x, y = cases.index(row["case"]) + 0.27 * (place - 1), unit * row["identified"][key]
+        axes.bar(x, y, 0.24, color=LOOKS[row["bodies"]][0], label=_first(axes, row))
+        axes.annotate(f"{y:.4g}", (x, y), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=8)
+    finish(axes, label.split(" [")[0], "", label, 3)
+    axes.set_xticks(range(len(cases)), [case.replace(" ", "\n", 1) for case in cases])
+    axes.margins(y=0.12)
+
+
+def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """Pressures, differences from condensed bodies, balance of energy and cost of every run.
+
+    Parameters
+    ----------
+    content : what ``--json`` prints;  files : what was written
+    """
+    rows = content["rows"]
+    at_rest = [_rest_cells(row) for row in rows if row["phase"] == "static"]
+    moving = [_motion_cells(row) for row in rows if row["phase"] == "motion"]
+    cost = content["cost"]
+    lines = [
+        f"{row['phase']} {row['case']}, {row['bodies']} bodies: {row['status']}: {row['reason']}"
+        for row in rows
+        if row["reason"]
+    ]
+    lines += [f"elements of elastic bodies: {content['elements']}"] if content["elements"] else []
+    end = f"{content['runs']} runs, {content['failed']} failed; {cost['wall_s']:.0f} s, {cost['cpu_s']:.0f} s of processor time"
+    end += f"; {cost['reused']} rows taken from earlier" if cost["reused"] else ""
+    return Group(
+        Words(content["title"], "bold"),
+        rows_table(at_rest, f"at rest: nodal peak pressure of the most loaded ball from Hertz's; Q (ball loads), x, y, kyy from {content['reference']} bodies"),
+        rows_table(moving, f"{content['speed_rpm']:g} r/min, {content['turns']} turn{'s' if content['turns'] > 1 else ''} of {content['steps_per_turn']} steps; K, |Z| and w C over |Z| from {content['reference']} bodies"),
+        *(Words(line, "magenta") for line in lines),
+        Words(end, "dim"),
+        *written(files),
+    )  # fmt: skip
+
+
+def _rest_cells(row: ReadTables) -> Tables:
+    hertz, other = row.get("from_hertz") or {}, row.get("from_condensed") or {}
+    return {
+        "load N": f"{row['axial_n']:g}" + (f" + {row['radial_n']:g}" if row["radial_n"] else ""),
+        "bodies": row["bodies"],
+        "p in %": _percent((hertz.get("inner") or {}).get("most_loaded")),
+        "p out %": _percent((hertz.get("outer") or {}).get("most_loaded")),
+        "Q %": _percent(other.get("ball_loads")),
+        "x %": _percent(other.get("x")),
+        "y %": _percent(other.get("y")),
+        "kyy %": _percent(other.get("kyy")),
+        **_cost_cells(row),
+    }
+
+
+def _motion_cells(row: ReadTables) -> Tables:
+    found, other = row.get("identified") or {}, row.get("from_condensed") or {}
+    balance = row.get("energy_balance")
+    return {
+        "force": row["case"].split()[0],
+        "bodies": row["bodies"],
+        "K N/µm": "-" if not found else f"{1e-6 * found['k']:.2f}",
+        "C N s/m": "-" if not found else f"{found['c']:.0f}",
+        "|Z| N/µm": "-" if not found else f"{1e-6 * found['abs_z']:.2f}",
+        "K %": _percent(other.get("k")),
+        "wC %": _percent(other.get("wc")),
+        "|Z| %": _percent(other.get("abs_z")),
+        "energy": "-" if balance is None else f"{balance:.1e}",
+        **_cost_cells(row),
+    }
+
+
+def _cost_cells(row: ReadTables) -> Tables:
+    cost = row["cost"]
+    return {"CPU s": f"{cost['cpu_s']:.1f}", "GiB": gib(cost)}
+
+
+def _percent(part: float | None) -> str:
+    """Per cent without the sign, which the head has."""
+    return per_cent(part).removesuffix(" %")
 
 
 def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None, command: str) -> Page:
@@ -250,3 +450,44 @@ def _small(value: float | None) -> str:
 
 def _count(value: int | None) -> str:
     return "–" if value is None else str(value)
+
+
+def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> list[Path]:
+    """Write everything; the files, the page first.
+
+    Raises
+    ------
+    RacewayError
+        matplotlib is missing, or a folder or disk that cannot be written.
+    """
+    content = study.to_dict()
+    files = [write_json(content, folder / "article-elastic.json")]
+    files.append(write_csv(_columns(content["rows"]), folder / "article-elastic.csv"))
+    if pictures:
+        drawn = drawings(content)
+        files += save_pictures(drawn, folder)
+        stress = [
+            folder / name for row in content["rows"] for name in row.get("pictures") or [] if (folder / name).is_file()
+        ]
+        files += stress
+        section = next((file.read_bytes() for file in stress if file.suffix == ".png"), None)
+        files.insert(0, page(content, drawn, section, command).write(folder / "article-elastic.html"))
+    return files
+
+
+def _columns(rows: Sequence[ReadTables]) -> list[Tables]:
+    """Flat rows without what is a table in other rows: its own columns stay empty where there is none."""
+    found = [flat(row) for row in rows]
+    inner = {name.rpartition(".")[0] for row in found for name in row}
+    return [{name: value for name, value in row.items() if name not in inner} for row in found]
+
+
+def flat(table: ReadTables, before: str = "") -> Tables:
+    """Numbers and words of nested tables, with their names joined by dots; lists are left to the JSON file."""
+    out: Tables = {}
+    for name, value in table.items():
+        if isinstance(value, dict):
+            out |= flat(value, f"{before}{name}.")
+        elif not isinstance(value, list):
+            out[f"{before}{name}"] = value
+    return out

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
 
-from raceway.storage.tables import Tables
-from raceway.studies.article import causes, expected
+from raceway.commands.screen import Words, written
+from raceway.pipeline.result import without_nan, write_json
+from raceway.plugins.pictures import save_figure
+from raceway.storage.files import write_whole
+from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.article import runs
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
-from raceway.studies.article.figures import named
-from raceway.studies.article.panel import Picture
-from raceway.studies.article.verdict import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
+from raceway.studies.article.figures import Picture, drawings, named
+from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
 from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
-    from raceway.storage.tables import ReadTables
     from raceway.studies.article.study import Article
+
 
 TONES = {HOLDS: "good", PARTLY: "partly", NOT: "bad", FAILED: "failed", UNTESTED: "partly"}
 ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads with Rotor Excitation” (Lubricants 2026, 14(3), 128)"
@@ -66,12 +76,12 @@ def _opening(out: Page, study: Article) -> None:
 def in_short(study: Article) -> list[str]:
     """What the numbers say, in two sentences."""
     load = study.curves.design.own_load
-    row = causes.one_at_a_time(study.curves, load)[0][1]
+    row = runs.one_at_a_time(study.curves, load)[0][1]
     out = [
         _friction_in_short(study),
         f"Under the rotating force m e w² at {load:g} N, without friction, K changes from the lowest to the highest speed by {_each(row)}.",
     ]
-    turns = {load: causes.turning_point(causes.hardening(rows)) for load, rows in study.scan.items()}
+    turns = {load: runs.turning_point(runs.hardening(rows)) for load, rows in study.scan.items()}
     known = [f"{_round(value)} N m/rad at {load:g} N" for load, value in turns.items() if value is not None]
     if known:
         out.append(
@@ -86,9 +96,7 @@ def _friction_in_short(study: Article) -> str:
     made = study.curves.design
     if len(made.frictions) < 2:
         return "All runs are without friction, of which the article has a coefficient of 0.03."
-    known = [
-        one for one in causes.friction_trends(study.curves) if not any(isinstance(one[kind], str) for kind in FRICTIONS)
-    ]
+    known = [one for one in runs.friction_trends(study.curves) if not any(isinstance(one[kind], str) for kind in FRICTIONS)]
     if not known:
         return f"No run with the article's friction of {made.friction:g} came to an end: every verdict is without it."
     most = max(known, key=lambda one: abs(one["standing"] - one["none"]))
@@ -121,7 +129,7 @@ def _friction(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
     columns = ["", *(FRICTION_WORDS[one] for one in made.frictions)]
     rows = [
         [f"{TILT_WORDS[one['tilt']]}, {one['axial_n']:g} N", *(_percent(one[kind]) for kind in made.frictions)]
-        for one in causes.friction_trends(study.curves)
+        for one in runs.friction_trends(study.curves)
     ]
     out.table(columns, rows, "Change of K from the lowest to the highest speed, k*(1) − 1, rotating force m e w²")
     _picture(out, pictures["friction"])
@@ -129,7 +137,7 @@ def _friction(out: Page, study: Article, pictures: dict[str, Picture]) -> None:
 
 def _swaps(out: Page, study: Article, load: float) -> None:
     columns = ["one choice swapped at a time", *(TILT_WORDS[tilt] for tilt in TILTS)]
-    rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in causes.one_at_a_time(study.curves, load)]
+    rows = [[name, *(_percent(row[tilt]) for tilt in TILTS)] for name, row in runs.one_at_a_time(study.curves, load)]
     out.table(columns, rows, f"Change of K from the lowest to the highest speed, k*(1) − 1, at {load:g} N")
 
 
@@ -239,7 +247,7 @@ def _trends(out: Page, study: Article) -> None:
         "rigid-ring solver (docs/physics.md, section 7) and of this program. A row holds when every number rounds to the printed "
         "digits."
     )
-    columns = ["", "", "k(10 980) N/µm", *(f"k* {speed:g}" for speed in expected.SPEEDS[1:]), "off, last digit", ""]
+    columns = ["", "", "k(10 980) N/µm", *(f"k* {speed:g}" for speed in runs.SPEEDS[1:]), "off, last digit", ""]
     rows: list[list[object]] = []
     for one in study.trends:
         balls = "ball inertia" if one.inertia else "weightless balls"
@@ -308,3 +316,95 @@ def verdict_rows(study: Article) -> list[Tables]:
     return [
         {**attrs.asdict(one, filter=lambda field, _: field.name not in skip), "verdict": one.words} for one in study.verdicts
     ]
+
+
+_COLOURS = {"holds": "green", "holds only for": "yellow", "does not hold": "red"}
+
+
+def article_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """Verdicts, the check against an independent solver, failures and cost.
+
+    Parameters
+    ----------
+    content : what ``--json`` prints;  files : what was written
+    """
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for name in ("", "claim", "verdict"):
+        table.add_column(name)
+    for one in content["verdicts"]:
+        words = Text(one["kind"], style=_COLOURS.get(one["kind"], "magenta"))
+        if one["region"]:
+            words.append(f" {one['region']}", style="default")
+        if one["failed"]:
+            words.append("; some runs failed or are unstable", style="magenta")
+        table.add_row(one["number"], Words(one["claim"]), words)
+    trends = content["quasi_static"]
+    good = sum(row["holds"] for row in trends)
+    cost = content["cost"]
+    lines = [
+        f"quasi-static trends equal to an independent solver's printed digits: {good} of {len(trends)}",
+        f"{content['runs']} points, {content['failed']} failed; {cost['wall_s']:.0f} s, "
+        f"{cost['cpu_s']:.0f} s of processor time"
+        + (f"; {cost['reused']} of {cost['tasks']} pieces taken from earlier" if cost["reused"] else ""),
+    ]
+    return Group(Words(content["title"], "bold"), table, *(Words(line, "dim") for line in lines), *written(files))
+
+
+_DOTS_PER_INCH = 110
+
+
+def write(study: Article, folder: Path, pictures: bool = True, command: str = "raceway study article") -> list[Path]:
+    """Write everything; the files, the page first.
+
+    Raises
+    ------
+    RacewayError
+        matplotlib is missing, or a folder or disk that cannot be written.
+    """
+    content = study.to_dict()
+    files = [write_json(content, folder / "article.json")]
+    files += [write_csv(rows, folder / f"{name}.csv") for name, rows in _tables(study, content).items()]
+    if pictures:
+        drawn = drawings(study)
+        files += save_pictures(drawn, folder)
+        files.insert(0, page(study, drawn, command).write(folder / "article.html"))
+    return files
+
+
+def save_pictures(drawn: Iterable[Picture], folder: Path) -> list[Path]:
+    """Each as a PNG of its name."""
+    return [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in drawn]
+
+
+def _tables(study: Article, content: ReadTables) -> dict[str, list[Tables]]:
+    scan = [
+        {"axial_n": load, "tilt_stiffness": stiffness, "k_ratio": ratio}
+        for load, rows in study.scan.items()
+        for stiffness, ratio in zip(runs.STIFFNESSES, without_nan(runs.hardening(rows).tolist()), strict=True)
+    ]
+    trends = []
+    for one in study.trends:
+        flat = attrs.asdict(one, filter=lambda field, _: field.name not in ("expected", "computed"))
+        for name in ("expected", "computed"):
+            values: Sequence[object] = getattr(one, name) or ()
+            flat |= {f"{name}_{place}": value for place, value in enumerate(values)}
+        trends.append({**flat, "off_in_last_digits": one.off, "holds": one.holds})
+    return {
+        "curves": content["rows"],
+        "verdicts": verdict_rows(study),
+        "quasi-static": trends,
+        "static": list(study.static),
+        "rig": list(study.rig),
+        "friction": content["friction_trends"],
+        "tilt-stiffness": scan,
+    }
+
+
+def write_csv(rows: Iterable[ReadTables], path: Path) -> Path:
+    """A table with every key of any row as a column."""
+    found = list(rows)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(dict.fromkeys(key for row in found for key in row)), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(found)
+    return write_whole(text.getvalue().encode(), path)
