@@ -33,8 +33,8 @@ NATURAL = float(np.sqrt(STIFFNESS / MASS))
 PERIOD = 2.0 * np.pi / NATURAL
 #: Factor of the contact [N/m^1.5] and the load [N] that preloads it.
 FACTOR, PRELOAD = 1e10, 300.0
-#: Force [N] and its speed [rad/s]: three quarters of the natural frequency.
-FORCE, SPEED = 200.0, 0.75 * NATURAL
+#: Amplitude of the force [N] and its speed [rad/s]: three quarters of the natural frequency.
+AMPLITUDE, SPEED = 200.0, 0.75 * NATURAL
 
 
 def counting_system() -> System:
@@ -67,7 +67,7 @@ def linear_system(damped: bool = True, forced: bool = True) -> System:
         damping[1, 2], damping[2, 1] = GYROSCOPIC, -GYROSCOPIC
     parts: Tables = {}
     if forced:
-        parts = {"force": harmonic, "force_params": np.array([FORCE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])}
+        parts = {"force": harmonic, "force_params": np.array([AMPLITUDE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])}
     stiffness = np.diag([0.0, STIFFNESS, 1.3 * STIFFNESS, 0.0, 0.0])
     return _system([0.0, 1.0, 1.0, 0.0, 0.0], damping=damping, stiffness=stiffness, clearance=_OPEN, **parts)
 
