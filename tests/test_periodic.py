@@ -31,8 +31,7 @@ from raceway.core.stepping.record import Motion, Schedule
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.transient_error import steady_record
 from raceway.testing import model_of, settle
-from raceway.testing.compiled import along_x
-from raceway.testing.systems import PRELOAD, SPEED, contact_system, exact, linear_system, motion
+from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
 from validation.command_line import ARTICLE, invoke
 from validation.scenes import rotating
 from validation.several import heavy

@@ -20,8 +20,7 @@ from raceway.core.periodic.problem import Path, Problem
 from raceway.core.periodic.symmetry import one_turn
 from raceway.core.ring.address import by_address
 from raceway.core.ring.system import System
-from raceway.testing.compiled import along_x
-from raceway.testing.systems import contact_system
+from raceway.testing.systems import along_x, contact_system
 
 
 @jit(LAW)

@@ -1,15 +1,10 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
-suite          what all suites share: duties, rows, expected failures, how they become pytest methods
-contact_law, excitation, integrator, identifier, bodies, mesher, format, report, executor, study   one suite a file
-steady         duties of integrators that solve for the steady motion
-systems        small mechanical systems with known answers;  signals: records with a known stiffness
-scenes         scenes, models and results of a bearing;  bearings: scenes and bearings that kinds of bodies are tried on
-asked          what else a scene may ask of bodies, and how a bearing shows it
-drivers        one driver of a scheme by itself
-compiled       the few compiled loops that the suites need;  allocation: what they allocate
-child          duties in child processes with limits of time and memory
-units          units of options
+suite          what all suites share: duties, rows, expected failures, how they become pytest methods, children with limits
+contact_law, integrator, bodies   one suite a file;  signals: excitations, identifiers
+kinds          suites of few duties: formats, meshers, reports, executors, studies
+systems        small mechanical systems with known answers, compiled loops
+scenes         scenes, models and results of a bearing
 scaffold       the package of a new plug-in
 
 Subclass a suite in a test file, and pytest collects its checks::
@@ -33,29 +28,20 @@ if TYPE_CHECKING:
 
 #: kind -> (module, class) of its suite
 SUITES: dict[str, tuple[str, str]] = {
-    "contact_law": ("raceway.testing.contact_law", "ContactLawSuite"),
-    "excitation": ("raceway.testing.excitation", "ExcitationSuite"),
-    "integrator": ("raceway.testing.integrator", "IntegratorSuite"),
-    "identifier": ("raceway.testing.identifier", "IdentifierSuite"),
-    "mesher": ("raceway.testing.mesher", "MesherSuite"),
-    "format": ("raceway.testing.format", "FormatSuite"),
-    "bodies": ("raceway.testing.bodies", "BodiesSuite"),
-    "report": ("raceway.testing.report", "ReportSuite"),
-    "executor": ("raceway.testing.executor", "ExecutorSuite"),
-    "study": ("raceway.testing.study", "StudySuite"),
-}
+    kind: (f"raceway.testing.{module}", f"{kind.title().replace('_', '')}Suite")
+    for module, kinds in {
+        "contact_law": "contact_law", "signals": "excitation identifier", "integrator": "integrator", "bodies": "bodies",
+        "kinds": "mesher format report executor study",
+    }.items()
+    for kind in kinds.split()
+}  # fmt: skip
 _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
-    "Conformity": "raceway.testing.suite",
-    "Row": "raceway.testing.suite",
-    "Suite": "raceway.testing.suite",
-    "duty": "raceway.testing.suite",
-    "require": "raceway.testing.suite",
+    **dict.fromkeys(("Conformity", "Row", "Suite", "duty", "require"), "raceway.testing.suite"),
     # What tests of single steps need beside the public functions.
     **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.scenes"),
+    **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.registry"),
     "Model": "raceway.bodies.model",
-    "Registry": "raceway.framework.registry",
-    "default_registry": "raceway.framework.registry",
     "run": "raceway.pipeline.run",
     "settle": "raceway.pipeline.settle",
     "simulate": "raceway.pipeline.simulate",
@@ -76,12 +62,7 @@ def suite_of(kind: str) -> type[Suite]:
 
 
 def check(entry: Entry) -> Conformity:
-    """Run every check of the kind's suite on a registered plug-in.
-
-    Parameters
-    ----------
-    entry : raceway.framework.registry.Entry, from ``Registry.find`` or ``Registry.find_any``
-    """
+    """Run every check of the kind's suite on a registered plug-in, from ``Registry.find`` or ``Registry.find_any``."""
     return suite_of(entry.kind).conformity(entry.plugin, entry.kind, entry.name)
 
 

@@ -1,8 +1,13 @@
-"""The conformance suite of kinds of bodies."""
+"""The conformance suite of kinds of bodies.
+
+Bodies are built for their own ``example_scene()``, or for a ball bearing, and for that scene with more asked for (``EXTRAS``): what
+bodies do not compute, they must refuse.
+"""
 
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -16,6 +21,7 @@ from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Schedule
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
@@ -25,11 +31,13 @@ from raceway.pipeline.run import run
 from raceway.planning.decisions import decide_balls, decide_motion, decide_tilts
 from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.testing.asked import OTHERS, PLAIN
-from raceway.testing.bearings import is_key, registry_with, scene_of, settled, unbalanced
-from raceway.testing.drivers import FromPython, has_both
-from raceway.testing.suite import ConformityError, Suite, duty, require
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.storage.tables import Tables
+from raceway.testing.integrator import FromPython, has_both
+from raceway.testing.scenes import settled
+from raceway.testing.suite import ConformityError, Suite, check_shape, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import BodiesKind
@@ -42,6 +50,127 @@ _MORE, _TANGENT = 1e-3, 1e-3
 _ANGLES = 0.02
 #: Steps of the explicit limit that each method takes, over it.
 _STEPS, _OF_LIMIT = 12, 0.1
+#: Keys by table.
+Changes = dict[str, Tables]
+#: Model, equilibrium, and the displacement (5,) of the plain scene -> whether the bearing shows a change.
+Shows = Callable[[Model, Equilibrium, np.ndarray], bool]
+
+#: For kinds that give no scene of their own: 30 mm bore under a skew load and a turning force.
+_USUAL: Tables = {
+    "title": "conformance", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+    "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90}, "kinematics": {"ball_inertia": False},
+}  # fmt: skip
+
+
+def _moves(_model: Model, equilibrium: Equilibrium, plain: np.ndarray) -> bool:
+    return not np.array_equal(equilibrium.displacement, plain)
+
+
+def _has_no_potential(model: Model, _equilibrium: Equilibrium, _plain: np.ndarray) -> bool:
+    return not model.system.conservative
+
+
+def _is_damped(model: Model, equilibrium: Equilibrium, _plain: np.ndarray) -> bool:
+    """Bodies that are stepped from Python may know rates in motion only."""
+    q, ball = equilibrium.displacement, equilibrium.ball
+    return not model.traits.compiled or bool(model.system.evaluate(q, ball=ball).damping.any())
+
+
+def _passes(model: Model, equilibrium: Equilibrium, _plain: np.ndarray) -> bool:
+    """Rolling elements are elsewhere a millisecond later."""
+    q, ball = equilibrium.displacement, equilibrium.ball
+    now, later = (model.system.evaluate(q, ball=ball, t=t).contact_force for t in (0.0, 1e-3))
+    return not np.array_equal(now, later)
+
+
+#: What a plain scene has none of.
+PLAIN: Changes = {"kinematics": {"ball_inertia": False}}
+#: What a scene may ask for beyond a plain one: changed keys, and how a bearing shows them.
+EXTRAS: dict[str, tuple[Changes, Shows]] = {
+    "free tilts": (
+        {"supports": {"tilt": "free"}, "rotor": {"mass": 1.0, "transverse_inertia": 1e-3}},
+        lambda model, _equilibrium, _plain: bool(model.system.free[3:].all()),
+    ),
+    "a held axial displacement": (
+        {"supports": {"axial": "displacement"}}, lambda model, _equilibrium, _plain: bool(model.system.free[0] == 0.0),
+    ),
+    "a pair of rows": (
+        {"bearing": {"arrangement": "DB", "row_distance": 0.02}},
+        lambda model, _equilibrium, _plain: model.system.ball_count == 2 * model.scene.bearing.ball_count,
+    ),
+    "an expanded inner ring": ({"kinematics": {"radial_expansion": 1e-6}}, _moves),
+    "a soft seat": ({"supports": {"outer_seat": 1e13}}, _moves),
+    "surface points": ({"contact": {"discretisation": "nodal"}}, _moves),
+    "inertia of the balls": ({"kinematics": {"ball_inertia": True}}, _moves),
+    "gyroscopic moments": ({"kinematics": {"ball_inertia": True, "gyroscopic": "outer_race"}}, _has_no_potential),
+    "orbiting balls": ({"kinematics": {"orbiting": True}}, _passes),
+    "friction": ({"contact": {"friction": 0.05}}, _has_no_potential),
+    "damping of the contacts": ({"contact": {"damping": 100.0}}, _is_damped),
+}  # fmt: skip
+
+
+@attrs.frozen
+class _Package:
+    """A plug-in module with one kind of bodies."""
+
+    kind: type
+
+    @hookimpl
+    def raceway_bodies(self) -> list[type]:
+        return [self.kind]
+
+
+def registry_with(bodies: BodiesKind) -> Registry:
+    """What is installed, what else the kind's own package brings, and the kind itself."""
+    registry, cls = Registry(), type(bodies)
+    # A package's own contact laws may be all that its bodies run with.
+    for name in (cls.__module__.split(".")[0], cls.__module__):
+        module = sys.modules.get(name)
+        if any(word.startswith("raceway_") for word in vars(module or object)) and name != "raceway":
+            registry.add(module)
+    if ("bodies", cls.name) not in registry.entries:
+        registry.add(_Package(cls))
+    return registry
+
+
+def scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
+    """The kind's ``example_scene()``, or the usual one, with these bodies; ``changes`` : keys by table."""
+    registry = registry or registry_with(bodies)
+    example = getattr(type(bodies), "example_scene", lambda: _USUAL)()
+    tables = {name: table for name, table in example.items() if name != "bodies"}
+    for name, keys in (changes or {}).items():
+        tables[name] = {**tables.get(name, {}), **keys}
+    try:
+        scene = scene_from_dict(tables, registry)
+    except SceneError as why:
+        raise ConformityError(f"example_scene() is no scene: {why}") from why
+    return attrs.evolve(scene, bodies=bodies, source={**scene.source, "bodies": {"kind": bodies.name}})
+
+
+def is_key(scene: Scene, path: str) -> bool:
+    """Whether a path names a key, or a table, of the scene."""
+    table, _, key = path.partition(".")
+    if table not in (*TABLES, *PLUGIN_TABLES):
+        return False
+    part = getattr(scene, table)
+    if part is None or key in ("", "kind"):
+        return True
+    plugins = [getattr(part, f.name) for f in attrs.fields(type(part)) if "plugin" in f.metadata][:1]
+    return key.partition(".")[0] in {
+        f.name for each in (part, *plugins) if each is not None for f in attrs.fields(type(each))
+    }
+
+
+def unbalanced(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
+    """What is left of the loads on the free coordinates at a state (5,), (Z, k), over all forces."""
+    from raceway.core.ring.kernels.layout import CAGE
+
+    system = model.system
+    now = system.without(CAGE).evaluate(q, ball=ball)
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm]) * system.free
+    residual = now.force + system.stiffness @ q - system.load
+    return float(np.abs(residual * weight).max() / (np.abs(now.contact_force).sum() + np.abs(system.load * weight).sum()))
 
 
 @contextmanager
@@ -58,13 +187,13 @@ def _nothing_built() -> Iterator[None]:
         del Bearing.__new__
 
 
-def _refusal(scene: Scene) -> SceneError | None:
-    """What the plan says of a scene; None where it takes it."""
+def _refused(scene: Scene) -> bool:
+    """Whether the plan refuses a scene."""
     try:
         make_plan(scene)
-    except SceneError as refused:
-        return refused
-    return None
+    except SceneError:
+        return True
+    return False
 
 
 class BodiesSuite(Suite):
@@ -76,16 +205,16 @@ class BodiesSuite(Suite):
     def test_faults(self, bodies: BodiesKind) -> str:
         registry, refused = registry_with(bodies), []
         with _nothing_built():
-            for word, changes in {"its example": {}, **{word: one.changes for word, one in OTHERS.items()}}.items():
+            for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in EXTRAS.items()}}.items():
                 scene = scene_of(bodies, changes, registry)
-                found = bodies.faults(scene)
-                require(isinstance(found, list), f"{word}: faults() returns {type(found).__name__}, not a list")
-                for one in found:
-                    require(isinstance(one, Mistake), f"{word}: faults() holds {one!r}, which is no Mistake")
-                    require(is_key(scene, one.path), f"{word}: `{one.path}` is no key of a scene")
-                    require(len(one.message) > 20, f"{word}: '{one.message}' names no reason and no remedy")
-                require(changes or not found, f"its example is refused: {'; '.join(map(str, found))}")
-                refused += [word] if found else []
+                faults = bodies.faults(scene)
+                require(isinstance(faults, list), f"{word}: faults() returns {type(faults).__name__}, not a list")
+                for fault in faults:
+                    require(isinstance(fault, Mistake), f"{word}: faults() holds {fault!r}, which is no Mistake")
+                    require(is_key(scene, fault.path), f"{word}: `{fault.path}` is no key of a scene")
+                    require(len(fault.message) > 20, f"{word}: '{fault.message}' names no reason and no remedy")
+                require(changes or not faults, f"its example is refused: {'; '.join(map(str, faults))}")
+                refused += [word] if faults else []
         return f"refused: {', '.join(refused) or 'nothing'}"
 
     @duty(
@@ -96,16 +225,16 @@ class BodiesSuite(Suite):
         with _nothing_built():
             traits, limit, parts = bodies.traits(scene), bodies.stable_step(scene), Decisions()
             require(isinstance(traits, Traits), f"traits() returns {type(traits).__name__}, not Traits")
-            require(all(type(one) is bool for one in attrs.astuple(traits)), f"{traits} holds more than True and False")
+            require(all(type(trait) is bool for trait in attrs.astuple(traits)), f"{traits} holds more than True and False")
             require(limit is None or 0.0 < limit < np.inf, f"stable_step() = {limit!r} is neither None nor a time [s]")
             balls = decide_balls(scene, parts)
             motion = decide_motion(scene, parts, decide_tilts(scene, parts), balls.friction)
             decide: Callable[..., object] = bodies.decide
             require(decide(scene, parts) is None, "decide() returns something: parts are kept or left out")
-            for one in (*parts.kept, *parts.left_out):
-                good = all(isinstance(word, str) and word for word in (one.part, one.why))
-                require(good, f"{one} needs a name and a reason in words")
-            names = [one.part for one in (*parts.kept, *parts.left_out)]
+            for part in (*parts.kept, *parts.left_out):
+                good = all(isinstance(word, str) and word for word in (part.part, part.why))
+                require(good, f"{part} needs a name and a reason in words")
+            names = [part.part for part in (*parts.kept, *parts.left_out)]
             twice = sorted({name for name in names if names.count(name) > 1})
             require(not twice, f"{', '.join(twice)} is decided twice")
             for path, why in bodies.unused(scene):
@@ -120,37 +249,34 @@ class BodiesSuite(Suite):
     def test_build(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
         bearing = bodies.build(scene, make_plan(scene))
-        require(
-            isinstance(bearing, Bearing), f"build() returns {type(bearing).__name__}, not a raceway.bodies.model.Bearing"
-        )
-        require(np.shape(bearing.guess) == (5,), f"`guess` has the shape {np.shape(bearing.guess)}, not (5,)")
+        kind = type(bearing).__name__
+        require(isinstance(bearing, Bearing), f"build() returns {kind}, not a raceway.bodies.model.Bearing")
+        check_shape("`guess`", bearing.guess, (5,))
         z = scene.bearing.balls_in_all
         require(bearing.system.ball_count == z, f"the system has {bearing.system.ball_count} balls, the scene {z}")
-        require(
-            bearing.basis.azimuth.shape == (z,), f"`basis.azimuth` has the shape {bearing.basis.azimuth.shape}, not ({z},)"
-        )
+        check_shape("`basis.azimuth`", bearing.basis.azimuth, (z,))
         require(bearing.largest_motion > 0.0, f"`largest_motion` = {bearing.largest_motion} m")
 
     @duty("the equilibrium balances the loads")
     def test_equilibrium(self, bodies: BodiesKind) -> str:
-        model, found = settled(scene_of(bodies))
-        left = unbalanced(model, found.displacement, found.ball)
-        require(left < _BALANCE, f"{left:.2g} of the loads is left")
-        require(found.iterations >= 0, f"{found.iterations} iterations")
-        return f"{left:.1e} of the loads is left"
+        model, equilibrium = settled(scene_of(bodies))
+        unbalance = unbalanced(model, equilibrium.displacement, equilibrium.ball)
+        require(unbalance < _BALANCE, f"{unbalance:.2g} of the loads is left")
+        require(equilibrium.iterations >= 0, f"{equilibrium.iterations} iterations")
+        return f"{unbalance:.1e} of the loads is left"
 
     @duty("the tangent is the derivative of the force by the displacement, symmetric where forces have a potential")
     def test_tangent(self, bodies: BodiesKind) -> str:
-        model, found = settled(scene_of(bodies))
+        model, equilibrium = settled(scene_of(bodies))
         system, free = model.system, np.flatnonzero(model.system.free > 0.0)
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm]) * _MORE * max(np.abs(system.load).max(), 1.0)
-        K = system.reduced(found.stiffness + system.stiffness)
+        K = system.reduced(equilibrium.stiffness + system.stiffness)
         worst = 0.0
         for k, at in enumerate(free):
             ends = []
             for sign in (1.0, -1.0):
                 load = system.load + sign * size[at] * np.eye(5)[at]
-                ends.append(attrs.evolve(system, load=load).settle(found.displacement)[0][free])
+                ends.append(attrs.evolve(system, load=load).settle(equilibrium.displacement)[0][free])
             moved = K @ (ends[0] - ends[1]) / (2.0 * size[at])
             worst = max(worst, float(np.abs((moved - np.eye(len(free))[k]) * size[free] / size[at]).max()))
         require(worst < _TANGENT, f"K dq differs by {worst:.2g} of the load that moves the ring by dq")
@@ -165,116 +291,114 @@ class BodiesSuite(Suite):
         "contact forces (2 Z,) and gaps: never negative, none in an open contact; with their angles they balance the loads"
     )
     def test_contacts(self, bodies: BodiesKind) -> str:
-        model, found = settled(scene_of(bodies))
-        z, force, gap = model.system.ball_count, found.contact_force, found.gap
+        model, equilibrium = settled(scene_of(bodies))
+        z, force, gap = model.system.ball_count, equilibrium.contact_force, equilibrium.gap
         for word, values in (("contact_force", force), ("gap", gap)):
-            require(np.shape(values) == (2 * z,), f"`{word}` has the shape {np.shape(values)}, not ({2 * z},)")
+            check_shape(f"`{word}`", values, (2 * z,))
             require(np.isfinite(values).all(), f"`{word}` is not finite")
         require((force >= 0.0).all(), f"a contact pulls with {force.min():.3g} N")
-        for word, angle, part in (("inner", found.angle_inner, force[:z]), ("outer", found.angle_outer, force[z:])):
-            require(np.shape(angle) == (z,), f"the {word} angles have the shape {np.shape(angle)}, not ({z},)")
-            require(
-                (np.isnan(angle) == (part == 0.0)).all(), f"{word} angles are nan where a contact is open, and only there"
-            )
-        q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (found.displacement, found.ball, force))
+        for word, angle, part in (
+            ("inner", equilibrium.angle_inner, force[:z]),
+            ("outer", equilibrium.angle_outer, force[z:]),
+        ):
+            check_shape(f"the {word} contact angle", angle, (z,))
+            matches = (np.isnan(angle) == (part == 0.0)).all()
+            require(matches, f"{word} angles are nan where a contact is open, and only there")
+        q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
         several = model.bearing.contact_angles(model, q, ball, forces, np.zeros(3))
         shapes = [np.shape(angle) for angle in several]
         require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
-        over = np.shape(model.bearing.over_edges(model, *several, forces))
-        require(over == (3,), f"over_edges() of three states has the shape {over}, not (3,)")
-        return _carried(model, found)
+        check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
+        return _carried(model, equilibrium)
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
     def test_told(self, bodies: BodiesKind) -> None:
-        model, found = settled(scene_of(bodies))
-        bearing, load = model.bearing, np.linspace(0.0, 2.0 * found.contact_force.max(), 7)
+        model, equilibrium = settled(scene_of(bodies))
+        bearing, load = model.bearing, np.linspace(0.0, 2.0 * equilibrium.contact_force.max(), 7)
         for race in (0, 1):
-            told = bearing.contact_ellipse(model, race, load)
-            require(
-                len(told) == 3 and all(np.shape(one) == (7,) for one in told), "contact_ellipse(): three arrays like `load`"
-            )
-            require(all(np.isfinite(one).all() and (np.diff(one) >= 0.0).all() for one in told), "contact_ellipse() falls")
-            require(told[0][0] == 0.0 < told[0][1], "the peak pressure begins at 0 without a load, and grows")
-        for name, column in bearing.ball_columns(model, found).items():
+            ellipse = bearing.contact_ellipse(model, race, load)
+            require([np.shape(part) for part in ellipse] == [(7,)] * 3, "contact_ellipse(): three arrays like `load`")
+            rises = all(np.isfinite(part).all() and (np.diff(part) >= 0.0).all() for part in ellipse)
+            require(rises, "contact_ellipse() falls")
+            require(ellipse[0][0] == 0.0 < ellipse[0][1], "the peak pressure begins at 0 without a load, and grows")
+        for name, column in bearing.ball_columns(model, equilibrium).items():
             shape = np.shape(column)
             require(shape == (model.system.ball_count,), f"ball_columns()['{name}'] has the shape {shape}, not (Z,)")
-        json.dumps(without_nan(bearing.report(model, found)), allow_nan=False)
-        edges = bearing.edge_warnings(model, found.angle_inner, found.angle_outer, found.contact_force)
-        words = [*bearing.warnings(model, found), *edges]
-        require(all(isinstance(one, str) and one for one in words), f"warnings are sentences, not {words!r}")
+        json.dumps(without_nan(bearing.report(model, equilibrium)), allow_nan=False)
+        edges = bearing.edge_warnings(model, equilibrium.angle_inner, equilibrium.angle_outer, equilibrium.contact_force)
+        words = [*bearing.warnings(model, equilibrium), *edges]
+        require(all(isinstance(word, str) and word for word in words), f"warnings are sentences, not {words!r}")
         for name in ("mesh_error", "contact_error"):
-            answer = getattr(bearing, name)(model, found)
+            answer = getattr(bearing, name)(model, equilibrium)
             good = isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[1], str) and bool(answer[1])
-            require(good, f"{name}() returns {answer!r}, not (number or None, how it was found)")
+            require(good, f"{name}() returns {answer!r}, not (number or None, how it was equilibrium)")
             require(answer[0] is None or 0.0 <= answer[0] < np.inf, f"{name}() is {answer[0]!r}")
 
     @duty(
         "steps of newmark, central_difference and quasi_static; where forces are compiled, compiled and stepped drivers agree"
     )
     def test_steps(self, bodies: BodiesKind) -> str:
-        model, found = settled(scene_of(bodies))
+        model, equilibrium = settled(scene_of(bodies))
         system, compiled = model.system, model.traits.compiled
-        schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(found.stiffness), _STEPS, 1), 0.0
+        schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(equilibrium.stiffness), _STEPS, 1), 0.0
         for method in (Newmark(), CentralDifference(), QuasiStatic()):
             begin = model.bearing.at_rest if method.inertial else model.bearing.at_equilibrium
-            start = begin(system, found.displacement, found.ball, False)
+            start = begin(system, equilibrium.displacement, equilibrium.ball, False)
             record = integrate(method, system, start, schedule)
-            moved = record.displacement - found.displacement
+            moved = record.displacement - equilibrium.displacement
             size = float(np.abs(moved).max())
             require(np.isfinite(moved).all() and size > 0.0, f"{method.name}: the ring does not move under the force")
             if compiled and has_both(method):
-                other = integrate(FromPython(method), system, start, schedule)
-                worst = max(worst, float(np.abs(other.displacement - record.displacement).max()) / size)
+                stepped = integrate(FromPython(method), system, start, schedule)
+                worst = max(worst, float(np.abs(stepped.displacement - record.displacement).max()) / size)
                 # Both end their iterations at 1e-9 of all forces, of which the excitation is a small part.
                 require(worst < 1e-5, f"{method.name}: drivers differ by {worst:.2g} of the motion")
         return f"drivers differ by {worst:.1e} of the motion" if compiled else "stepped"
 
     @duty("the same scene gives the same equilibrium to the last bit")
     def test_repeats(self, bodies: BodiesKind) -> None:
-        one, two = (settled(scene_of(bodies))[1] for _ in range(2))
+        first, second = (settled(scene_of(bodies))[1] for _ in range(2))
         for word in ("displacement", "stiffness", "contact_force"):
-            require(np.array_equal(getattr(one, word), getattr(two, word)), f"`{word}` differs")
+            require(np.array_equal(getattr(first, word), getattr(second, word)), f"`{word}` differs")
 
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
     def test_refused_or_computed(self, bodies: BodiesKind) -> str:
         registry, computed = registry_with(bodies), []
         plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
-        for word, asked in OTHERS.items():
-            scene = scene_of(bodies, asked.changes, registry)
-            if _refusal(scene) is None and bodies.traits(scene).resultants:
-                computed.append(word)
-                self._computes(word, scene, plain)
+        for word, (changes, shows) in EXTRAS.items():
+            scene = scene_of(bodies, changes, registry)
+            if _refused(scene) or not bodies.traits(scene).resultants:
+                continue
+            computed.append(word)
+            try:
+                model, equilibrium = settled(scene)
+            except RacewayError as why:
+                raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
+            left_over = unbalanced(model, equilibrium.displacement, equilibrium.ball)
+            require(left_over < _BALANCE, f"{word}: {left_over:.2g} of the loads is left")
+            require(shows(model, equilibrium, plain), f"{word}: changes nothing: refuse it by faults()")
         return f"computed: {', '.join(computed) or 'nothing'}"
-
-    def _computes(self, word: str, scene: Scene, plain: np.ndarray) -> None:
-        try:
-            model, found = settled(scene)
-        except RacewayError as why:
-            raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
-        left = unbalanced(model, found.displacement, found.ball)
-        require(left < _BALANCE, f"{word}: {left:.2g} of the loads is left")
-        require(OTHERS[word].shows(model, found, plain), f"{word}: changes nothing: refuse it by faults()")
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
     def test_run(self, bodies: BodiesKind) -> str:
-        registry: Registry = registry_with(bodies)
+        registry = registry_with(bodies)
         result = run(scene_of(bodies, registry=registry), registry)
-        told = json.loads(json.dumps(result.to_dict(), allow_nan=False))
-        require(told["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
-        stiffness = told["identification"]["equivalent_stiffness"]
+        stored = json.loads(json.dumps(result.to_dict(), allow_nan=False))
+        require(stored["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
+        stiffness = stored["identification"]["equivalent_stiffness"]
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")
         return f"K = {stiffness:.4g} N/m"
 
 
-def _carried(model: Model, found: Equilibrium) -> str:
+def _carried(model: Model, equilibrium: Equilibrium) -> str:
     """Sum of the inner races' forces against the loads on the free translations."""
     z, azimuth = model.system.ball_count, model.azimuth
-    load = np.where(found.contact_force[:z] > 0.0, found.contact_force[:z], 0.0)
-    angle = np.nan_to_num(found.angle_inner)
+    load = np.where(equilibrium.contact_force[:z] > 0.0, equilibrium.contact_force[:z], 0.0)
+    angle = np.nan_to_num(equilibrium.angle_inner)
     side = np.array([side for side, _ in model.scene.bearing.rows])[model.basis.row]
     radial = load * np.cos(angle)
     total = np.array([side @ (load * np.sin(angle)), radial @ np.cos(azimuth), radial @ np.sin(azimuth)])
-    rest = (total - model.system.load[:3]) * model.system.free[:3]
-    left = float(np.abs(rest).max() / load.sum())
-    require(left < _ANGLES, f"with their angles the inner races' forces leave {left:.2g} of them unbalanced")
-    return f"{left:.1e} of them is left"
+    residual = (total - model.system.load[:3]) * model.system.free[:3]
+    part = float(np.abs(residual).max() / load.sum())
+    require(part < _ANGLES, f"with their angles the inner races' forces leave {part:.2g} of them unbalanced")
+    return f"{part:.1e} of them is left"

@@ -68,7 +68,7 @@ def new_plugin(kind: str, name: str, folder: str | Path = ".", registry: Registr
 
 def _contents(kind: str, words: dict[str, str]) -> dict[str, str]:
     """Path in the new folder -> text."""
-    found = {}
+    contents = {}
     for part in ("common", kind):
         for source in sorted(files("raceway").joinpath("data", "templates", part).iterdir(), key=lambda f: f.name):
             name = source.name.removesuffix(".txt")
@@ -76,25 +76,21 @@ def _contents(kind: str, words: dict[str, str]) -> dict[str, str]:
                 name = f"{words['module']}/{name.removeprefix('package_')}"
             elif name.startswith("tests_"):
                 name = f"tests/{name.removeprefix('tests_')}"
-            found[name] = Template(source.read_text(encoding="utf-8")).substitute(words)
-    return found
+            contents[name] = Template(source.read_text(encoding="utf-8")).substitute(words)
+    return contents
 
 
 def _check_name(kind: str, name: str, registry: Registry) -> None:
     if not _NAME.fullmatch(name) or name.endswith("_") or "__" in name:
         fitting = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_0123456789")[:40]
         hint = f"; for instance '{fitting}'" if _NAME.fullmatch(fitting) else ""
-        raise PluginError(
-            f"'{name}' cannot be a plug-in's name: 2 to 40 lower-case letters, digits and single underscores, "
-            f"a letter first{hint}"
-        )
+        rule = "2 to 40 lower-case letters, digits and single underscores, a letter first"
+        raise PluginError(f"'{name}' cannot be a plug-in's name: {rule}{hint}")
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise PluginError(f"'{name}' cannot be a plug-in's name: it is a word of Python")
-    taken = registry.entries.get((kind, name), [])
-    if taken:
-        raise PluginError(
-            f"there is a {kind.replace('_', ' ')} '{name}' already, of {taken[0].distribution}: choose another name"
-        )
+    for entry in registry.entries.get((kind, name), []):
+        words = kind.replace("_", " ")
+        raise PluginError(f"there is a {words} '{name}' already, of {entry.distribution}: choose another name")
 
 
 def _article(kind: str) -> str:

@@ -20,19 +20,19 @@ def b7206c(**tables: Any) -> dict[str, Any]:
     return scene
 
 
-def model_of(tables: dict[str, Any]) -> Model:
-    """The built model of a scene's tables."""
+def model_of(scene: Scene | dict[str, Any]) -> Model:
+    """The built model of a scene, or of its tables."""
     from raceway import build_model, make_plan, scene_from_dict
 
-    scene = scene_from_dict(tables)
+    scene = scene_from_dict(scene) if isinstance(scene, dict) else scene
     return build_model(scene, make_plan(scene))
 
 
-def settled(tables: dict[str, Any]) -> tuple[Model, Equilibrium]:
-    """Model and static equilibrium of a scene's tables."""
+def settled(scene: Scene | dict[str, Any]) -> tuple[Model, Equilibrium]:
+    """Model and static equilibrium of a scene, or of its tables."""
     from raceway.pipeline.settle import settle
 
-    model = model_of(tables)
+    model = model_of(scene)
     return model, settle(model)
 
 

@@ -8,31 +8,52 @@ Expected failures: a file ``raceway_expected_failures.toml`` beside the plug-in'
     [contact_law.my_law]            # kind and name
     unit_invariance = "the stiffness table is in N/mm"     # check and reason
 
-A check that ends its process, by a wrong shape or for want of an end, is a failure like others: it runs in a child.
-
 It is honoured strictly: a listed check that passes is a failure, and so is a name that no check has.
+
+A check runs in a child process, a fork that has the plug-in as it is here: one that writes beyond an array, has no end or takes all
+memory is a failure like others.
 """
 
 from __future__ import annotations
 
+import faulthandler
 import inspect
+import os
+import pickle
+import resource
+import select
+import signal
+import sys
+import time
 import tomllib
 from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import attrs
 
 from raceway.storage.tables import Tables
-from raceway.testing.child import Died, apart
 
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
+    from numpy.typing import ArrayLike
 
     from raceway.core.jit import Kernel
 
-PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
+T = TypeVar("T")
 
+#: Time [s] that a duty may take on busy cores, compiling too, and memory [bytes] that it may take beyond what is there.
+LIMIT_S, LIMIT_BYTES = 300.0, 8 * 2**30
+
+
+class Died(Exception):
+    """How the child ended without an answer, in words."""
+
+
+PASSED, FAILED, EXPECTED, UNEXPECTED = "passed", "failed", "expected failure", "unexpectedly passed"
 EXPECTED_FAILURES = "raceway_expected_failures.toml"
 
 
@@ -73,18 +94,22 @@ class Conformity:
         return bool(self.rows) and all(row.good for row in self.rows)
 
     def to_dict(self) -> Tables:
-        return {
-            "kind": self.kind,
-            "name": self.name,
-            "conforms": self.conforms,
-            "rows": [attrs.asdict(row) for row in self.rows],
-        }
+        rows = [attrs.asdict(row) for row in self.rows]
+        return {"kind": self.kind, "name": self.name, "conforms": self.conforms, "rows": rows}
 
 
-def duty(text: str) -> Callable[[Callable[..., str | None]], Callable[[Suite], None]]:
-    """Make a check out of a method ``test_<name>(self, plugin)``."""
+Check = Callable[[Any, Any], str | None]
 
-    def decorate(function: Callable[..., str | None]) -> Callable[[Suite], None]:
+
+def duty(text: str, unless: Callable[[Any], str] | None = None) -> Callable[[Check], Callable[[Suite], None]]:
+    """Make a check out of a method ``test_<name>(self, plugin)``.
+
+    Parameters
+    ----------
+    unless : of the plug-in; the note of one that the duty does not apply to, else empty
+    """
+
+    def decorate(function: Check) -> Callable[[Suite], None]:
         name = function.__name__.removeprefix("test_")
 
         def method(self: Suite) -> None:
@@ -95,10 +120,13 @@ def duty(text: str) -> Callable[[Callable[..., str | None]], Callable[[Suite], N
                 pytest.xfail(row.message)
             require(row.good, f"{row.duty}: {row.message}")
 
+        def check(self: Suite, plugin: Any) -> str | None:
+            return (unless(plugin) if unless else "") or function(self, plugin)
+
         # Not functools.wraps: pytest would take the arguments of the wrapped function for fixtures.
         method.__name__, method.__qualname__, method.__doc__ = function.__name__, function.__qualname__, text
         method.__module__ = function.__module__
-        method.check, method.duty = function, text  # type: ignore[attr-defined]
+        method.check, method.duty = check, text  # type: ignore[attr-defined]
         return method
 
     return decorate
@@ -126,25 +154,21 @@ class Suite:
     @classmethod
     def checks(cls) -> Tables:
         """Check name -> method, in the order of the source."""
-        found: Tables = {}
-        for base in reversed(cls.__mro__):
-            for name, value in vars(base).items():
-                if hasattr(value, "duty"):
-                    found[name.removeprefix("test_")] = value
-        return found
+        members = ((name, value) for base in reversed(cls.__mro__) for name, value in vars(base).items())
+        return {name.removeprefix("test_"): value for name, value in members if hasattr(value, "duty")}
 
     @classmethod
     def conformity(cls, plugin: Any, kind: str = "", name: str = "") -> Conformity:
         """Run every check on a class or instance."""
-        chosen = type(f"{cls.__name__}Run", (cls,), {"plugin": plugin})()
-        rows = [chosen.row(check) for check in cls.checks()]
-        word = "listed expected failures exist and have reasons"
+        suite = type(f"{cls.__name__}Run", (cls,), {"plugin": plugin})()
+        rows = [suite.row(check) for check in cls.checks()]
+        text = "listed expected failures exist and have reasons"
         try:
-            unknown = sorted(set(chosen.expected()) - set(cls.checks()))
-            rows += [Row(u, word, FAILED, f"no check has that name; take it out of {EXPECTED_FAILURES}") for u in unknown]
+            unknown = sorted(set(suite.expected()) - set(cls.checks()))
+            rows += [Row(u, text, FAILED, f"no check has that name; take it out of {EXPECTED_FAILURES}") for u in unknown]
         except ConformityError as why:
-            rows.append(Row("expected_failures", word, FAILED, str(why)))
-        return Conformity(kind or cls.kind, name or chosen.class_of_plugin.name, tuple(rows))
+            rows.append(Row("expected_failures", text, FAILED, str(why)))
+        return Conformity(kind or cls.kind, name or suite.class_of_plugin.name, tuple(rows))
 
     @property
     def class_of_plugin(self) -> Any:
@@ -160,12 +184,9 @@ class Suite:
         if hasattr(self.plugin, "examples"):
             yield from self.plugin.examples()
             return
-        required = [a.name for a in attrs.fields(self.plugin) if a.default is attrs.NOTHING and a.init]
-        require(
-            not required,
-            f"`{self.plugin.__qualname__}` has options without a default ({', '.join(required)}): give the class a "
-            "classmethod `examples()` that returns instances for the suite",
-        )
+        required = ", ".join(a.name for a in attrs.fields(self.plugin) if a.default is attrs.NOTHING and a.init)
+        remedy = "give the class a classmethod `examples()` that returns instances for the suite"
+        require(not required, f"`{self.plugin.__qualname__}` has options without a default ({required}): {remedy}")
         yield self.plugin()
 
     def expected(self) -> dict[str, str]:
@@ -198,14 +219,14 @@ class Suite:
             reason = self.expected().get(name)
         except ConformityError as why:
             return Row(name, method.duty, FAILED, str(why))
-        if reason is not None:
-            if status == FAILED:
-                return Row(name, method.duty, EXPECTED, f"{reason} ({message})")
-            return Row(name, method.duty, UNEXPECTED, f"it passes: remove it from {EXPECTED_FAILURES}")
+        if reason is not None and status == FAILED:
+            status, message = EXPECTED, f"{reason} ({message})"
+        elif reason is not None:
+            status, message = UNEXPECTED, f"it passes: remove it from {EXPECTED_FAILURES}"
         return Row(name, method.duty, status, message)
 
-    def _notes(self, check: Callable[..., str | None]) -> str:
-        """What a check says of all examples."""
+    def _notes(self, check: Check) -> str:
+        """Notes of a check on all examples."""
         notes = [self._run(check, plugin) for plugin in self._examples()]
         require(notes, "there is no example to check")
         return "; ".join(dict.fromkeys(n for n in notes if n))
@@ -218,7 +239,7 @@ class Suite:
         except Exception as why:  # the plug-in's own code
             raise ConformityError(f"no example can be made: {type(why).__name__}: {why}") from why
 
-    def _run(self, check: Callable[..., str | None], plugin: object) -> str | None:
+    def _run(self, check: Check, plugin: object) -> str | None:
         try:
             return check(self, plugin)
         except ConformityError as why:
@@ -236,19 +257,16 @@ def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     require(not faults, f"`{cls.__qualname__}` " + ", ".join(faults))
     require(_frozen(plugin), f"`{cls.__qualname__}` is not frozen: decorate it with @attrs.frozen")
     undeclared = [f.name for f in attrs.fields(cls) if f.init and "unit" not in f.metadata]
-    require(
-        not undeclared, f"options {', '.join(undeclared)} are not declared with raceway.option: no unit, no help, no rule"
-    )
+    words = ", ".join(undeclared)
+    require(not undeclared, f"options {words} are not declared with raceway.option: no unit, no help, no rule")
 
 
 def _frozen(plugin: Any) -> bool:
-    names = [f.name for f in attrs.fields(type(plugin))] or ["name"]
+    name = next((f.name for f in attrs.fields(type(plugin))), "name")
     try:
-        setattr(attrs.evolve(plugin), names[0], getattr(plugin, names[0]))
-    except attrs.exceptions.FrozenInstanceError:
-        return True
-    except AttributeError:  # a class without slots for it
-        return False
+        setattr(attrs.evolve(plugin), name, getattr(plugin, name))
+    except AttributeError as why:  # else a class without slots for it
+        return isinstance(why, attrs.exceptions.FrozenInstanceError)
     return False
 
 
@@ -259,8 +277,99 @@ def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     compiled = getattr(kernel, "nopython_signatures", None)  # compiles it
     if compiled is None:
         raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
-    require(
-        [tuple(has.args) for has in compiled] == [tuple(signature.args)],
-        f"kernel() is compiled for {[signature_words(has) for has in compiled] or 'nothing'}, not for {word} alone: "
-        f"decorate it with @jit({word})",
-    )
+    present = [signature_words(has) for has in compiled] or "nothing"
+    fits = [tuple(has.args) for has in compiled] == [tuple(signature.args)]
+    require(fits, f"kernel() is compiled for {present}, not for {word} alone: decorate it with @jit({word})")
+
+
+def check_shape(word: str, values: ArrayLike, shape: tuple[int, ...]) -> None:
+    """An array of the contract's shape."""
+    import numpy as np
+
+    require(np.shape(values) == shape, f"{word} has the shape {np.shape(values)}, not {shape}")
+
+
+def apart(work: Callable[[], T]) -> T:
+    """What ``work()`` returns or raises, which can be pickled, from a child process with limits.
+
+    Raises
+    ------
+    Died
+        It ended by a signal or an exit of its own, or was stopped.
+    """
+    _import_compiler()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    reader, writer = os.pipe()
+    child = os.fork()
+    if not child:
+        os.close(reader)
+        _serve(work, writer)
+    os.close(writer)
+    try:
+        answer, late = _collected(reader)
+    finally:
+        os.close(reader)
+        with suppress(ProcessLookupError):
+            os.killpg(child, signal.SIGKILL)
+        _, status = os.waitpid(child, 0)
+    if late:
+        raise Died(f"died: it had not ended after {LIMIT_S:g} s")
+    if not answer:
+        code = os.waitstatus_to_exitcode(status)
+        raise Died(f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}")
+    answered, result = pickle.loads(answer)
+    if answered:
+        return result
+    raise result
+
+
+@cache
+def _import_compiler() -> None:
+    """Once for all children, with a small kernel, whose first use starts the compiler: most duties take less time than that."""
+    for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run"):
+        import_module(name)
+    import_module("raceway.core.contact_laws.power").three_halves.compile()
+
+
+def _serve(work: Callable[[], object], writer: int) -> None:
+    """What the child does; it does not come back."""
+    code = 1
+    try:
+        faulthandler.disable()
+        os.setpgid(0, 0)
+        os.dup2(2, 1)  # what is printed here is no part of an answer in JSON
+        _limit_memory()
+        try:
+            answer = pickle.dumps((True, work()))
+        except Exception as why:  # handed over
+            answer = pickle.dumps((False, why))
+        with os.fdopen(writer, "wb") as pipe:
+            pipe.write(answer)
+        code = 0
+    except SystemExit as why:
+        code = why.code if isinstance(why.code, int) else 1
+    finally:
+        os._exit(code)
+
+
+def _limit_memory() -> None:
+    with open("/proc/self/statm", encoding="ascii") as file:
+        limit = int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE") + LIMIT_BYTES
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _collected(reader: int) -> tuple[bytes, bool]:
+    """All that the child writes, and whether its time was over before."""
+    parts: list[bytes] = []
+    end = time.monotonic() + LIMIT_S
+    while True:
+        ready, _, _ = select.select([reader], [], [], max(end - time.monotonic(), 0.0))
+        if not ready:
+            return b"", True
+        part = os.read(reader, 65536)
+        if not part:
+            return b"".join(parts), False
+        parts.append(part)

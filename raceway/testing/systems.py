@@ -1,4 +1,5 @@
-"""Small mechanical systems with known motions, for the suites of integrators and identifiers.
+"""Small mechanical systems with known motions, and the compiled loops of the suites, which call kernels as the time loops do:
+by function pointers.
 
 Notes
 -----
@@ -9,24 +10,29 @@ contacts; the second one stays open.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
 import attrs
 import numpy as np
-from scipy.integrate import solve_ivp
+from numba import float64, int64, void
 
 from raceway.core.contact_laws.power import three_halves
 from raceway.core.excitations.harmonic import harmonic, no_force
+from raceway.core.jit import jit
+from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
 from raceway.core.ring.kernels.layout import COLUMNS, DIAMETER, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.ring.system import System
+from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
 from raceway.core.stepping.record import Motion
-from raceway.storage.tables import Tables
-from raceway.testing.compiled import counting, one_contact
+from raceway.testing.suite import require
 
 #: A diameter that no ball here has: the gap at x = 0 [m].
 CLEARANCE = DIAMETER
+#: Gap of contacts that stay open [m].
 _OPEN = 1.0
-
+#: Mass [kg], stiffness [N/m], damping and gyroscopic coupling [N s/m] of the springs' motion.
 MASS, STIFFNESS, DASHPOT, GYROSCOPIC = 2.0, 2e8, 600.0, 800.0
 #: Circular frequency of the springs [rad/s] and the period [s].
 NATURAL = float(np.sqrt(STIFFNESS / MASS))
@@ -35,6 +41,100 @@ PERIOD = 2.0 * np.pi / NATURAL
 FACTOR, PRELOAD = 1e10, 300.0
 #: Amplitude of the force [N] and its speed [rad/s]: three quarters of the natural frequency.
 AMPLITUDE, SPEED = 200.0, 0.75 * NATURAL
+
+
+@jit(void(int64, LAW_POINTER, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR))
+def repeat_law(count, law, gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Call a law ``count`` times with the same arguments."""
+    for _ in range(count):
+        law(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate)
+
+
+@jit(void(LAW_POINTER, MATRIX, MATRIX, MATRIX, float64, MATRIX, MATRIX, MATRIX, MATRIX))
+def along_path(law, gaps, rates, params, dt, state_old, state_new, scratch, forces):
+    """Drive n contacts along paths (steps, n) of gap and rate; the state is committed after each step.
+
+    ``scratch`` is (2, n); ``forces`` (steps, n) is the answer.
+    """
+    for step in range(gaps.shape[0]):
+        law(gaps[step], rates[step], params, state_old, state_new, dt, forces[step], scratch[0], scratch[1])
+        for i in range(state_old.shape[0]):
+            for j in range(state_old.shape[1]):
+                state_old[i, j] = state_new[i, j]
+
+
+@jit(void(int64, FORCE_POINTER, VECTOR, VECTOR, MATRIX))
+def sample_force(repeats, force, params, times, out):
+    """out (n, 5): the force at times (n,); the whole row of samples is taken ``repeats`` times."""
+    for _ in range(repeats):
+        for i in range(times.size):
+            force(times[i], params, out[i])
+
+
+@jit(FORCE)
+def along_x(t, params, out):
+    """Force params[0] cos(params[1] t) along the axis."""
+    for i in range(out.size):
+        out[i] = 0.0
+    out[0] = params[0] * np.cos(params[1] * t)
+
+
+@jit(SYSTEM)
+def one_contact(t, q, v, balls, contacts, constants, response):
+    """See ``raceway.core.ring.kernels``."""
+    law, law_params, law_old, law_new, dt = contacts
+    scalars, _ = constants
+    f, K, C, work = response
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    for i in range(gap.size):
+        gap[i] = _OPEN
+        rate[i] = 0.0
+    gap[0] = scalars[DIAMETER] - q[0]
+    rate[0] = -v[0]
+    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
+    for i in range(5):
+        f[i] = 0.0
+        for j in range(5):
+            K[i, j] = 0.0
+            C[i, j] = 0.0
+    f[0] = force[0]
+    K[0, 0] = -d_gap[0]
+    C[0, 0] = -d_rate[0]
+    return 0
+
+
+@jit(LAW)
+def counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Hertz in the first contact; in the second, which is open, the "force" says how often its memory was committed."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        root = params[i, 0] * np.sqrt(approach)
+        state_new[i, 0] = state_old[i, 0] + 1.0
+        force[i] = root * approach if i == 0 else state_new[i, 0]
+        d_gap[i] = -1.5 * root
+        d_rate[i] = 0.0
+
+
+def require_no_allocation(call: Callable[[int], object]) -> None:
+    """Compiled code that ``call(n)`` runs n times takes no block of memory.
+
+    Notes
+    -----
+    Statistics of numba's own runtime are the only trace of such allocations; its switch is put back.
+    """
+    runtime = import_module("numba.core.runtime")
+    runtime.rtsys.initialize(import_module("numba.core.registry").cpu_target.target_context)
+    counters, blocks = runtime._nrt_python, []
+    was_on = counters.memsys_stats_enabled()
+    counters.memsys_enable_stats()
+    for count in (1, 1001):
+        before = int(counters.memsys_get_stats_alloc())
+        call(count)
+        blocks.append(int(counters.memsys_get_stats_alloc()) - before)
+    if not was_on:
+        counters.memsys_disable_stats()
+    require(blocks[1] == blocks[0], f"a call allocates {(blocks[1] - blocks[0]) / 1000:g} blocks of memory")
 
 
 def counting_system() -> System:
@@ -48,28 +148,22 @@ def _system(free: list[float], **parts: Any) -> System:
     scalars[REST_AXIAL], scalars[TILT_ARM] = 1e-4, 1.0
     scalars[CLEARANCE] = parts.pop("clearance", 0.0)
     zero = np.zeros((5, 5))
-    given = {
-        "kernel": one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
+    usual = {
+        "kernel": one_contact, "base_kernel": one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
         "scalars": scalars, "table": np.zeros((1, COLUMNS)), "mass": MASS * np.eye(5), "damping": zero,
         "stiffness": zero, "free": np.array(free), "load": np.zeros(5), "force": no_force, "force_params": np.zeros(1),
     }  # fmt: skip
-    known = attrs.fields_dict(System)
-    if "base_kernel" in known:
-        given["base_kernel"] = one_contact
-    return System(**{**given, **parts})
+    return System(**{**usual, **parts})
 
 
 def linear_system(damped: bool = True, forced: bool = True) -> System:
     """Springs along y and z, coupled by a gyroscopic term, under a force that turns forward; the contact stays open."""
     damping = np.zeros((5, 5))
     if damped:
-        damping[1, 1] = damping[2, 2] = DASHPOT
-        damping[1, 2], damping[2, 1] = GYROSCOPIC, -GYROSCOPIC
-    parts: Tables = {}
-    if forced:
-        parts = {"force": harmonic, "force_params": np.array([AMPLITUDE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])}
+        damping[1:3, 1:3] = [[DASHPOT, GYROSCOPIC], [-GYROSCOPIC, DASHPOT]]
+    force = {"force": harmonic, "force_params": np.array([AMPLITUDE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])} if forced else {}
     stiffness = np.diag([0.0, STIFFNESS, 1.3 * STIFFNESS, 0.0, 0.0])
-    return _system([0.0, 1.0, 1.0, 0.0, 0.0], damping=damping, stiffness=stiffness, clearance=_OPEN, **parts)
+    return _system([0.0, 1.0, 1.0, 0.0, 0.0], damping=damping, stiffness=stiffness, clearance=_OPEN, **force)
 
 
 def contact_system(load: float = PRELOAD, clearance: float = 0.0) -> System:
@@ -86,19 +180,20 @@ def motion(system: System, q: np.ndarray, v: np.ndarray) -> Motion:
 
 def exact(system: System, start: Motion, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Displacement and velocity (n, 5) by an eighth-order method at tolerances near rounding."""
-    chosen = system.free > 0.0
+    from scipy.integrate import solve_ivp
+
+    free = system.free > 0.0
 
     def slope(t: float, state: np.ndarray) -> np.ndarray:
         q, v = np.ascontiguousarray(state[:5]), np.ascontiguousarray(state[5:])
         now = system.evaluate(q, v, ball=np.zeros((1, 2)))
-        return np.concatenate([v * chosen, system.acceleration(q, v, system.outer_force(t), now)])
+        return np.concatenate([v * free, system.acceleration(q, v, system.outer_force(t), now)])
 
     scale = np.concatenate([np.full(5, 1e-6), np.full(5, 1e-6 * NATURAL)])
     # 1e-12 of the motion: far below the errors of the steps that are compared with it.
-    found = solve_ivp(
-        slope, (0.0, times[-1]), np.concatenate([start.q, start.v]), "DOP853", times, rtol=1e-11, atol=1e-11 * scale
-    )
-    return found.y[:5].T, found.y[5:].T
+    state = np.concatenate([start.q, start.v])
+    solution = solve_ivp(slope, (0.0, times[-1]), state, "DOP853", times, rtol=1e-11, atol=1e-11 * scale)
+    return solution.y[:5].T, solution.y[5:].T
 
 
 def contact_energy(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -16,9 +16,10 @@ from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.plugins.excitations import Bidirectional
 from raceway.plugins.identifiers import SineFit
-from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, child, suite_of
+from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
+from raceway.testing import suite as suites
+from raceway.testing.contact_law import exponents
 from raceway.testing.suite import EXPECTED_FAILURES
-from raceway.testing.units import exponents
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
 
@@ -92,7 +93,7 @@ class Deadly(broken_laws.Broken):
     ids=["SIGSEGV", "endless", "SIGABRT"],
 )
 def test_a_suite_survives_what_it_tests(plugin, check, how, monkeypatch):
-    monkeypatch.setattr(child, "LIMIT_S", 2.0)
+    monkeypatch.setattr(suites, "LIMIT_S", 2.0)
     suite = type("Run", (ContactLawSuite,), {"plugin": plugin})()
     assert suite.row(check).message == how
     assert suite.row("declaration").good, "the next duty is looked at"

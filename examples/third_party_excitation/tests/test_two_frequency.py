@@ -4,7 +4,7 @@ import pytest
 from raceway_two_frequency import TwoFrequency
 
 from raceway.testing import ExcitationSuite
-from raceway.testing.excitation import sampled
+from raceway.testing.signals import sampled
 
 
 class TestMisalignment(ExcitationSuite):

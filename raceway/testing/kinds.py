@@ -1,0 +1,273 @@
+"""The conformance suites of formats, meshers, reports, executors and studies: kinds of few duties each."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError
+from raceway.framework.contracts import Batch, Refused
+from raceway.testing.scenes import example_result, example_scene
+from raceway.testing.suite import Suite, check_class, duty, require
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor, Format, Mesher, Report, Study
+
+
+#: Relative difference of real numbers that a text of ten figures may make.
+TEN_FIGURES = 1e-10
+
+
+def same(a: Any, b: Any, relative: float = 0.0) -> bool:
+    """Whether two things read from files are equal, arrays inside them too; attrs objects (meshes) field by field.
+
+    Real numbers may differ by ``relative`` times themselves; integers and words may not differ.
+    """
+    if isinstance(a, dict) and isinstance(b, dict):
+        return set(a) == set(b) and all(same(a[k], b[k], relative) for k in a)
+    if isinstance(a, list | tuple) and isinstance(b, list | tuple):
+        return len(a) == len(b) and all(same(x, y, relative) for x, y in zip(a, b, strict=True))
+    if attrs.has(type(a)) and type(a) is type(b):
+        return all(same(getattr(a, field.name), getattr(b, field.name), relative) for field in attrs.fields(type(a)))
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        a, b = np.asarray(a), np.asarray(b)
+        if a.dtype.kind == "f" and b.dtype.kind == "f":
+            return a.shape == b.shape and bool(np.allclose(a, b, rtol=relative, atol=0.0))
+        return np.array_equal(a, b)
+    if isinstance(a, float) and isinstance(b, float):
+        return a == b or abs(a - b) <= relative * abs(b)
+    return bool(a == b)
+
+
+class FormatSuite(Suite):
+    """Duties of ``raceway.framework.contracts.Format``.
+
+    Attributes
+    ----------
+    what : something that the format can write; a plug-in checked by name offers it as ``example_content()``
+    """
+
+    kind = "format"
+    what: Any = None
+
+    @duty("attributes: suffixes with the dot, options")
+    def test_declaration(self, form: Format) -> None:
+        check_class("format", form)
+        suffixes = form.suffixes
+        require(isinstance(suffixes, tuple) and suffixes, "`suffixes` must be a tuple that is not empty")
+        bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9_-]+)+", s)]
+        require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
+
+    @duty(
+        "what is written is read back the same, real numbers to ten figures, with every suffix",
+        lambda form: "" if hasattr(form, "write") else "reads only",
+    )
+    def test_round_trip(self, form: Format) -> None:
+        what = self._content(form)
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in form.suffixes:
+                path = Path(folder) / f"content{suffix}"
+                form.write(path, what)
+                require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `{path.name}`")
+                equal = same(form.read(path), what, TEN_FIGURES)
+                require(equal, f"`{path.name}` is read back different from what was written")
+
+    @duty("a file that is missing or malformed is refused with a RacewayError that names it")
+    def test_bad_files(self, form: Format) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            for suffix in form.suffixes:
+                missing, empty, noise = (Path(folder) / f"{word}{suffix}" for word in ("missing", "empty", "noise"))
+                empty.write_bytes(b"")
+                noise.write_bytes(bytes(range(255, -1, -1)) * 8)
+                for path in (missing, empty, noise):
+                    try:
+                        form.read(path)
+                    except RacewayError as error:
+                        require(path.name in str(error), f"the error about `{path.name}` does not name it: {error}")
+                    else:
+                        require(False, f"`{path.name}` is read without an error")
+
+    def _content(self, form: Format) -> Any:
+        if self.what is not None:
+            return self.what
+        example = getattr(form, "example_content", None)
+        require(example is not None, "give the class `example_content()`, or the suite `what`, to write")
+        return example() if example is not None else None
+
+
+#: Neighbours of each corner of a cell along its three axes.
+AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))
+
+
+def _within(numbers: np.ndarray, limits: int | tuple[int, int]) -> bool:
+    """Whether there are some, all from 0 to below the limits."""
+    return bool(len(numbers) and (numbers >= 0).all() and (numbers < limits).all())
+
+
+class MesherSuite(Suite):
+    """Duties of ``raceway.framework.contracts.Mesher``."""
+
+    kind = "mesher"
+
+    @duty("mesh(bearing) returns meshes by name, each with points (n, 3) [m] and cells (m, 8)")
+    def test_meshes(self, mesher: Mesher) -> None:
+        meshes = mesher.mesh(example_scene().bearing)
+        require(isinstance(meshes, Mapping) and meshes, f"mesh() returns {type(meshes).__name__}, not meshes by name")
+        for name, mesh in meshes.items():
+            points, cells = np.asarray(mesh.points), np.asarray(mesh.cells)
+            require(points.ndim == 2 and points.shape[1] == 3, f"'{name}': points of shape {points.shape}, not (n, 3)")
+            require(cells.ndim == 2 and cells.shape[1] == 8, f"'{name}': cells of shape {cells.shape}, not (m, 8)")
+            require(np.issubdtype(cells.dtype, np.integer), f"'{name}': cells are {cells.dtype}, not integers")
+            require(np.isfinite(points).all() and len(points), f"'{name}': points must be finite, and there must be some")
+            require(_within(cells, len(points)), f"'{name}': cells name points that do not exist")
+
+    @duty("no cell is flat or inside out")
+    def test_volumes(self, mesher: Mesher) -> None:
+        for name, mesh in mesher.mesh(example_scene().bearing).items():
+            corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
+            # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at each corner, right-handed.
+            for at, ends in enumerate(AROUND):
+                bad = (np.linalg.det(corner[:, ends] - corner[:, [at]]) <= 0.0).sum()
+                require(not bad, f"'{name}': {bad} of {len(corner)} cells are inside out or flat")
+
+    @duty("sets, where there are some, name nodes (k,) and facets (k, 2) that exist")
+    def test_sets(self, mesher: Mesher) -> None:
+        for name, mesh in mesher.mesh(example_scene().bearing).items():
+            for word, members in getattr(mesh, "node_sets", {}).items():
+                nodes = np.asarray(members)
+                good = nodes.ndim == 1 and _within(nodes, len(mesh.points))
+                require(good, f"'{name}': node set '{word}' is empty or names points that do not exist")
+            for word, members in getattr(mesh, "facet_sets", {}).items():
+                facets = np.asarray(members)
+                good = facets.ndim == 2 and facets.shape[1] == 2 and _within(facets, (len(mesh.cells), 6))
+                require(good, f"'{name}': facet set '{word}' is empty or names faces that do not exist")
+
+    @duty("twice the same bearing gives the same mesh")
+    def test_repeats(self, mesher: Mesher) -> None:
+        first, second = (mesher.mesh(example_scene().bearing) for _ in range(2))
+        require(set(first) == set(second), "the bodies differ")
+        for name in first:
+            equal = all(same(getattr(first[name], word), getattr(second[name], word)) for word in ("points", "cells"))
+            require(equal, f"'{name}' differs")
+
+
+class ReportSuite(Suite):
+    """Duties of ``raceway.framework.contracts.Report``."""
+
+    kind = "report"
+
+    @duty("write(result, folder) writes files into the folder and returns their paths; a second time too")
+    def test_writes(self, report: Report) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(2):
+                paths = [Path(p) for p in report.write(example_result(), Path(folder))]
+                require(paths, "write() returns no path")
+                for path in paths:
+                    require(path.is_file() and path.stat().st_size > 0, f"`{path.name}` does not exist or is empty")
+                    require(path.resolve().is_relative_to(Path(folder).resolve()), f"`{path}` lies outside the folder")
+            written = {p.resolve() for p in Path(folder).rglob("*") if p.is_file()}
+            extra = sorted(p.name for p in written - {p.resolve() for p in paths})
+            require(not extra, f"{', '.join(extra)} is written but not returned")
+
+    @duty("the result is left untouched")
+    def test_result_untouched(self, report: Report) -> None:
+        before = example_result().to_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            report.write(example_result(), Path(folder))
+        require(example_result().to_dict() == before, "the result was changed")
+
+
+#: Batches of a trial, and how many may be taken before the first is answered.
+_BATCHES, _AHEAD = 400, 100
+
+
+@attrs.frozen
+class Doubling:
+    """Work that doubles numbers; it refuses the batch that holds ``refused`` and breaks at the one that holds ``broken``."""
+
+    refused: int | None = None
+    broken: int | None = None
+
+    def fault(self) -> str | None:
+        return None
+
+    def __call__(self, points: list[int]) -> Refused | list[int]:
+        if self.broken in points:
+            raise ArithmeticError("a fault of the work itself")
+        return Refused("here", "a trial") if self.refused in points else [2 * point for point in points]
+
+
+class _Source:
+    """Batches of two numbers, counted as they are taken."""
+
+    def __init__(self, total: int) -> None:
+        self.count, self.total = 0, total
+
+    def __iter__(self) -> Iterator[Batch]:
+        for number in range(self.total):
+            self.count += 1
+            yield number, [2 * number, 2 * number + 1]
+
+
+class ExecutorSuite(Suite):
+    """Duties of ``raceway.framework.contracts.Executor``.  Its work is in processes of its own, and clusters do not survive a fork."""
+
+    kind = "executor"
+    apart = False
+
+    @duty("every batch is answered once, by what the work returned; batches are taken as they are needed")
+    def test_answers(self, executor: Executor) -> None:
+        source, answers, ahead = _Source(_BATCHES), dict[int, Any](), None
+        for number, answer in executor.compute(Doubling(refused=11), source):
+            ahead = source.count if ahead is None else ahead
+            require(number not in answers, f"batch {number} is answered twice")
+            answers[number] = answer
+        require(sorted(answers) == list(range(_BATCHES)), f"{len(answers)} of {_BATCHES} batches are answered")
+        wrong = [n for n in answers if n != 5 and list(answers[n]) != [4 * n, 4 * n + 2]]
+        require(not wrong, f"the answer of batch {wrong[:1]} is not what the work returned")
+        require(isinstance(answers[5], Refused), f"`Refused` is not passed on, but {answers[5]!r}")
+        require((ahead or 0) <= _AHEAD, f"{ahead} of {_BATCHES} batches are taken before the first is answered")
+
+    @duty("no batches, no answers; what the work raises passes through; closing stops it")
+    def test_ends(self, executor: Executor) -> None:
+        require(not list(executor.compute(Doubling(), _Source(0))), "answers without a batch")
+        try:
+            list(executor.compute(Doubling(broken=6), _Source(8)))
+        except ArithmeticError as why:
+            require("work itself" in str(why), f"another exception passes through: {why}")
+        else:
+            require(False, "an exception of the work is swallowed")
+        source = _Source(_BATCHES)
+        answers = executor.compute(Doubling(), source)
+        next(answers)
+        getattr(answers, "close", lambda: None)()
+        require(source.count <= _AHEAD, f"closing takes all {source.count} batches")
+
+
+class StudySuite(Suite):
+    """Duties of ``raceway.framework.contracts.Study``."""
+
+    kind = "study"
+
+    @duty("help is one line for the list of studies")
+    def test_help(self, study: Study) -> None:
+        require(isinstance(study.help, str) and study.help.strip(), "help is no text")
+        require(len(study.help.splitlines()) == 1, "help has several lines")
+
+    @duty("command() gives a click command of the study's name that takes --json and explains itself")
+    def test_command(self, study: Study) -> None:
+        import click
+        from click.testing import CliRunner
+
+        command = study.command()
+        require(isinstance(command, click.Command), f"command() gives {type(command).__name__}, not a click.Command")
+        require(command.name == study.name, f"the command is called '{command.name}', the study '{study.name}'")
+        require(any("--json" in option.opts for option in command.params), "the command has no --json")
+        shown = CliRunner().invoke(command, ["--help"], standalone_mode=True)
+        require(shown.exit_code == 0 and command.help, "--help fails or says nothing")
