@@ -22,9 +22,8 @@ from raceway.studies.band import picture as band_picture
 from raceway.studies.catalogue import drawing
 from raceway.studies.compare import picture as comparison
 from raceway.studies.fit import picture as fits
-from raceway.studies.fit import picture as measured
-from raceway.studies.fit.shaft_angle import turning
-from raceway.studies.fit.synchronous import order
+from raceway.studies.fit.shaft_angle import rotation_of
+from raceway.studies.fit.synchronous import synchronous
 from raceway.studies.follow import picture as followed
 from raceway.studies.law import picture as law_picture
 from raceway.studies.law.front import law
@@ -140,11 +139,11 @@ def of_a_rig() -> list[Figure]:
 
 
 def of_a_record() -> list[Figure]:
-    turned = turning(a_record(noise=1e-6))
-    found = order(turned)
-    state = SimpleNamespace(sensor=3.0 * found.line, deflection=9.0 * found.line)
-    whole = SimpleNamespace(turning=turned, order=found, state=state)
-    return [measured.signals(whole), measured.spectrum(whole), measured.orbits(whole)]
+    rotation = rotation_of(a_record(noise=1e-6))
+    component = synchronous(rotation)
+    state = SimpleNamespace(sensor=3.0 * component.forward, deflection=9.0 * component.forward)
+    whole = SimpleNamespace(rotation=rotation, component=component, state=state)
+    return [fits.signals(whole), fits.spectrum(whole), fits.orbits(whole)]
 
 
 def of_contacts() -> list[Figure]:
@@ -196,11 +195,15 @@ def of_fits() -> list[Figure]:
     return [fits.draw(one), fits.draw({**two, "series": [*two["series"], wild]}), fits.draw({**one, "free": [lost]})]
 
 
+def of_fits_and_records() -> list[Figure]:
+    return [*of_fits(), *of_a_record()]
+
+
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision,
-    article: of_the_article, rig: of_a_rig, measured: of_a_record, contacts: of_contacts,
+    article: of_the_article, rig: of_a_rig, contacts: of_contacts,
     contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
-    fits: of_fits,
+    fits: of_fits_and_records,
     band_picture: of_a_band,
 }  # fmt: skip
 

@@ -15,7 +15,7 @@ from raceway.planning.closed_form import highest_frequency
 from raceway.planning.recording import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats import Vtu
 from raceway.plugins.mesh_files import File
-from raceway.studies.fit.signals import read_recording
+from raceway.studies.fit.signals import recording_of, signals_of
 from raceway.testing import b7206c, run
 from validation.command_line import ARTICLE, MINIMAL, invoke
 from validation.cubes import block
@@ -90,18 +90,18 @@ WAVE = 1e-5 * np.cos(2.0 * np.pi * 200.003 * np.arange(4000) / 20_000.0)
 )
 def test_a_signal_that_is_cut_off_is_refused(tmp_path, signal, words):
     with pytest.raises(SceneError, match=words):
-        read_recording(recorded(tmp_path, signal))
+        recording_of(signals_of(recorded(tmp_path, signal)))
 
 
 @pytest.mark.parametrize("levels", [5, 20, 1000])
 def test_a_coarse_resolution_is_not_taken_for_a_cut(tmp_path, levels):
     step = 1e-5 / levels
-    assert len(read_recording(recorded(tmp_path, step * np.round(WAVE / step))).y) == 4000
+    assert len(recording_of(signals_of(recorded(tmp_path, step * np.round(WAVE / step)))).y) == 4000
 
 
 def test_noise_is_not_taken_for_a_cut(tmp_path):
     noisy = WAVE + 1e-7 * np.random.default_rng(1).standard_normal(len(WAVE))
-    assert len(read_recording(recorded(tmp_path, noisy)).y) == 4000
+    assert len(recording_of(signals_of(recorded(tmp_path, noisy))).y) == 4000
 
 
 BEARING = scene_from_dict(b7206c()).bearing

@@ -23,7 +23,7 @@ from raceway.plugins.mesh_files import File
 from raceway.storage import number_table
 from raceway.storage.number_table import read_numbers
 from raceway.storage.user_files import memory_for, told
-from raceway.studies.fit.signals import read_recording
+from raceway.studies.fit.signals import signals_of
 from raceway.studies.sweep import design
 from raceway.studies.sweep.design import point_list
 from raceway.testing import b7206c
@@ -50,7 +50,7 @@ def a_link_to_zeros(folder, name):
 
 READERS = {
     "measured force": (".csv", measured),
-    "record": (".csv", read_recording),
+    "record": (".csv", signals_of),
     "vtu": (".vtu", Vtu().read),
     "inp": (".inp", Abaqus().read),
     "msh": (".msh", Msh().read),

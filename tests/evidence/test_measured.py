@@ -23,8 +23,8 @@ from raceway.scene.continuous import with_number
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.studies.fit.fit import fit
-from raceway.studies.fit.identification import from_files, identify, values
-from raceway.studies.fit.identify import identify as identify_files
+from raceway.studies.fit.identify import identify, identify_recording
+from raceway.studies.fit.inversion import coefficients
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise
@@ -80,12 +80,12 @@ def disturbed(rig: Rig, own, state, seed: int):
     """From a record and a slow roll, both with all that disturbs them."""
     answer = response(rig, own, state, rig.signals)
     roll = slow_roll(slow_roll_record(rig, own, rig.signals, seed + 1000, white_noise(answer, rig.signals)))
-    return identify(record(rig, answer, rig.signals, seed), rig, own, slow=roll)
+    return identify_recording(record(rig, answer, rig.signals, seed), rig, own, roll)
 
 
 def undisturbed(rig: Rig, own, state, signals, true=None):
     """By ``own`` bearing from the signals of the true one, which is the same unless it is stated."""
-    return identify(record(rig, response(rig, true or own, state, signals), signals, 1), rig, own)
+    return identify_recording(record(rig, response(rig, true or own, state, signals), signals, 1), rig, own)
 
 
 def test_beam(claim):
@@ -156,14 +156,14 @@ def test_files(claim, tmp_path):
     for point, (state, own) in zip(found.points, points(), strict=True):
         loaded = with_number(SCENE, "load.axial", point.axial)
         signals, slow = (tmp_path / f"{kind}-{point.name}.csv" for kind in ("signals", "slow-roll"))
-        back = from_files(signals, loaded, RIG, default_registry(), slow)
+        back = identify(signals, loaded, slow_roll=slow)
         stiffness.append(abs(back.state.stiffness / point.found.state.stiffness - 1.0))
         wide.append(abs(back.uncertainty[0] / point.found.uncertainty[0] - 1.0))
         complete = record(RIG, response(RIG, own, state, drifting), drifting, 1)
         groups = len(complete.time) // 8
         part = complete.part(8 * np.arange(groups) + random.integers(0, 8, groups))
         path = write_recording(attrs.evolve(part, speed=None), tmp_path / "uneven.csv")
-        uneven.append(off(from_files(path, loaded, RIG, default_registry()), state))
+        uneven.append(off(identify(path, loaded), state))
     source = "the study, before its signals were rounded to six digits"
     quantity = "`raceway identify` on the rig's own CSV against the study, six points"
     claim(
@@ -198,7 +198,7 @@ def test_speed_column_instead_of_a_mark(claim):
     errors, signals = [], silent(RIG.signals)
     for state, own in points():
         without = attrs.evolve(record(RIG, response(RIG, own, state, signals), signals, 1), key=None)
-        errors.append(off(identify(attrs.evolve(without, speed=1.001 * without.speed), RIG, own), state))
+        errors.append(off(identify_recording(attrs.evolve(without, speed=1.001 * without.speed), RIG, own), state))
     quantity = "clean signals, a speed column that is 0.1 % off instead of a mark, six points: largest relative error of K"
     claim(quantity, max(errors), at_most=0.01, basis="own other method", source="the bearing that made the signals")
 
@@ -256,7 +256,7 @@ def test_noise_on_the_probe(claim):
             except (RacewayError, ValueError) as why:
                 failed.append(str(why))
                 continue
-            ratios.append((values(found.state) - values(state))[:2] / found.uncertainty[:2])
+            ratios.append((coefficients(found.state) - coefficients(state))[:2] / found.uncertainty[:2])
         shares.append(np.mean(np.abs(ratios) <= 1.0, axis=0))
         widths.append(np.sqrt(np.mean(np.square(ratios), axis=0)))
     where = f"0 to 5 % of noise on the probe, {RECORDS} records of each"
@@ -295,7 +295,7 @@ def test_contact_angle_fitted_to_signals(claim, tmp_path):
             found = fit(signals, given, ANGLE, slow_roll=slow)
             angles.append(abs(found[ANGLE] - true))
             stiffness.append(abs(found["K"] / state.stiffness - 1.0))
-            assumed = identify_files(signals, given, slow_roll=slow)
+            assumed = identify(signals, given, slow_roll=slow)
             covered.append(abs(assumed.equivalent_stiffness - state.stiffness) <= assumed.equivalent_stiffness_error)
     where = f"contact angle 17 and 19 deg, scene 15 deg, {len(angles)} records of the rig"
     source = "the bearing that made the signals"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.fit.identification import invert, scatter, values, with_moment, with_tilt_of
+from raceway.studies.fit.inversion import coefficients, invert, standard_errors, with_moment, with_tilt_of
 from raceway.studies.shaft.bearing import bearing, find_root, shaft_load
 from raceway.studies.shaft.rotor import rotor, shaft
 from raceway.testing import default_registry
@@ -91,7 +91,9 @@ def test_scatter_is_that_of_many_noisy_lines(rig, state):
     noise = error / np.sqrt(2.0) * (random.standard_normal(400) + 1j * random.standard_normal(400))
     found = [with_tilt_of(line, state, state.sensor + one) for one in noise]
     # 400 samples know a standard deviation to 1 / sqrt(800) = 3.5 %; three times that.
-    assert np.std([values(one) for one in found], axis=0) == pytest.approx(scatter(line, state, error), rel=0.11)
+    assert np.std([coefficients(one) for one in found], axis=0) == pytest.approx(
+        standard_errors(line, state, error), rel=0.11
+    )
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import raceway as rw
 from raceway import SceneError
 from raceway.storage.number_table import read_numbers
 from raceway.studies.fit.column_headers import columns_of
-from raceway.studies.fit.signals import read_recording, read_signals, signals_of
+from raceway.studies.fit.signals import recording_of, signals_of
 from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"
@@ -49,7 +49,7 @@ FILES = {
 def test_every_head_gives_the_record_to_the_last_bit(case, tmp_path):
     (tmp_path / "ours.csv").write_text(text(OURS))
     (tmp_path / "theirs.csv").write_text(FILES[case])
-    ours, theirs = (read_recording(tmp_path / f"{name}.csv") for name in ("ours", "theirs"))
+    ours, theirs = (recording_of(signals_of(tmp_path / f"{name}.csv")) for name in ("ours", "theirs"))
     for name in ("time", "y", "z", "key"):
         np.testing.assert_array_equal(getattr(theirs, name), getattr(ours, name))
     # Not by chance of the reader: these are the numbers that were written.
@@ -61,13 +61,13 @@ def test_units_of_length_are_read_from_the_head(unit, scale, tmp_path):
     path = tmp_path / "record.csv"
     path.write_text(text(f"Time [s],X [{unit}],Y [{unit}],Key", scale=scale))
     # Ten decimals of a metre are 1e-10 m.
-    np.testing.assert_allclose(read_recording(path).y, 1e-6 * Y, atol=1e-10)
+    np.testing.assert_allclose(recording_of(signals_of(path)).y, 1e-6 * Y, atol=1e-10)
 
 
 def test_a_file_in_windows_letters_is_read(tmp_path):
     path = tmp_path / "record.csv"
     path.write_bytes(text("Time (s);X [µm];Y [µm];Key", ";", ",").encode("cp1252"))
-    np.testing.assert_allclose(read_recording(path).z, 1e-6 * Z, rtol=1e-12)
+    np.testing.assert_allclose(recording_of(signals_of(path)).z, 1e-6 * Z, rtol=1e-12)
 
 
 def test_commas_and_points_in_one_file_are_no_decimal_sign(tmp_path):
@@ -113,7 +113,7 @@ def test_one_message_says_what_was_found_and_what_mends_it(head, tmp_path):
 @pytest.mark.parametrize("columns, words", [
     ({"Z": "y_um"}, "no column 'z' for --map"),
     ({"X [um]": "y_umm"}, "unknown name (did you mean 'y_um'?)"),
-    ({"X [um]": "y_mm"}, "'X [um]' cannot be y_mm: its head has another unit, and y_um is meant"),
+    ({"X [um]": "y_mm"}, "'X [um]' cannot be y_mm: its header has another unit, and y_um is meant"),
 ])  # fmt: skip
 def test_a_map_that_maps_nothing_is_refused(columns, words):
     with pytest.raises(ValueError) as told:
@@ -130,7 +130,7 @@ def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):
     path = tmp_path / "shaker.csv"
     rows = zip(TIME, 20.0 * np.cos(ANGLE), 1e-3 * Y, strict=True)
     path.write_text("Time (s),Force [N],Displacement [mm]\n" + "".join(f"{t:.4f},{f:.4f},{x:.6f}\n" for t, f, x in rows))
-    columns = read_signals(path).columns
+    columns = signals_of(path).columns
     np.testing.assert_allclose(columns["force"], 20.0 * np.cos(ANGLE), atol=1e-4)
     np.testing.assert_allclose(columns["y"], 1e-6 * Y, atol=1e-9)
     found = invoke("identify", path, "--scene", SCENE, "--out", tmp_path / "out")

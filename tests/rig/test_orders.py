@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.studies.fit.shaft_angle import marks_of, turning
+from raceway.studies.fit.shaft_angle import pulses_of, rotation_of
 from raceway.studies.fit.signals import Recording
-from raceway.studies.fit.synchronous import Order, less_response, order
+from raceway.studies.fit.synchronous import Synchronous, synchronous, without_response
 from raceway.studies.shaft.rotor import rotor
 
 LINE = 3e-6 * np.exp(0.7j)
@@ -36,41 +36,41 @@ def made(rate=10e3, duration=0.5, drift=0.0, uneven=0.0, noise=0.0, marked=True,
 
 @pytest.mark.parametrize("case", [{}, {"uneven": 0.8}, {"drift": 0.01}, {"drift": 0.01, "uneven": 0.8}])
 def test_the_line_is_found(case):
-    found = order(turning(made(**case)))
+    found = synchronous(rotation_of(made(**case)))
     # Marks are known to a part of a sample, which is 2 % of a turn.
-    assert abs(found.line) == pytest.approx(abs(LINE), rel=2e-3)
-    assert np.angle(found.line / LINE) == pytest.approx(0.0, abs=5e-3)
+    assert abs(found.forward) == pytest.approx(abs(LINE), rel=2e-3)
+    assert np.angle(found.forward / LINE) == pytest.approx(0.0, abs=5e-3)
     assert found.backward == pytest.approx(0.1e-6, rel=0.1)
     assert found.speed == pytest.approx(2.0 * np.pi * HZ, rel=1e-3)
     assert abs(found.fourier) == pytest.approx(abs(LINE), rel=5e-3)
 
 
 def test_three_turns_will_do():
-    found = order(turning(made(duration=0.0215)))
+    found = synchronous(rotation_of(made(duration=0.0215)))
     # The mean wanders by more than the line's amplitude in them, along a parabola: blocks of one turn know straight lines.
     assert (found.turns, found.blocks) == (3, 3)
-    assert abs(found.line - LINE) < 0.02 * abs(LINE)
+    assert abs(found.forward - LINE) < 0.02 * abs(LINE)
 
 
 def test_without_marks_the_amplitude_is_found_though_the_speed_is_a_little_off():
     record = made(marked=False)
-    found = order(turning(attrs.evolve(record, speed=1.001 * record.speed)))
+    found = synchronous(rotation_of(attrs.evolve(record, speed=1.001 * record.speed)))
     assert not found.marked
-    assert abs(found.line) == pytest.approx(abs(LINE), rel=2e-3)
+    assert abs(found.forward) == pytest.approx(abs(LINE), rel=2e-3)
 
 
 def test_the_standard_error_is_that_of_white_noise():
     noise = 0.1e-6
-    found = order(turning(made(noise=noise, duration=1.0)))
+    found = synchronous(rotation_of(made(noise=noise, duration=1.0)))
     # Least squares of n samples with noise in two channels: noise * sqrt(2 / n); 16 blocks know it to some 20 %.
     assert found.error == pytest.approx(noise * np.sqrt(2.0 / 1e4), rel=0.6)
-    assert abs(found.line - LINE) < 4.0 * found.error + 5e-3 * abs(LINE)
+    assert abs(found.forward - LINE) < 4.0 * found.error + 5e-3 * abs(LINE)
     assert found.residual == pytest.approx(np.sqrt(2.0) * noise / abs(LINE), rel=0.05)
 
 
 def test_the_doubt_of_marks_stays_where_sampling_keeps_step():
-    apart = turning(made(rate=10e3, sharp=100.0)).doubt
-    in_step = turning(made(rate=50 * HZ, sharp=100.0)).doubt
+    apart = rotation_of(made(rate=10e3, sharp=100.0)).angle_error
+    in_step = rotation_of(made(rate=50 * HZ, sharp=100.0)).angle_error
     # Flanks within one sample: half of it, 1/50 of a turn.
     assert in_step == pytest.approx(np.pi / 50, rel=0.1)
     assert apart < 0.2 * in_step
@@ -87,7 +87,7 @@ BAD = {
 @pytest.mark.parametrize(("options", "words"), BAD.values(), ids=BAD)
 def test_records_that_cannot_be_used(options, words):
     with pytest.raises(RacewayError, match=words):
-        turning(made(**options))
+        rotation_of(made(**options))
 
 
 def noisy(record, part, seed):
@@ -104,7 +104,7 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
     true = (np.arange(1, 19) - 1.0 / (2.0 * np.pi)) / HZ  # the angle begins at 1 rad
     off = []
     for seed in range(20):
-        marks = marks_of(record.time, noisy(record, part, seed).key).times
+        marks = pulses_of(record.time, noisy(record, part, seed).key).times
         assert len(marks) == len(true)
         off.append((marks - true).mean())
     # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples a turn leave of a flank.
@@ -117,11 +117,11 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
 def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):
     record, inside, over = made(**options), 0, []
     for seed in range(40):
-        found = order(turning(noisy(record, part, seed)))
+        found = synchronous(rotation_of(noisy(record, part, seed)))
         assert found.turns == int(record.time[-1] * HZ - 1.0 + 1.0 / (2.0 * np.pi))
-        error = abs(np.angle(found.line / LINE))
-        inside += error <= found.doubt + 2.0 * found.error / abs(LINE)
-        over.append(error / found.doubt)
+        error = abs(np.angle(found.forward / LINE))
+        inside += error <= found.angle_error + 2.0 * found.error / abs(LINE)
+        over.append(error / found.angle_error)
     assert inside >= 36  # 0.90 of 40
     assert part == 0.0 or np.sqrt(np.mean(np.square(over))) > 0.1  # the doubt is no excuse
 
@@ -129,26 +129,26 @@ def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):
 FAULTY = {
     "a mark that is missing": (
         lambda r: attrs.evolve(r, key=np.where((r.time > 0.2) & (r.time < 0.2 + 1.0 / HZ), 0.0, r.key)),
-        "the turn at 0.195.* s takes 2.00 .* a mark of `key` is missing there",
+        "the turn at 0.195.* s takes 2.00 .* a pulse of `key` is missing there",
     ),
     "a speed that jumps": (
         lambda r: attrs.evolve(r, key=None, speed=r.speed * np.where(r.time > 0.25, 1.05, 1.0)),
         "% from one turn to the next at 0.2.* s",
     ),
-    "a probe that sees nothing": (lambda r: attrs.evolve(r, key=0.0 * r.key, speed=None), "no mark is seen"),
-    "noise of a fifth of the range": (lambda r: noisy(made(rate=400e3), 0.2, 1), "a mark of `key` is double there"),
+    "a probe that sees nothing": (lambda r: attrs.evolve(r, key=0.0 * r.key, speed=None), "it has no pulse"),
+    "noise of a fifth of the range": (lambda r: noisy(made(rate=400e3), 0.2, 1), "a pulse of `key` is double there"),
 }
 
 
 @pytest.mark.parametrize(("fault", "words"), FAULTY.values(), ids=FAULTY)
 def test_faults_of_a_record_are_told(fault, words):
     with pytest.raises(RacewayError, match=words):
-        turning(fault(made()))
+        rotation_of(fault(made()))
 
 
 def test_angles_of_noisy_marks_grow_from_sample_to_sample():
     for seed in range(20):
-        found = turning(noisy(made(rate=100e3, duration=0.06), 0.05, seed))
+        found = rotation_of(noisy(made(rate=100e3, duration=0.06), 0.05, seed))
         assert np.diff(found.angle).min() > 0.0
         assert found.angle[0] >= 0.0 and found.angle[-1] < 2.0 * np.pi * found.turns
 
@@ -157,8 +157,8 @@ def test_angles_of_noisy_marks_grow_from_sample_to_sample():
 ANGLE = 0.6
 
 
-def rolled(line: complex, speed: float) -> Order:
-    return Order(line, 0.0, 0.0, speed, speed, speed, line, 0.0, 0.0, 40, 16, True)
+def rolled(line: complex, speed: float) -> Synchronous:
+    return Synchronous(line, 0.0, 0.0, speed, speed, speed, line, 0.0, 0.0, 40, 16, True)
 
 
 @pytest.mark.parametrize("rpm", [600.0, 3000.0])
@@ -173,5 +173,5 @@ def test_the_response_is_taken_out(rig, held, rpm, true):
     force, moment = np.linalg.solve(system, load)[2:]
     response = line.at_sensor(force, moment) * exp(1j * ANGLE)
     assert abs(response) > 1e-9  # there is something to take out
-    found = less_response(rolled(true + response, line.speed), held, line, ANGLE)
+    found = without_response(rolled(true + response, line.speed), held, line, ANGLE)
     assert found.vector == pytest.approx(true, abs=1e-6 * abs(response))

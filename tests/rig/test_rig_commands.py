@@ -11,8 +11,8 @@ import pytest
 
 from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.scene.rig import Signals
-from raceway.studies.fit.identification import identify
-from raceway.studies.fit.signals import read_recording, write_recording
+from raceway.studies.fit.identify import identify_recording
+from raceway.studies.fit.signals import recording_of, signals_of, write_recording
 from raceway.studies.rig.signals import record, response, silent
 from raceway.studies.shaft.bearing import balance, bearing
 from raceway.studies.shaft.rotor import rotor
@@ -82,7 +82,7 @@ def test_damping_is_identified(rig, scene):
     # The dashpot acts on the deflection; the shaft's slope is not in phase with it, and brings a part of its own.
     assert state.locked[1] == pytest.approx(3000.0, rel=5e-3)  # the coupling is that at rest
     quiet = attrs.evolve(silent(Signals()), duration=0.5)
-    found = identify(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
+    found = identify_recording(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
     # Marks between samples turn all phases by a little: that is what its own uncertainty says.
     assert abs(found.state.damping - state.damping) < found.uncertainty[1]
     assert abs(found.state.locked[1] - state.locked[1]) < found.uncertainty[3]
@@ -94,14 +94,14 @@ def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
     whole = record(rig, response(rig, held, state, drifting), drifting, 1)
     groups = len(whole.time) // 8
     kept = 8 * np.arange(groups) + np.random.default_rng(2).integers(0, 8, groups)
-    found = identify(whole.part(kept), rig, held)
+    found = identify_recording(whole.part(kept), rig, held)
     assert found.state.stiffness == pytest.approx(state.stiffness, rel=0.01)  # issue: 1 %
 
 
 def test_a_speed_alone_gives_k_without_c(rig, held, state):
     quiet = attrs.evolve(silent(Signals()), duration=0.25)
-    found = identify(attrs.evolve(record(rig, response(rig, held, state, quiet), quiet, 1), key=None), rig, held)
-    content = found.to_dict()
+    found = identify_recording(attrs.evolve(record(rig, response(rig, held, state, quiet), quiet, 1), key=None), rig, held)
+    content = found.content()
     assert content["identification"]["equivalent_damping"] is None
     assert any("C is not identified" in text for text in content["warnings"])
     assert found.state.stiffness == pytest.approx(state.stiffness, rel=2e-3)
@@ -111,17 +111,17 @@ def test_a_bearing_unlike_the_scene_s_is_identified_with_the_scene_s_tilt(rig, s
     other = attrs.evolve(scene, bearing=attrs.evolve(scene.bearing, contact_angle_deg=19.0))
     true = balance(rotor(rig, SPEED), bearing(other, 2000.0, default_registry()))
     quiet = attrs.evolve(silent(Signals()), duration=0.25)
-    found = identify(record(rig, response(rig, held, true, quiet), quiet, 1), rig, held)
+    found = identify_recording(record(rig, response(rig, held, true, quiet), quiet, 1), rig, held)
     own = balance(rotor(rig, SPEED), held)
     assert abs(true.stiffness / own.stiffness - 1.0) > 0.05
-    assert found.scene == pytest.approx(own.stiffness, rel=0.1)
+    assert found.scene_stiffness == pytest.approx(own.stiffness, rel=0.1)
     # Measured: 4 %, through the tilt stiffness; the report has more of them.
     assert found.state.stiffness == pytest.approx(true.stiffness, rel=0.06)
 
 
 def test_files_are_read_as_they_were_written(tmp_path, rig, held, state):
     own = record(rig, response(rig, held, state, Signals()), attrs.evolve(Signals(), duration=0.02), 1)
-    back = read_recording(write_recording(own, tmp_path / "a.csv"))
+    back = recording_of(signals_of(write_recording(own, tmp_path / "a.csv")))
     for name in ("time", "y", "z", "key", "speed"):
         assert getattr(back, name) == pytest.approx(getattr(own, name), rel=1e-5, abs=1e-11)
 
@@ -145,7 +145,7 @@ FILES = {
     "gap": ("\n".join(line for line in GOOD.splitlines() if not line.startswith("0.003")), "line 32: a gap of 0.0011 s"),
     "time goes back": (GOOD.replace("0.0030,", "0.0010,"), "line 32: time must grow, 0.001 s follows 0.0029 s"),
     "few samples": ("\n".join(GOOD.splitlines()[:12]), "11 samples; at least 32"),
-    "one turn": ("\n".join(GOOD.splitlines()[:80]), "whole turns between the marks of `key`; at least two"),
+    "one turn": ("\n".join(GOOD.splitlines()[:80]), "whole turns between the pulses of `key`; at least two"),
     "sensor at rest": (GOOD.replace(",1.0,2.0,", ",0.0,0.0,"), "the sensor sees no motion once a turn"),
     "sensor that shows a gap only, and a speed": (
         "time_s,y_um,z_um,speed_rpm\n" + "".join(f"{k * 1e-4:.4f},1.0,2.0,12000\n" for k in range(400)), "no motion once a turn"
@@ -208,7 +208,7 @@ def test_a_scene_without_a_rig(tmp_path):
 def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
     base = ["identify", tmp_path / "a.csv", "--scene", SCENE, "--out", tmp_path]
     for options, words in (
-        (["--run-out", "5,70", "--slow-roll", "b.csv"], "the slow roll tells it already"),
+        (["--run-out", "5,70", "--slow-roll", "b.csv"], "the slow roll shows it already"),
         (["--run-out", "5"], "for instance 5.0,70"),
         (["--run-out", "-5,3"], "at least 0 µm"),
         (["--set", "load.axial=0"], "must be the axial load of the measurement"),
@@ -271,14 +271,14 @@ def test_marks_and_a_speed_that_disagree(rig, held, state):
     quiet = attrs.evolve(silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="Sample faster, or leave one of the columns out"):
-        identify(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
+        identify_recording(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
 
 
 def test_columns_that_turn_the_wrong_way(rig, held, state):
     quiet = attrs.evolve(silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="swap y and z"):
-        identify(attrs.evolve(own, y=own.z, z=own.y), rig, held)
+        identify_recording(attrs.evolve(own, y=own.z, z=own.y), rig, held)
 
 
 def test_a_run_takes_no_notice_of_the_rig(scene):

@@ -89,8 +89,6 @@ def identify(given: IdentifyOptions) -> int:
     loaded = load(given.scene, given.changes, registry)
     rig_of(loaded)
     vector, columns = run_out_of(given.run_out), columns_by_head(given.columns)
-    if vector is not None and given.slow_roll is not None:
-        raise SceneError.at("--run-out", given.run_out, "the slow roll tells it already: leave one of them out")
     changed = loaded.title.partition("\n")[1:]
     folder = writable(given.out or RESULTS / f"{slug(''.join([given.signals.stem, *changed]))}-identified")
     pictures = given.pictures and has_matplotlib()
@@ -106,8 +104,8 @@ def identify(given: IdentifyOptions) -> int:
     if pictures and failed is None:
         from raceway.studies.fit.picture import write_figures
 
-        failed = attempt(lambda: write_figures(found.found, folder), files)
-    from raceway.studies.rig.page import identify_screen
+        failed = attempt(lambda: write_figures(found, folder), files)
+    from raceway.studies.fit.identify import identify_screen
 
     show(content, given.as_json, failed, lambda: identify_screen(content, files))
     return 0
@@ -209,7 +207,7 @@ def fit(given: FitOptions) -> int:
     failed = attempt(lambda: [found.save(folder)], files)
     if failed is None and given.pictures and has_matplotlib():
         failed = attempt(lambda: [found.picture(folder)], files)
-    from raceway.studies.fit.fitted import fit_screen
+    from raceway.studies.fit.fit import fit_screen
 
     show(content, given.as_json, failed, lambda: fit_screen(content, files))
     return 0

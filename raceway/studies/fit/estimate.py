@@ -1,10 +1,14 @@
-"""Least squares with known derivatives: estimate, covariance, and the combinations of free numbers that the data do not determine.
+"""Least squares with exact derivatives: free and uncertain numbers, estimate, covariance, and combinations that the data do not determine.
 
 Notes
 -----
 Numbers are searched for in multiples of their sizes, J is the derivative of the weighted residuals by these.  A right singular vector
-v of J with singular value s is a combination of changes that moves the data by s; along it the estimate scatters by the noise
-over s.  Where 95 % of that is more than the numbers themselves, or s is rounding, the data do not determine the combination.
+v of J with singular value s is a combination of changes that moves the data by s; along it the standard error of the estimate is that
+of the noise over s.  Where 95 % of that is more than the numbers themselves, or s is rounding, the data do not determine the combination.
+
+Numbers of the scene that are not free are uncertain: a range of its [tolerances] counts by the root mean square deviation of an even
+distribution from the number, the relative standard error of a preset's inferred numbers is in the catalogue.  Conformities of a preset
+are one number that was inferred: they deviate together.  To first order they move the estimate by -(J' J)^-1 J' dr.
 
 References
 ----------
@@ -27,9 +31,23 @@ from raceway.scene.given import leaves
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import tolerances_of
 
-#: Size of a change at a number that is 0, by unit: what a bearing shows.
+#: Probability of intervals and regions.
+CONFIDENCE = 0.95
+#: Half-width at that probability over the standard error, of a normal distribution.
+NORMAL = 1.959964
+#: The same as data and records of a rig state it.
+COVERAGE = 1.96
+#: Singular value over the largest one that is rounding of derivatives; share in a combination below which a number is not named.
+_ROUNDING, _NAMED = 1e-7, 0.1
+#: Relative change of numbers and of the sum of squares that ends the search, and evaluations at most.
+_TOLERANCE, _MOST = 1e-9, 100
+#: Part of its size by which a number lies at the end of its range, and near to it.
+_AT_LIMIT, _NEAR = 1e-4, 0.05
+#: Probability below which residuals are too large for errors that are stated.
+_UNLIKELY = 1e-3
+#: Size of a change at a number that is 0, by unit: typical of a bearing.
 _SIZES = {"m": 1e-6, "N": 10.0, "N m": 0.1, "deg": 1.0, "r/min": 10.0, "K": 1.0, "kg": 0.1, "s": 1e-6, "N s/m": 10.0}
-#: Doublings of a change before a number counts as without limit, and halvings that find a limit.
+#: Doublings of a change before a number counts as without limit, and halvings that bracket a limit.
 _DOUBLINGS, _HALVINGS = 40, 50
 
 
@@ -51,6 +69,10 @@ class Free:
     low: float = -inf
     high: float = inf
 
+    def margin(self, value: float) -> float:
+        """Distance of a value from the nearer end of the range, over the size."""
+        return min(value - self.low, self.high - value) / self.size
+
 
 def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
     """Free keys of a scene, each with its range.
@@ -65,7 +87,7 @@ def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
         raise SceneError.at("--free", None, "names no key: give at least one, such as bearing.contact_angle_deg")
     if twice := next((path for path in paths if paths.count(path) > 1), None):
         raise SceneError.at("--free", twice, "stands there twice")
-    found = []
+    free = []
     for path in paths:
         key = key_of(scene, path)
         size = abs(key.value) or _SIZES.get(key.unit, 1.0)
@@ -74,57 +96,73 @@ def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
             raise SceneError.at(path, key.value, "has no room to either side: its range is this one number")
         # A search begins inside its range: a number at the end of it is moved in by a little.
         inside = 1e-6 * min(size, high - low)
-        found.append(Free(path, key.unit, min(max(key.value, low + inside), high - inside), size, low, high))
-    return found
+        free.append(Free(path, key.unit, min(max(key.value, low + inside), high - inside), size, low, high))
+    return free
 
 
 def _limit(scene: Scene, path: str, value: float, step: float) -> float:
     """The last number that the rules of the scene's tables allow on the way from a value in steps of one sign."""
+
+    def allowed(number: float) -> bool:
+        try:
+            with_number(scene, path, number)
+        except ValueError:
+            return False
+        return True
+
     inner = value
     for _ in range(_DOUBLINGS):
         outer = value + step
-        if not _allowed(scene, path, outer):
+        if not allowed(outer):
             break
         inner, step = outer, 2.0 * step
     else:
         return inf if step > 0.0 else -inf
     for _ in range(_HALVINGS):
         middle = 0.5 * (inner + outer)
-        if _allowed(scene, path, middle):
+        if allowed(middle):
             inner = middle
         else:
             outer = middle
     return inner
 
 
-def _allowed(scene: Scene, path: str, value: float) -> bool:
-    try:
-        with_number(scene, path, value)
-    except ValueError:
-        return False
-    return True
+def with_free(scene: Scene, free: Sequence[Free], values: np.ndarray) -> Scene:
+    """The scene with values of its free keys.
+
+    Raises
+    ------
+    SceneError
+        A value that a key's rule refuses.
+    """
+    for key, value in zip(free, values, strict=True):
+        try:
+            scene = with_number(scene, key.name, float(value))
+        except ValueError as why:
+            raise SceneError.at(key.name, float(value), str(why)) from None
+    return scene
 
 
 @attrs.frozen
 class Uncertain:
-    """Numbers that are off together.  ``cause``: in words;  ``sizes``: path -> standard error, in the unit of the key."""
+    """Numbers that deviate together.  ``cause``: in words;  ``sizes``: path -> standard error, in the unit of the key."""
 
     cause: str
     sizes: dict[str, float]
 
-    def moved(self, scene: Scene, by: float) -> Scene:
-        """The scene with these numbers off by so many standard errors; ``ValueError`` where a key's rule refuses one."""
+    def moved(self, scene: Scene, errors: float) -> Scene:
+        """The scene with these numbers moved by some standard errors; ``ValueError`` where a key's rule refuses one."""
         for path, size in self.sizes.items():
-            scene = with_number(scene, path, key_of(scene, path).value + by * size)
+            scene = with_number(scene, path, key_of(scene, path).value + errors * size)
         return scene
 
 
 def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = ()) -> tuple[Uncertain, ...]:
-    """Uncertain numbers of a scene, but for free ones.
+    """Uncertain numbers of a scene, without free ones.
 
     Parameters
     ----------
-    measured : keys that the data state, which no catalogue tells
+    measured : keys that the data state, for which no catalogue counts
 
     Raises
     ------
@@ -132,39 +170,23 @@ def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = (
         A tolerance that reaches what a rule refuses.
     """
     table = dict(leaves(scene.source.get("tolerances", {})))
-    sizes = {}
-    for one in tolerances_of(scene, table) if table else ():
-        above, below = one.high - one.key.value, one.key.value - one.low
-        sizes[one.key.path] = ((above**3 + below**3) / 3.0 / (above + below)) ** 0.5
-    found = [Uncertain(path, {path: size}) for path, size in sizes.items() if path not in free]
-    said = scene.source if scene.given is None else scene.given.merged()
-    geometry = geometry_of(scene.source["bearing"], said.get("bearing", {})) or {}
-    tables = [("bearing", geometry), *((f"bearing.row[{one['row']}]", one) for one in geometry.get("rows", ()))]
-    facts = {f"{name}.{key}": fact["scatter"] for name, one in tables for key, fact in one.get("inferred", {}).items()}
-    scatters = {
-        key.path: facts[key.path] * abs(key.value)
+    ranges = {}
+    for tolerance in tolerances_of(scene, table) if table else ():
+        above, below = tolerance.high - tolerance.key.value, tolerance.key.value - tolerance.low
+        ranges[tolerance.key.path] = ((above**3 + below**3) / 3.0 / (above + below)) ** 0.5
+    tables = scene.source if scene.given is None else scene.given.merged()
+    geometry = geometry_of(scene.source["bearing"], tables.get("bearing", {})) or {}
+    parts = [("bearing", geometry), *((f"bearing.row[{row['row']}]", row) for row in geometry.get("rows", ()))]
+    inferred = {f"{name}.{key}": fact["scatter"] for name, part in parts for key, fact in part.get("inferred", {}).items()}
+    errors = {
+        key.path: inferred[key.path] * abs(key.value)
         for key in continuous_keys(scene)
-        if facts.get(key.path) and key.path not in {*sizes, *free, *measured}
+        if inferred.get(key.path) and key.path not in {*ranges, *free, *measured}
     }
-    grooves = {path: size for path, size in scatters.items() if ".conformity" in path}
-    found += [Uncertain(path, {path: size}) for path, size in scatters.items() if path not in grooves]
-    if grooves:
-        found.append(Uncertain("groove conformities", grooves))
-    return tuple(found)
-
-
-#: Probability of intervals and regions.
-CONFIDENCE = 0.95
-#: Half-width of that over the standard error, of a normal distribution.
-NORMAL = 1.959964
-#: Singular value over the largest one that is rounding of derivatives; part of a number in a combination below which it is not told.
-_ROUNDING, _TOLD = 1e-7, 0.1
-#: Relative change of numbers and of the sum of squares that ends the search, and evaluations at most.
-_TOLERANCE, _MOST = 1e-9, 100
-#: Part of its size by which a number lies at the end of its range, and near to it.
-_AT_LIMIT, _NEAR = 1e-4, 0.05
-#: Probability below which residuals are too large for errors that are stated.
-_UNLIKELY = 1e-3
+    grooves = {path: size for path, size in errors.items() if ".conformity" in path}
+    alone = {path: size for path, size in {**ranges, **errors}.items() if path not in {*free, *grooves}}
+    causes = [Uncertain(path, {path: size}) for path, size in alone.items()]
+    return tuple([*causes, Uncertain("groove conformities", grooves)] if grooves else causes)
 
 
 class Residuals(Protocol):
@@ -187,7 +209,7 @@ class Residuals(Protocol):
 
 @attrs.frozen
 class Combination:
-    """Changes of free numbers, in their units, that the data do not tell from none.
+    """Changes of free numbers, in their units, that the data do not distinguish from none.
 
     ``changes``: name -> change;  ``moves``: the data by that many standard errors at most.
     """
@@ -198,7 +220,7 @@ class Combination:
 
 @attrs.frozen(eq=False)
 class Estimate:
-    """Numbers found by least squares.
+    """Numbers at the least sum of squares.
 
     Attributes
     ----------
@@ -210,7 +232,7 @@ class Estimate:
     undetermined : combinations;  open : the same by singular vectors (k, p), in the units of the numbers
     at_limit : names of numbers at the end of their range
     evaluations : of the model
-    shifts : cause beside noise -> (k, p), what k independent standard errors of it move the numbers by
+    shifts : cause beside noise -> (k, p), by which k independent standard errors of it move the numbers
     """
 
     free: tuple[Free, ...]
@@ -237,11 +259,11 @@ class Estimate:
     def parts(self) -> dict[str, np.ndarray]:
         """Cause -> half-widths at 95 % (p,) by it alone, noise first."""
         noise = {"noise": self.reach * np.sqrt(np.diag(self.covariance))}
-        return noise | {cause: NORMAL * np.linalg.norm(one, axis=0) for cause, one in self.shifts.items()}
+        return noise | {cause: NORMAL * np.linalg.norm(shift, axis=0) for cause, shift in self.shifts.items()}
 
     def with_shifts(self, cause: str, columns: np.ndarray) -> Estimate:
         """With another cause, whose independent standard errors move the weighted residuals by columns (n, k)."""
-        sizes = np.array([one.size for one in self.free])
+        sizes = np.array([number.size for number in self.free])
         u, s, v = np.linalg.svd(self.jacobian * sizes, full_matrices=False)
         inverse = np.divide(1.0, s, out=np.zeros_like(s), where=s > _ROUNDING * s[0])
         moved = -((columns.T @ u) * inverse @ v)
@@ -250,15 +272,15 @@ class Estimate:
         return attrs.evolve(self, half=wider, shifts={**self.shifts, cause: moved})
 
     def half_widths(self, slopes: np.ndarray, directly: Mapping[str, np.ndarray] | None = None) -> np.ndarray:
-        """Half-widths at 95 % (m,) of numbers whose derivatives by the free ones are given (m, p).
+        """Half-widths at 95 % (m,) of numbers with derivatives (m, p) by the free ones.
 
-        ``directly``: cause -> (m, k), what its standard errors move them by at the same free numbers.  Combinations that the data do not
-        determine count as known to the sizes of the numbers.
+        ``directly``: cause -> (m, k), by which its standard errors move them at the same free numbers.  Combinations that the data do not
+        determine count as certain to the sizes of the numbers.
         """
         squares = self.reach**2 * np.einsum("ij,jk,ik->i", slopes, self.covariance, slopes)
         squares += ((slopes @ self.open.T) ** 2).sum(axis=1)
-        for cause, one in self.shifts.items():
-            squares += NORMAL**2 * ((slopes @ one.T + (directly or {}).get(cause, 0.0)) ** 2).sum(axis=1)
+        for cause, shift in self.shifts.items():
+            squares += NORMAL**2 * ((slopes @ shift.T + (directly or {}).get(cause, 0.0)) ** 2).sum(axis=1)
         return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
@@ -267,20 +289,20 @@ def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate
 
     Parameters
     ----------
-    stated : whether weights are those of stated errors; else the residuals' own scatter tells them
+    stated : whether weights are those of stated errors; else the residuals determine them
 
     Raises
     ------
     RacewayError
         The model has no answer where the search begins.
     ConvergenceError
-        The search finds no end.
+        The search does not converge.
     """
     from scipy.optimize import least_squares
 
-    sizes = np.array([one.size for one in free])
-    begin = np.array([one.start for one in free]) / sizes
-    first = problem.residuals(begin * sizes)
+    sizes = np.array([number.size for number in free])
+    start = np.array([number.start for number in free]) / sizes
+    first = problem.residuals(start * sizes)
 
     def residuals(x: np.ndarray) -> np.ndarray:
         try:
@@ -297,22 +319,21 @@ def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate
         u, s, v = np.linalg.svd(slopes, full_matrices=False)
         return np.asarray((u * np.where(s > _ROUNDING * s[0], s, 0.0)) @ v)
 
-    found = least_squares(residuals, begin, jacobian, ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=_TOLERANCE, max_nfev=_MOST)
-    if found.status <= 0:
+    search = least_squares(residuals, start, jacobian, ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=_TOLERANCE, max_nfev=_MOST)
+    if search.status <= 0:
         raise ConvergenceError(
-            f"no least sum of squares after {found.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
+            f"no least sum of squares after {search.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
         )
-    return judged(tuple(free), found.x * sizes, found.fun, found.jac / sizes, stated, int(found.nfev))
+    return judged(tuple(free), search.x * sizes, search.fun, search.jac / sizes, stated, int(search.nfev))
 
 
 def _no_derivative(free: Sequence[Free], values: np.ndarray, why: SceneError) -> RacewayError:
-    """What to say of numbers that ran to the end of their ranges, where derivatives end; else the reason as it is."""
-    for one, value in zip(free, values, strict=True):
-        if min(value - one.low, one.high - value) < _NEAR * one.size:
+    """A sentence on the number that ran to the end of its range, where derivatives end; else the reason as it is."""
+    for key, value in zip(free, values, strict=True):
+        if key.margin(value) < _NEAR:
             return ConvergenceError(
-                f"`{one.name}` ran to {value:.4g} {one.unit}".rstrip()
-                + ", the end of the range that the scene's rules leave it: the data ask for a "
-                "number that is not physical. Are the data's units, loads and speeds right, and the scene's bearing that of the test?"
+                f"`{key.name}` ran to {f'{value:.4g} {key.unit}'.rstrip()}, the end of the range that the scene's rules leave it: the data ask "
+                "for a number that is not physical. Are the data's units, loads and speeds right, and the scene's bearing that of the test?"
             )
     return why
 
@@ -321,11 +342,11 @@ def judged(
     free: tuple[Free, ...], values: np.ndarray, residuals: np.ndarray, jacobian: np.ndarray, stated: bool, evaluations: int,
     scores: np.ndarray | None = None,
 ) -> Estimate:  # fmt: skip
-    """What residuals (n,) and derivatives (n, p) at the least sum of squares tell of the numbers.
+    """Intervals and undetermined combinations by residuals (n,) and derivatives (n, p) at the least sum of squares.
 
     Parameters
     ----------
-    scores : (m, p) of independent groups of residuals that are not alike, derivatives times residuals: they tell the covariance
+    scores : (m, p) of independent groups of residuals that are not alike, derivatives times residuals: they determine the covariance
     """
     from scipy.stats import chi2, t
 
@@ -336,32 +357,26 @@ def judged(
     if stated and scatter is not None and scatter > 1.0 and chi2.sf(squares, freedom) < _UNLIKELY:
         noise = widened = scatter
     reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) if freedom and noise != 1.0 else NORMAL
-    sizes = np.array([one.size for one in free])
+    sizes = np.array([number.size for number in free])
     _, s, directions = np.linalg.svd(jacobian * sizes, full_matrices=False)
-    open_ = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
-    known = directions[~open_]
-    root = known / s[~open_, None]
+    undetermined = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
+    root = directions[~undetermined] / s[~undetermined, None]
     bread = root.T @ root
     covariance = noise**2 * bread * np.outer(sizes, sizes)
     if scores is not None:
-        each = scores * sizes @ bread * sizes
-        covariance = each.T @ each
+        groups = scores * sizes @ bread * sizes
+        covariance = groups.T @ groups
     half = reach * np.sqrt(np.diag(covariance))
-    if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing tells the scatter
+    if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing determines the noise
         half[:] = np.inf
-    lost = (np.abs(directions[open_]) > _TOLD).any(axis=0)
-    half[lost] = np.inf
-    told = tuple(
-        _combination(free, one, s_one / noise if noise else 0.0, sizes)
-        for one, s_one in zip(directions[open_], s[open_], strict=True)
+    half[(np.abs(directions[undetermined]) > _NAMED).any(axis=0)] = np.inf
+    combinations = tuple(
+        _combination(free, direction, size / noise if noise else 0.0, sizes)
+        for direction, size in zip(directions[undetermined], s[undetermined], strict=True)
     )
-    at_limit = tuple(
-        one.name
-        for one, value in zip(free, values, strict=True)
-        if min(value - one.low, one.high - value) < _AT_LIMIT * one.size
-    )
+    at_limit = tuple(key.name for key, value in zip(free, values, strict=True) if key.margin(value) < _AT_LIMIT)
     return Estimate(
-        free, values, covariance, reach, half, residuals, jacobian, scatter, widened, told, directions[open_] * sizes, at_limit,
+        free, values, covariance, reach, half, residuals, jacobian, scatter, widened, combinations, directions[undetermined] * sizes, at_limit,
         evaluations,
     )  # fmt: skip
 
@@ -375,8 +390,8 @@ def _combination(free: Sequence[Free], direction: np.ndarray, moves: float, size
     """
     part = 0.1 / direction[np.argmax(np.abs(direction))]
     changes = {
-        one.name: float(part * share * size)
-        for one, share, size in zip(free, direction, sizes, strict=True)
-        if abs(part * share) > 0.1 * _TOLD
+        number.name: float(part * share * size)
+        for number, share, size in zip(free, direction, sizes, strict=True)
+        if abs(part * share) > 0.1 * _NAMED
     }
     return Combination(changes, float(abs(part) * moves))

@@ -1,4 +1,4 @@
-"""Numbers from measured data, for Python and the command line alike: ``raceway.fit``."""
+"""``raceway.fit``: numbers of a scene or a linear model from measured data, and its answer."""
 
 from __future__ import annotations
 
@@ -6,188 +6,214 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import numpy as np
 
-from raceway.commands.progress import telling
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door
-from raceway.framework.registry import Registry, registry_with
-from raceway.scene.continuous import continuous_keys
+from raceway.commands.progress import ShowProgress, telling
+from raceway.errors import SceneError
+from raceway.framework.doors import door, member
+from raceway.framework.registry import registry_with
+from raceway.framework.shown import Fact, Shown, number, number_within, read_in
+from raceway.pipeline.result import without_nan, write_json
 from raceway.scene.given import as_scene
-from raceway.scene.reading import rig_of
-from raceway.scene.scene import Scene
-from raceway.studies.fit.estimate import Estimate, estimate, free_keys
-from raceway.studies.fit.fitted import Derived, Fitted, Series
-from raceway.studies.fit.identification import roll_of
-from raceway.studies.fit.linear import Linear, fit_lines, free_parts, lines_of
-from raceway.studies.fit.rig import RigLine, refuse_across
-from raceway.studies.fit.signals import Signals, over_time, read_table, recording_of, signals_of
-from raceway.studies.fit.synchronous import Order, RunOut, given
-from raceway.studies.fit.table import MEASURED, Observed, Predicted, observed, refuse_few
+from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.fit.column_headers import quantity_of
+from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
+from raceway.studies.fit.signals import headers_of, signals_of, table_of
 
 if TYPE_CHECKING:
-    from raceway.commands.progress import ShowProgress
+    from rich.console import RenderableType
+
+#: Part of a half-width below which a cause of it is not shown.
+_SMALL = 0.02
 
 
-#: Words of keys by which a bearing is damped: without a free one C is the scene's, not the signals'.
-_DAMPING = ("damping", "time_constant", "loss_factor")
+@attrs.frozen(eq=False)
+class Series:
+    """One measured quantity beside the fit.
 
-#: Part of a record's force that a model may leave.
-_LEFT = 0.1
-
-
-def of_table(data: Observed, scene: Scene, names: list[str]) -> Fitted:
-    """Free keys of a scene from a table.
-
-    Raises
-    ------
-    SceneError, ConvergenceError
-        What is wrong with table, keys or scene; no answer, or no end of the search.
-    """
-    free = free_keys(scene, names)
-    refuse_few(sum(len(one) for one in data.values.values()), len(free), data.source)
-    problem = Predicted.of(data, scene, free)
-    found = estimate(problem, free, data.stated)
-    fitted = problem.fitted(found.values)
-    causes, left_out = problem.uncertain()
-    exact = "groove conformities are taken as exact: [tolerances] of the scene says by how much they may be off"
-    notes = (
-        *problem.notes(),
-        *left_out,
-        *([] if "conformit" in " ".join([*causes, *names, *left_out, *data.keys]) else [exact]),
-    )
-    for cause, columns in causes.items():
-        found = found.with_shifts(cause, columns)
-    series = tuple(_series(data, problem, found, fitted, causes))
-    return Fitted(scene.title, data.source, "table", data.stated, found, series, (), notes)
-
-
-def of_rig(
-    signals: Signals, scene: Scene, names: list[str], registry: Registry, known: RunOut | None, roll: Order | None
-) -> Fitted:
-    """Free keys of a scene from the signals of its rig.
-
-    Parameters
+    Attributes
     ----------
-    known : run-out, or None;  roll : 1x line of a slow roll, or None
-
-    Raises
-    ------
-    SceneError, ConvergenceError
-        What is wrong with signals, keys or scene; no motion like the measured one, or no end of the search.
+    name, unit : of the quantity;  over, over_unit : of the abscissa
+    x, measured, fitted : (n,)
+    error : (n,) standard errors, by the residuals where none were stated
+    band : (n,) half-widths of the fitted curve at 95 %
     """
-    rig = rig_of(scene)
-    free = free_keys(scene, names)
-    refuse_across(scene, free)
-    try:
-        problem = RigLine.of(recording_of(signals), scene, rig, registry, free, known, roll)
-        refuse_few(problem.count, len(free), signals.source)
-        found = estimate(problem, free, stated=True)
-    except RacewayError as why:
-        if why.exit_code != 2 or isinstance(why, SceneError):
-            raise
-        raise SceneError.at(signals.source, None, str(why)) from None
-    problem.residuals(found.values)
-    state, line = problem.state, problem.line
-    assert state is not None
-    causes = problem.uncertain(found.values)
-    for cause, (column, _, _) in causes.items():
-        found = found.with_shifts(cause, column[:, None])
-    halves = found.half_widths(problem.slopes, {cause: slopes[:, None] for cause, (_, slopes, _) in causes.items()})
-    derived = [Derived("K", "N/m", state.stiffness, float(halves[0]))]
-    if problem.found.marked and any(word in one.name for one in free for word in _DAMPING):
-        derived.append(Derived("C", "N s/m", state.damping, float(halves[1])))
-    parts = [("real", np.real), ("imaginary", np.imag)][: problem.count]
-    seen, fitted = (line, state.sensor) if problem.found.marked else (abs(line), abs(state.sensor))
-    slopes = np.array([part(problem.line_slopes) for _, part in parts])
-    directly = {cause: np.array([[part(line)] for _, part in parts]) for cause, (_, _, line) in causes.items()}
-    series = Series(
-        f"line at the sensor ({' and '.join(name for name, _ in parts)} part)", "m", "part", "", np.arange(1.0, len(parts) + 1.0),
-        np.array([part(seen) for _, part in parts]), np.array([part(fitted) for _, part in parts]),
-        np.full(len(parts), found.widened * problem.errors[0]), found.half_widths(slopes, directly),
-    )  # fmt: skip
-    speed = problem.found.speed * 30.0 / np.pi
-    title, notes = f"{scene.title}, {speed:.1f} r/min", problem.notes()
-    return Fitted(title, signals.source, "rig", True, found, (series,), tuple(derived), notes)
+
+    name: str
+    unit: str
+    over: str
+    over_unit: str
+    x: np.ndarray
+    measured: np.ndarray
+    fitted: np.ndarray
+    error: np.ndarray
+    band: np.ndarray
 
 
-def of_record(signals: Signals, names: list[str], mass: float | None) -> Fitted:
-    """K, C and mass of a linear model from a record of force and displacement.
+@attrs.frozen
+class Derived:
+    """A number that follows from the free ones: its half-width at 95 %, infinite where the data do not determine it."""
 
-    Parameters
+    name: str
+    unit: str
+    value: float
+    half: float
+
+
+@attrs.frozen(eq=False, repr=False)
+class Fitted(Shown):
+    """Free numbers of a scene or a linear model by measured data.
+
+    Attributes
     ----------
-    mass : where it is not free [kg]; None: it is free, named or not
+    title : of the scene or the model;  source : of the data;  kind : "table", "rig" or "record"
+    stated : whether errors of the data were stated; else their residuals determine them
+    estimate : numbers, covariance, what is not determined;  series : data beside the fit;  derived : K and C of a rig
+    notes : sentences that a reader of the numbers needs
 
-    Raises
-    ------
-    SceneError
-        What is wrong with the record or the names.
-    ConvergenceError
-        The search finds no end.
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> data = {"load.axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [39.38, 67.43, 98.77]}
+    >>> fitted = rw.fit(data, "examples/b7206.toml", ["bearing.contact_angle_deg"])
+    >>> round(fitted["bearing.contact_angle_deg"], 1)  # [deg]
+    17.0
     """
-    if mass is not None and mass < 0.0:
-        raise SceneError.at("mass", mass, "must be at least 0 kg")
-    lines = lines_of(signals)
-    free = free_parts(names, lines, mass)
-    refuse_few(2 * lines.force.size, len(free) + len(lines.axes), signals.source)
-    found, model = fit_lines(lines, free, mass or 0.0)
-    title = f"F = K x + C x' + m x'', {lines.omega[0] / 2.0 / np.pi:.4g} to {lines.omega[-1] / 2.0 / np.pi:.4g} Hz"
-    words = {one.name.rstrip("yz").replace("k", "K").replace("c", "C") for one in free}
-    notes = []
-    if mass is None and not any("mass" in name for name in names):
-        notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
-    if absent := [word for word in ("K", "C") if word not in words]:
-        notes.append(f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} not free: taken as 0")
-    notes += model.remarks
-    there = model.excited
-    left = float(np.linalg.norm(model.rest[there]) / np.linalg.norm(lines.force[there]))
-    if left > _LEFT:
-        missing = " and ".join([*absent, *(["mass"] if mass is not None else [])])
-        remedy = f"{f'free {missing} or ' if missing else ''}cut the record to frequencies below the next resonance"
-        notes.append(f"the model leaves {100.0 * left:.2g} % of the force (root mean square): {remedy}")
-    for one, value, half in zip(found.free, found.values, found.half, strict=True):
-        if one.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:
-            notes.append(
-                f"{one.name} is negative: does the force's sign mean that of the displacement, and is the mass known?"
+
+    title: str
+    source: str
+    kind: str
+    stated: bool
+    estimate: Estimate
+    series: tuple[Series, ...]
+    derived: tuple[Derived, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def _numbers(self) -> dict[str, tuple[float, float, str]]:
+        """Name -> value, half-width and unit, of free and of derived numbers."""
+        free, answer = self.estimate.free, self.estimate
+        rows = zip(free, answer.values, answer.half, strict=True)
+        numbers = {key.name: (float(value), float(half), key.unit) for key, value, half in rows}
+        return numbers | {number.name: (number.value, number.half, number.unit) for number in self.derived}
+
+    def __getitem__(self, name: str) -> float:
+        """A free number, in the unit of its key, or a derived one, in SI."""
+        return self._numbers[member("name", name, self._numbers)][0]
+
+    def half_width(self, name: str) -> float:
+        """Half-width of its interval at 95 %; infinite where the data do not determine it."""
+        return self._numbers[member("name", name, self._numbers)][1]
+
+    @property
+    def determined(self) -> bool:
+        """Whether the data determine every free number."""
+        return not self.estimate.undetermined
+
+    @property
+    def warnings(self) -> list[str]:
+        """Sentences that a reader of the numbers needs."""
+        answer = self.estimate
+        out = [_sentence(combination, self._numbers) for combination in answer.undetermined]
+        if answer.freedom == 0 and not np.isfinite(answer.half).all() and not answer.undetermined:
+            out.append("as many data as free numbers, and no stated errors: nothing tells how well the numbers are known")
+        out += [
+            f"{name} lies at the end of its range: the data ask for more than the scene's rules allow"
+            for name in answer.at_limit
+        ]
+        if answer.widened > 1.0:
+            out.append(
+                f"the model misses the data by {answer.widened:.2g} times their stated errors: intervals are that much wider, and the "
+                "model or the errors are wrong"
             )
-    return Fitted(title, signals.source, "record", False, found, tuple(_spectra(model, found)), (), tuple(notes))
+        return [*out, *self.notes]
+
+    def to_dict(self) -> Tables:
+        """Plain tables, as in fit.json."""
+        answer = self.estimate
+        parts = [dict(zip(answer.parts, halves, strict=True)) for halves in np.array([*answer.parts.values()]).T.tolist()]
+        free = [
+            {
+                "key": key.name, "unit": key.unit, "start": key.start, "value": float(value), "error": float(half),
+                "low": float(value - half), "high": float(value + half), "determined": bool(np.isfinite(half)),
+                "at_limit": key.name in answer.at_limit, "parts": causes,
+            }
+            for key, value, half, causes in zip(answer.free, answer.values, answer.half, parts, strict=True)
+        ]  # fmt: skip
+        content: Tables = {
+            "title": self.title,
+            "file": self.source,
+            "kind": self.kind,
+            "stated": self.stated,
+            "confidence": CONFIDENCE,
+            "free": free,
+            "covariance": sum((moved.T @ moved for moved in answer.shifts.values()), answer.covariance).tolist(),
+            "undetermined": [{"changes": c.changes, "moves_standard_errors": c.moves} for c in answer.undetermined],
+            "derived": [attrs.asdict(number) for number in self.derived],
+            "fit": {
+                "data": int(answer.jacobian.shape[0]), "freedom": answer.freedom, "scatter": answer.scatter, "widened": answer.widened,
+                "evaluations": answer.evaluations,
+            },
+            "series": [
+                attrs.asdict(row, value_serializer=lambda _, __, v: v.tolist() if isinstance(v, np.ndarray) else v)
+                for row in self.series
+            ],
+            "warnings": self.warnings,
+        }  # fmt: skip
+        return dict(without_nan(content))
+
+    def save(self, folder: Path) -> Path:
+        """Write fit.json.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.to_dict(), folder / "fit.json")
+
+    def picture(self, folder: Path) -> Path:
+        """Draw fit.png: data, fit with its band, residuals, confidence region.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+        from raceway.studies.fit.picture import draw
+
+        return save_figure(draw(self.to_dict()), folder / "fit.png", 110)
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        facts = [interval(name, *numbers) for name, numbers in self._numbers.items()]
+        title = f"Fitted to {self.source}\n{self.title.splitlines()[0]}"
+        return title, [*facts, *(("warning", "", text) for text in self.warnings)]
 
 
-def _spectra(model: Linear, found: Estimate) -> list[Series]:
-    """Real and imaginary part of F / x over frequency beside the model's, an axis each, at lines where there is force.
-
-    Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.
-    """
-    lines, there = model.lines, model.excited
-    hz, out = lines.omega[there] / 2.0 / np.pi, []
-    stiffness, slopes = model.stiffness(found.values)[there], model.slopes[there]
-    for k, axis in enumerate(lines.axes):
-        moved = lines.displacement[there, k]
-        measured = stiffness[:, k, k] - model.rest[there, k] / moved
-        error = np.sqrt(0.5 * model.variance(found.values)[there, k]) / np.abs(moved)
-        for word, part in (("real", np.real), ("imaginary", np.imag)):
-            name, band = f"F / x along {axis}, {word} part", found.half_widths(part(slopes[:, k, k]))
-            fitted = part(stiffness[:, k, k])
-            out.append(Series(name, "N/m", "frequency", "Hz", hz, part(measured), fitted, error, band))
-    return out
+def interval(name: str, value: float, half: float, unit: str, remark: str = "") -> Fact:
+    """A number with its half-width at 95 %, in the unit in which people read it."""
+    value, half, unit = _readable(value, half, unit)
+    if not np.isfinite(half):
+        return name, number(value, unit, 4), "not determined"
+    words = f"+- {number(half, unit, 2)} at 95 %"
+    return name, number_within(value, half, unit), f"{words}; {remark}" if remark else words
 
 
-def _series(
-    data: Observed, problem: Predicted, found: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
-) -> list[Series]:
-    key = next((path for path, numbers in data.keys.items() if np.ptp(numbers) > 0.0), None)
-    count = len(next(iter(data.values.values())))
-    x = data.keys[key] if key else np.arange(1.0, count + 1.0)
-    band = found.half_widths(found.jacobian, causes).reshape(-1, count)
-    units = {one.path: one.unit for one in continuous_keys(problem.scenes[0])}
-    noise = found.widened if data.stated else (found.scatter or 0.0)
-    return [
-        Series(
-            name, MEASURED[name], key or "measurement", units[key] if key else "", x, values, fitted[name],
-            noise * data.weights[name], band[k] * data.weights[name],
-        )
-        for k, (name, values) in enumerate(data.values.items())
-    ]  # fmt: skip
+def _readable(value: float, half: float, unit: str) -> tuple[float, float, str]:
+    read, word = read_in(value, unit)
+    return read, read_in(half, unit)[0], word
+
+
+def _sentence(combination: Combination, numbers: Mapping[str, tuple[float, float, str]]) -> str:
+    """Changes that the data do not determine."""
+    parts = [f"{name} {change:+.3g} {numbers[name][2]}".rstrip() for name, change in combination.changes.items()]
+    names, moves = " and ".join(combination.changes), f"moves them by {combination.moves:.2g} standard errors"
+    if len(parts) == 1:
+        return f"the data do not determine {names}: {parts[0]} {moves}. Do not free it"
+    remedy = "Free one of them less, or measure what tells them apart"
+    return f"the data do not determine {names} together: {' with '.join(parts)} {moves}. {remedy}"
 
 
 @door
@@ -207,72 +233,121 @@ def fit(
 
     Parameters
     ----------
-    data : CSV file, mapping of heads to arrays (n,) or pandas.DataFrame: a table of measured quantities over keys of the scene,
+    data : CSV file, mapping of column headers to arrays (n,) or pandas.DataFrame: a table of measured quantities over keys of the scene,
         ``load.axial [N], K [N/um], K error [N/um]``, errors as half-widths at 95 %; or the signals of a rig that ``identify`` reads;
         or a record of force and displacement, ``time_s, force_n, x_um``, of one axis or two
     scene : Scene, path, TOML text or dict of tables; with a table ``rig`` for signals; None for a record of force and displacement
     free : keys such as "bearing.contact_angle_deg", a search begins at the scene's numbers; of a record "K", "C", "mass"
     mass : that moves with a record's displacement, where it is known [kg]; None: it is free
     slow_roll, run_out : of a rig's signals, as ``identify`` takes them
-    columns : head -> what it is taken for, or "ignore"
+    columns : header -> the header that is meant, or "ignore"
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
     Returns
     -------
     Fitted
-        ``found[key]`` the number, ``found.half_width(key)`` that of its interval at 95 %, ``warnings`` what the data do not determine
+        ``fitted[key]`` the number, ``fitted.half_width(key)`` that of its interval at 95 %, ``warnings`` what the data do not determine
 
     Raises
     ------
     SceneError
-        What is wrong with data, keys or scene.
+        The fault of data, keys or scene.
     ConvergenceError
-        The scene has no answer where the search begins, or the search finds no end.
+        The scene has no answer where the search begins, or the search does not converge.
 
     Examples
     --------
     >>> import raceway as rw
     >>> data = {"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [39.38, 67.43, 98.77]}
-    >>> found = rw.fit(data, {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, "bearing.contact_angle_deg")
-    >>> found.determined, found.estimate.freedom
+    >>> fitted = rw.fit(data, {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}, "bearing.contact_angle_deg")
+    >>> fitted.determined, fitted.estimate.freedom
     (True, 2)
     """
+    from raceway.studies.fit.linear import fit_record
+    from raceway.studies.fit.rig import fit_rig
+    from raceway.studies.fit.synchronous import stated_run_out
+    from raceway.studies.fit.table import fit_table, measurements_in
+
     names = [part for word in free for part in word.split(",")]
-    registry = registry_with(plugins)
-    with telling(progress) as told:
-        told("reading", 0, 2)
-        record = signals_of(data, columns) if over_time(data, columns) else None
+    registry, sloped = registry_with(plugins), slow_roll is not None or run_out is not None
+    with telling(progress) as report:
+        report("reading", 0, 2)
+        over_time = any(quantity_of((columns or {}).get(text, text)) == "time" for text in headers_of(data, "data"))
+        record = signals_of(data, columns) if over_time else None
         if record is not None and any(name.startswith("force") for name in record.columns):
-            refuse(
-                scene is not None,
-                "scene",
-                "a record of force and displacement is fitted by a linear model, not by a scene: leave it out",
+            _refuse(
+                scene is not None, "scene", "a record of force and displacement is fitted by a linear model: leave it out"
             )
-            refuse(
-                slow_roll is not None or run_out is not None, "slow roll", "belongs to the signals of a rig, without a force"
-            )
-            told("searching", 1, 2)
-            return of_record(record, names, mass)
-        refuse(mass is not None, "mass", "belongs to a record of force and displacement; a scene has its own")
-        refuse(scene is None, "scene", "is missing: give --scene, whose answers the data are fitted by")
+            _refuse(sloped, "slow roll", "belongs to the signals of a rig, without a force")
+            report("searching", 1, 2)
+            return fit_record(record, names, mass)
+        _refuse(mass is not None, "mass", "belongs to a record of force and displacement; a scene has its own")
+        _refuse(scene is None, "scene", "is missing: give --scene, whose answers the data are fitted by")
         read = as_scene(scene, plugins=plugins)
         if record is not None:
-            roll = roll_of(None if slow_roll is None else signals_of(slow_roll, columns))
-            told("searching", 1, 2)
-            known = None if run_out is None else given(*run_out)
-            return of_rig(record, read, names, registry, known, roll)
-        refuse(
-            slow_roll is not None or run_out is not None,
-            "slow roll",
-            "belongs to the signals of a rig over time; the data are a table",
-        )
-        table, source = read_table(data)
-        told("searching", 1, 2)
-        return of_table(observed(table, source, read, columns), read, names)
+            subtracted = stated_run_out(slow_roll, run_out, columns)
+            report("searching", 1, 2)
+            return fit_rig(record, read, names, registry, subtracted)
+        _refuse(sloped, "slow roll", "belongs to the signals of a rig over time; the data are a table")
+        measured = measurements_in(*table_of(data, "data", "measurement"), read, columns)
+        report("searching", 1, 2)
+        return fit_table(measured, read, names)
 
 
-def refuse(wrong: bool, path: str, why: str) -> None:
+def refuse_few(data: int, free: int, source: str) -> None:
+    """Fewer data than free numbers.
+
+    Raises
+    ------
+    SceneError
+        With both counts.
+    """
+    if data < free:
+        numbers = "1 measured number" if data == 1 else f"{data} measured numbers"
+        message = f"{numbers} for {free} free ones: free fewer keys, or measure at more loads or speeds"
+        raise SceneError.at(source, None, message)
+
+
+def _refuse(wrong: bool, path: str, why: str) -> None:
     """``SceneError`` at an argument that does not belong to the data."""
     if wrong:
         raise SceneError.at(path, None, why)
+
+
+def fit_screen(content: ReadTables, files: list[str]) -> RenderableType:
+    """Free numbers with their intervals, what follows from them; below, how well the model meets the data, and warnings."""
+    from rich.console import Group
+
+    from raceway.commands.screen import Words, rows_table, written
+
+    rows = []
+    for free in content["free"]:
+        start = "" if content["kind"] == "record" else number(free["start"], free["unit"], 6)
+        rows.append(_row(free["key"], start, free["value"], free["error"], free["unit"]))
+        if free["determined"] and len(free["parts"]) > 1:
+            rows[-1]["of which"] = _parts(free)
+    rows += [_row(n["name"], "", n["value"], n["half"], n["unit"]) for n in content["derived"]]
+    fit = content["fit"]
+    words = f"{fit['data']} data, {len(content['free'])} free, {fit['evaluations']} evaluations"
+    if fit["scatter"] is not None and content["kind"] != "record":
+        stated = content["stated"]
+        words += f"; residuals {fit['scatter']:.2g} of the stated errors" if stated else ""
+        words += "" if stated else f"; residuals scatter by {100.0 * fit['scatter']:.2g} % of the data"
+    lines = [Words(words), *(Words(text, "yellow") for text in content["warnings"])]
+    return Group(rows_table(rows, f"{content['title']}\nfitted to {content['file']}"), *lines, *written(files))
+
+
+def _row(name: str, start: str, value: float, half: float | None, unit: str) -> dict[str, str]:
+    value, size, unit = _readable(value, half or 0.0, unit)
+    if half is None:
+        return {"free": name, "from": start, "found": number(value, unit, 4), "at 95 %": "not determined"}
+    width = f"± {number(size, unit, 2)}"
+    return {"free": name, "from": start, "found": number_within(value, size, unit), "at 95 %": width}
+
+
+def _parts(free: ReadTables) -> str:
+    """Half-widths by cause, the larger ones first."""
+    parts = sorted(free["parts"].items(), key=lambda part: -part[1])
+    readable = [(cause, _readable(0.0, half, free["unit"])) for cause, half in parts if half > _SMALL * free["error"]]
+    return ", ".join(f"{cause} {number(half, unit, 2)}" for cause, (_, half, unit) in readable)

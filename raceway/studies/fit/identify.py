@@ -1,9 +1,10 @@
-"""K and C of a bearing in a rig from measured signals, for Python and the command line alike: ``raceway.identify``."""
+"""K and C of a bearing in a rig from measured signals: ``raceway.identify`` and its answer."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from functools import cached_property
+from cmath import exp
+from collections.abc import Iterable, Mapping, Sequence
+from math import pi, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,34 +12,63 @@ import attrs
 import numpy as np
 
 from raceway.commands.progress import ShowProgress, telling
-from raceway.errors import SceneError
+from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact, Shown, number, number_within
-from raceway.pipeline.result import write_json
+from raceway.framework.shown import Fact, Shown, number
+from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
 from raceway.plugins.pictures import given_axes
 from raceway.scene.given import as_scene
 from raceway.scene.reading import rig_of
+from raceway.scene.rig import Rig
+from raceway.scene.scene import Scene
 from raceway.storage.files import writable
-from raceway.storage.tables import Tables
-from raceway.studies.fit.identification import Found, from_signals, refuse_no_load
-from raceway.studies.fit.signals import signals_of
+from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.fit.estimate import COVERAGE
+from raceway.studies.fit.fit import interval
+from raceway.studies.fit.inversion import (
+    changed_rotors,
+    invert,
+    largest_change,
+    sensitivities,
+    standard_errors,
+    tilted,
+    turned,
+    with_tilt_of,
+)
+from raceway.studies.fit.shaft_angle import Rotation, rotation_of
+from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
+from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, stated_run_out, synchronous
+from raceway.studies.shaft.bearing import Bearing, State, bearing
+from raceway.studies.shaft.rotor import rotor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from rich.console import RenderableType
     from xarray import Dataset
 
+#: The answer's file, in the folder of the results.
+CONTENT = "identify.json"
 _PLOTS = ("orbits", "spectrum")
+#: Deflection of the bearing below this part of that at the sensor is a small difference of large numbers.
+_SMALL = 0.1
+#: Part by which the tilt stiffness may be off, over that by which the scene misses K.
+_TILT = 2.0
+#: Relative difference from the scene's K above which a warning is due.
+_UNLIKE = 0.3
 
 
-@attrs.frozen(eq=False, repr=False, slots=False)
+@attrs.frozen(eq=False, repr=False)
 class Identified(Shown):
     """A bearing's dynamic stiffness as identified from signals, at their speed, the tilt as in the rig.
 
     Attributes
     ----------
-    found : lines, run-out and state in detail;  title : of the scene;  source : file of the signals, or "signals"
+    rotation, component : of the record;  run_out : that was subtracted;  state : of the bearing
+    scene_stiffness : K of the scene's bearing under the same force and moment [N/m]
+    parts : half-widths at 95 % by cause, (4,) like ``inversion.coefficients``;  changes : ``inversion.sensitivities``
+    title : of the scene;  source : file of the signals, or "signals"
 
     Examples
     --------
@@ -46,63 +76,152 @@ class Identified(Shown):
     >>> angle = 2.0 * np.pi * 200.0 * (time := np.arange(0.0, 0.1, 5e-5))
     >>> orbit = {"time_s": time, "y_um": 15.0 * np.cos(angle), "z_um": 15.0 * np.sin(angle), "speed_rpm": 12000.0 + 0.0 * time}
     >>> rig = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000}, "rig": {}, "integrator": {"kind": "quasi_static"}}
-    >>> found = rw.identify(orbit, rig)
-    >>> round(found.speed_rpm), round(1e-6 * found.equivalent_stiffness)  # [r/min], K [N/um]
+    >>> bearing = rw.identify(orbit, rig)
+    >>> round(bearing.speed_rpm), round(1e-6 * bearing.equivalent_stiffness)  # [r/min], K [N/um]
     (12000, 84)
     """
 
-    found: Found
-    title: str
-    source: str
+    rotation: Rotation
+    component: Synchronous
+    run_out: RunOut
+    state: State
+    scene_stiffness: float
+    parts: dict[str, np.ndarray]
+    changes: list[dict[str, float | str]]
+    title: str = ""
+    source: str = "signals"
 
-    @cached_property
-    def _numbers(self) -> Tables:
-        return self.found.to_dict()["identification"]
+    @property
+    def uncertainty(self) -> np.ndarray:
+        """Half-widths at 95 %, all causes together (4,): K [N/m] and C [N s/m] with the rig's tilt, then with it locked."""
+        return np.sqrt(sum(part**2 for part in self.parts.values()))
 
     @property
     def speed_rpm(self) -> float:
         """Mean speed of the record [r/min]."""
-        return float(self._numbers["speed_rpm"])
+        return self.state.speed * 30.0 / pi
 
     @property
     def dynamic_stiffness(self) -> complex | None:
-        """Z, complex [N/m]; None without a mark, which gives its size alone."""
-        z = self._numbers["dynamic_stiffness"]
-        return None if z["imag"] is None else complex(z["real"], z["imag"])
+        """Z, complex [N/m]; None without pulses, which leave its size alone."""
+        return complex(self.state.dynamic_stiffness) if self.component.marked else None
 
     @property
     def equivalent_stiffness(self) -> float:
         """K = Re Z + m w^2 [N/m]."""
-        return float(self._numbers["equivalent_stiffness"])
+        return float(self.state.stiffness)
 
     @property
     def equivalent_stiffness_error(self) -> float:
         """Half-width of K at 95 % [N/m]."""
-        return float(self._numbers["equivalent_stiffness_error"])
+        return float(self.uncertainty[0])
 
     @property
     def equivalent_damping(self) -> float | None:
-        """C = Im Z / w [N s/m]; None without a mark."""
-        value = self._numbers["equivalent_damping"]
-        return None if value is None else float(value)
+        """C = Im Z / w [N s/m]; None without pulses."""
+        return float(self.state.damping) if self.component.marked else None
 
     @property
     def equivalent_damping_error(self) -> float | None:
-        """Half-width of C at 95 % [N s/m]; None without a mark."""
-        value = self._numbers["equivalent_damping_error"]
-        return None if value is None else float(value)
+        """Half-width of C at 95 % [N s/m]; None without pulses."""
+        return float(self.uncertainty[1]) if self.component.marked else None
 
     @property
     def warnings(self) -> list[str]:
-        """What a reader of K should know."""
-        return self.found.warnings()
+        """Sentences that a reader of K needs."""
+        state, component, k, out = self.state, self.component, self.uncertainty[0], []
+        if not component.marked:
+            out.append("no mark (`key`): the phase is taken as zero, so that C is not identified")
+        if not self.run_out.vector:
+            out.append("no run-out was subtracted: give --slow-roll or --run-out")
+        if abs(state.stiffness / self.scene_stiffness - 1.0) > _UNLIKE:
+            out.append(
+                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene_stiffness:.4g} N/µm: is it the bearing "
+                "of the rig, in the rig's arrangement? Its tilt enters the result"
+            )
+        if abs(state.deflection) < _SMALL * abs(state.sensor):
+            part = 100.0 * abs(state.deflection) / abs(state.sensor)
+            out.append(f"the bearing moves by {part:.2g} % of what the sensor sees; the rest is the shaft's bow")
+        if k > 0.1 * abs(state.stiffness):
+            out.append(f"K is known to {100.0 * k / abs(state.stiffness):.2g} % only")
+        if component.backward > 0.1 * abs(component.forward):
+            part = 100.0 * component.backward / abs(component.forward)
+            out.append(f"the orbit is no circle (backward line {part:.2g} %): the rig is taken to be the same in y and z")
+        return out
 
     def to_dict(self) -> Tables:
         """Everything but the samples, as in identify.json."""
-        return {"title": self.title, "file": self.source, **self.found.to_dict()}
+        return {"title": self.title, "file": self.source, **self.content()}
+
+    def content(self) -> Tables:
+        """Signals, their 1x component, the bearing and its uncertainty, as tables for JSON."""
+        component, marked, state, error = self.component, self.component.marked, self.state, self.uncertainty
+        time, z, locked = self.rotation.recording.time, state.dynamic_stiffness, state.locked
+        speeds = {"mean": component.speed, "lowest": component.lowest, "highest": component.highest}
+        return without_nan(
+            {
+                "signals": {
+                    "samples": len(time),
+                    "duration_s": float(time[-1] - time[0]),
+                    "turns": component.turns,
+                    "speed_rpm": {name: value * 30.0 / pi for name, value in speeds.items()},
+                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is not known",
+                },
+                "line": {
+                    "forward_m": abs(component.forward),
+                    "angle_deg": float(np.degrees(np.angle(component.forward))) if marked else None,
+                    "backward_m": component.backward,
+                    "error_m": component.error,
+                    "residual": component.residual,
+                    "fourier_m": abs(component.fourier),
+                },
+                "run_out": {
+                    "amplitude_m": abs(self.run_out.vector),
+                    "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
+                    "error_m": self.run_out.error,
+                    "how": self.run_out.how,
+                },
+                "bearing": {
+                    "force_n": abs(state.force),
+                    "moment_nm": abs(state.moment),
+                    "deflection_m": abs(state.deflection),
+                    "slope_rad": abs(state.slope),
+                    "sensor_m": abs(state.sensor),
+                    "runs": state.runs,
+                },
+                "identification": {
+                    "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
+                    "speed_rpm": self.speed_rpm,
+                    "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
+                    "equivalent_stiffness": state.stiffness,
+                    "equivalent_stiffness_error": error[0],
+                    "equivalent_damping": state.damping if marked else None,
+                    "equivalent_damping_error": error[1] if marked else None,
+                    "mass_used_kg": state.mass,
+                    "scene_stiffness": self.scene_stiffness,
+                    "tilt_locked": {
+                        "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
+                        "equivalent_stiffness": locked[0],
+                        "equivalent_stiffness_error": error[2],
+                        "equivalent_damping": locked[1] if marked else None,
+                        "equivalent_damping_error": error[3] if marked else None,
+                    },
+                },
+                "uncertainty": {
+                    "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
+                    "whole-turn Fourier, the tilt stiffness that is assumed; what is taken as known of the rig is in `sensitivities`",
+                    "parts": {
+                        name: {"stiffness": part[0], "damping": part[1] if marked else None}
+                        for name, part in self.parts.items()
+                    },
+                },
+                "sensitivities": self.changes,
+                "warnings": self.warnings,
+            }
+        )
 
     def to_xarray(self) -> Dataset:
-        """The whole turns of the record that were used: y, z [m], angle [rad], speed [rad/s], key over time [s].
+        """The full turns of the record that were used: y, z [m], angle [rad], speed [rad/s], key over time [s].
 
         ``raceway.identify`` takes it as signals.
 
@@ -111,11 +230,11 @@ class Identified(Shown):
         RacewayError
             xarray is missing.
         """
-        record = self.found.turning.recording
-        given = {"y": (record.y, "m"), "z": (record.z, "m"), "key": (record.key, ""), "speed": (record.speed, "rad/s")}
+        record = self.rotation.recording
+        columns = {"y": (record.y, "m"), "z": (record.z, "m"), "key": (record.key, ""), "speed": (record.speed, "rad/s")}
         variables = {
             name: ("time", np.asarray(values), {"units": unit} if unit else {})
-            for name, (values, unit) in given.items()
+            for name, (values, unit) in columns.items()
             if values is not None
         }
         return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
@@ -140,32 +259,21 @@ class Identified(Shown):
         if what not in _PLOTS:
             raise SceneError.at("what", what, f"must be one of {', '.join(_PLOTS)}")
         axes = given_axes(ax, 6.0, 6.0 if what == "orbits" else 3.5)
-        (draw_orbits if what == "orbits" else draw_spectrum)(self.found, axes)
+        (draw_orbits if what == "orbits" else draw_spectrum)(self, axes)
         if what == "orbits":
             axes.legend(frameon=False, fontsize=8)
         return axes
 
     def _shown(self) -> tuple[str, list[Fact]]:
-        k, c, locked = self._numbers, self.equivalent_damping, self._numbers["tilt_locked"]
-        facts = [_within("K", k["equivalent_stiffness"], k["equivalent_stiffness_error"], "tilt as in the rig")]
-        if c is not None:
-            wide = k["equivalent_damping_error"]
+        c, wide = self.equivalent_damping, self.equivalent_damping_error
+        facts = [interval("K", self.equivalent_stiffness, self.uncertainty[0], "N/m", "tilt as in the rig")]
+        if c is not None and wide is not None:
             value = number(c, "N s/m", 4) if abs(c) > wide else "not resolved"
             facts.append(("C", value, f"+- {number(wide, 'N s/m', 2)} at 95 %"))
-        facts.append(_within("K, tilt locked", locked["equivalent_stiffness"], locked["equivalent_stiffness_error"], ""))
-        facts.append(("K of the scene", number(1e-6 * k["scene_stiffness"], "N/µm"), "under the same force and moment"))
+        facts.append(interval("K, tilt locked", self.state.locked[0], self.uncertainty[2], "N/m"))
+        facts.append(("K of the scene", number(1e-6 * self.scene_stiffness, "N/µm"), "under the same force and moment"))
         title = f"Identified from {self.source} at {self.speed_rpm:.1f} r/min\n{self.title.splitlines()[0]}"
         return title, [*facts, *(("warning", "", text) for text in self.warnings)]
-
-
-def _within(name: str, value: float, error: float, remark: str) -> Fact:
-    """A stiffness [N/m] with its half-width at 95 %."""
-    words = f"+- {number(1e-6 * error, 'N/µm', 2)} at 95 %"
-    return name, number_within(1e-6 * value, 1e-6 * error, "N/µm"), f"{words}; {remark}" if remark else words
-
-
-#: The answer, in the folder of the results.
-CONTENT = "identify.json"
 
 
 @door
@@ -189,7 +297,7 @@ def identify(
     scene : Scene, path, TOML text or dict of tables, with a table ``rig`` and ``load.axial`` [N] as in the measurement
     slow_roll : signals at a low speed, in any of these forms, whose run-out is subtracted
     run_out : the run-out itself: amplitude [m] and angle from the mark [deg]
-    columns : head of a column -> name, ``{"X [um]": "y_um"}``; "ignore" leaves it out
+    columns : header of a column -> name, ``{"X [um]": "y_um"}``; "ignore" leaves it out
     out : folder in which identify.json is written; None: nothing is written
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
@@ -202,7 +310,7 @@ def identify(
     Raises
     ------
     SceneError
-        What is wrong with the signals or the scene.  Records of one axis, and of force and displacement, are read, and refused
+        The fault of signals or scene.  Records of one axis, and of force and displacement, are read, and refused
         with what they hold and what is missing.
     ConvergenceError
         Signals that no bearing of the scene's kind gives.
@@ -223,23 +331,125 @@ def identify(
     ...     "rig": {},  # a shaft of 426 mm with a disc, see ``raceway schema``
     ...     "integrator": {"kind": "quasi_static"},
     ... }
-    >>> found = rw.identify(signals, rig)
-    >>> round(1e-6 * found.equivalent_stiffness)  # K [N/um]
+    >>> bearing = rw.identify(signals, rig)
+    >>> round(1e-6 * bearing.equivalent_stiffness)  # K [N/um]
     84
     """
-    if run_out is not None and slow_roll is not None:
-        raise SceneError.at("run_out", run_out, "the slow roll tells it already: leave one of them out")
     registry = registry_with(plugins)
     read = as_scene(scene, plugins=plugins)
     rig = rig_of(read)
     refuse_no_load(read)
     folder = None if out is None else writable(Path(out))
-    with telling(progress) as told:
-        told("reading signals", 0, 3)
+    with telling(progress) as report:
+        report("reading signals", 0, 3)
+        subtracted = stated_run_out(slow_roll, run_out, columns)
         record = signals_of(signals, columns)
-        slow = None if slow_roll is None else signals_of(slow_roll, columns)
-        found = from_signals(record, read, rig, registry, slow, run_out, told)
-    made = Identified(found, read.title, record.source)
+        recording = recording_of(record)
+        report("bearing at rest", 1, 3)
+        tested = bearing(read, read.load.axial, registry)
+        report("identifying", 2, 3)
+        with faults_at(record.source):
+            answer = identify_recording(recording, rig, tested, subtracted)
+    answer = attrs.evolve(answer, title=read.title, source=record.source)
     if folder is not None:
-        write_json(made.to_dict(), folder / CONTENT)
-    return made
+        write_json(answer.to_dict(), folder / CONTENT)
+    return answer
+
+
+def refuse_no_load(scene: Scene) -> None:
+    """A bearing without axial load has no stiffness to compare with.
+
+    Raises
+    ------
+    SceneError
+        Naming the key.
+    """
+    if scene.load.axial <= 0.0:
+        message = "must be the axial load of the measurement, greater than 0: add --set load.axial=..."
+        raise SceneError.at("load.axial", scene.load.axial, message)
+
+
+def identify_recording(
+    recording: Recording, rig: Rig, tested: Bearing, run_out: RunOut | Synchronous | None = None
+) -> Identified:
+    """K and C from a record.
+
+    Parameters
+    ----------
+    tested : the scene's bearing under the record's axial load
+    run_out : the run-out, or the 1x component of a slow roll that shows it
+
+    Raises
+    ------
+    RacewayError
+        A record that cannot be used.
+    ConvergenceError
+        Signals that no bearing of the scene's kind gives.
+    """
+    rotation = rotation_of(recording)
+    component = synchronous(rotation)
+    response = response_of(component, rig, tested, run_out)
+    shaft = rotor(rig, component.speed)
+    try:
+        state = invert(shaft, tested, response.deflection)
+    except ConvergenceError as why:
+        raise ConvergenceError(
+            f"no bearing like the scene's moves the sensor by {1e6 * abs(response.deflection):.4g} µm at {component.speed * 30 / pi:.0f} r/min "
+            f"({why}). Are unbalance, sensor's place and run-out right?"
+        ) from None
+    with_run_out = component.forward * exp(-1j * radians(rig.unbalance_angle_deg))
+    deflection = tested.answer(state.speed, state.force, state.moment)[0]
+    scene_stiffness = float((state.force / deflection).real + state.mass * state.speed**2)
+    missed = abs(scene_stiffness / state.stiffness - 1.0)
+    parts = {
+        "spread": COVERAGE * standard_errors(shaft, state, component.error),
+        "slow roll": COVERAGE * standard_errors(shaft, state, response.run_out.error),
+        "marks": largest_change(state, turned(shaft, state, with_run_out, component.angle_error)),
+        "window": largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
+        "tilt": largest_change(state, tilted(shaft, state, _TILT * missed)),
+    }
+    changes = sensitivities(changed_rotors(rig, component.speed), shaft, state)
+    return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)
+
+
+def identify_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """Signals, 1x component, bearing, K and C."""
+    from rich.console import Group
+
+    from raceway.commands.screen import Words, sections, written
+
+    signals, line, run_out, bearing = content["signals"], content["line"], content["run_out"], content["bearing"]
+    answer, speed = content["identification"], signals["speed_rpm"]
+    locked = answer["tilt_locked"]
+    angle = "" if line["angle_deg"] is None else f"{line['angle_deg']:.2f} deg from the mark"
+
+    def error(table: ReadTables) -> str:
+        return f"+- {number(1e-6 * table['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
+
+    rows = [
+        ("Signals", "", f"{signals['samples']} samples, {signals['turns']} turns, angle from {signals['angle_from']}"),
+        ("speed", number(speed["mean"], "r/min", 6), f"{speed['lowest']:.1f} to {speed['highest']:.1f} r/min"),
+        ("1x line, forward", number(1e6 * line["forward_m"], "µm"), angle),
+        ("1x line, backward", number(1e6 * line["backward_m"], "µm", 3), f"fit leaves {100 * line['residual']:.2g} %"),
+        ("run-out", number(1e6 * run_out["amplitude_m"], "µm", 4), run_out["how"]),
+        ("Bearing", "", "what the inverted beam makes of it"),
+        ("deflection", number(1e6 * bearing["deflection_m"], "µm"), f"of {1e6 * bearing['sensor_m']:.4g} µm at the sensor"),
+        ("force, moment", number(bearing["force_n"], "N"), f"{bearing['moment_nm']:.4g} N m, slope {bearing['slope_rad']:.3g} rad"),
+        (f"Dynamic stiffness at {answer['speed_rpm']:.0f} r/min", "", answer["definition"]),
+        ("|Z|", number(1e-6 * answer["dynamic_stiffness"]["abs"], "N/µm"), "force over deflection"),
+        ("K", number(1e-6 * answer["equivalent_stiffness"], "N/µm"), f"{error(answer)}; Re Z + m w^2, m = {answer['mass_used_kg']:.4g} kg"),
+    ]  # fmt: skip
+    if answer["equivalent_damping"] is not None:
+        wide = answer["equivalent_damping_error"]
+        resolved = abs(answer["equivalent_damping"]) > wide
+        value = number(answer["equivalent_damping"], "N s/m", 4) if resolved else "not resolved"
+        remark = f"+- {wide:.2g} N s/m at 95 %" if resolved else f"below its uncertainty of {wide:.2g} N s/m"
+        rows.append(("C", value, remark))
+    rows += [
+        ("K of the scene's bearing", number(1e-6 * answer["scene_stiffness"], "N/µm"), "under the same force and moment"),
+        ("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{error(locked)}; {locked['definition']}"),
+        ("Relative change of K if", "", "what is taken as known were otherwise"),
+        *((change["change"], f"{100 * change['stiffness']:+.2f} %", "") for change in content["sensitivities"]),
+    ]  # fmt: skip
+    warnings = [Words(f"warning: {text}", "yellow") for text in content["warnings"]]
+    return Group(Words(content["title"], "bold"), sections(rows), *warnings, *written(files))

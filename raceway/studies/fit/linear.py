@@ -2,13 +2,13 @@
 
 Notes
 -----
-F(w) = (K + j w C - w^2 m) X(w) + T(w) at the lines of a discrete Fourier transform of the whole record.  T(w) is a real polynomial
-in j w: what the state at the beginning and the end of the record adds, so that it need not begin at rest nor hold whole periods.
+F(w) = (K + j w C - w^2 m) X(w) + T(w) at the frequencies of a discrete Fourier transform of the full record.  T(w) is a real polynomial
+in j w: the transient of the state at the beginning and the end of the record, which need not begin at rest nor hold full periods.
 With noise of both channels, residuals e = Z X + T - F have the variance s^2 = |Z|^2 sx^2 + sf^2; the sum of |e|^2 / s^2 is least,
-s with Z, which takes the bias off that noise in X brings.  sx^2 and sf^2, sums of white noise and powers of 1 / w, are told by the residuals
+s with Z, which removes the bias by noise in X.  sx^2 and sf^2, sums of white noise and powers of 1 / w, are determined by the residuals
 themselves.  Tones in them (hum) are fitted beside T, with amplitudes that may grow or fall: a tone in X is Z at its frequency times the same,
-but for a polynomial that T has.  Where residuals are not white then, each line's own score tells the covariance (White's sandwich, with
-leverages: HC3), and a force that is not over at half the sampling rate widens it (``disturbed``).
+but for a polynomial that T has.  Where residuals are not white then, each frequency's score determines the covariance (White's sandwich, with
+leverages: HC3), and a force that is not over at half the sampling rate widens it (``disturbances``).
 
 References
 ----------
@@ -26,42 +26,45 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.studies.fit.disturbances import TONES, aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Estimate, Free, estimate, judged
+from raceway.studies.fit.fit import Fitted, Series, refuse_few
 from raceway.studies.fit.signals import Signals
 
-#: Part of the force's power that lies below and above the band of lines that are used, and how far these reach beyond it.
+#: Part of the force's power below and above the band of frequencies that are used, and how far these reach beyond it.
 _OUTSIDE, _WIDER = 5e-4, 0.5
-#: Powers of j w in T; turns of weights and estimate, of them with all lines; steps of variances, and their change that ends them; powers
-#: of 1 / w in noise.
-_LEAKAGE, _TURNS, _ALL, _STEPS, _STAYS, _COLOURS = 5, 5, 2, 50, 1e-6, 3
-#: Squared size of a line's force over the variance of its residual from which it tells Z.
+#: Powers of j w in T; iterations of weights and estimate, of them with all frequencies; steps of variances, and the change that ends them;
+#: powers of 1 / w in noise.
+_LEAKAGE, _ITERATIONS, _ALL, _STEPS, _CONVERGED, _COLOURS = 5, 5, 2, 50, 1e-6, 3
+#: Squared force at a frequency over the variance of its residual from which it determines Z.
 _ABOVE = 9.0
-#: Part of the force's power at lines of tones from which these are the force's own; noise at the lowest lines over its white part that is
-#: told; least part of a line that its fit leaves it.
+#: Part of the force's power at tones from which these are the force's; noise at the lowest frequencies over its white part that is
+#: reported; least part of a residual that its leverage leaves.
 _TONAL, _COLOURED, _LEVER = 0.25, 2.0, 0.1
 #: Intervals of a record may differ by this part: transforms need even ones.
 _EVEN = 1e-3
+#: Part of a record's force above which the residual of the model is reported.
+_RESIDUAL = 0.1
 _UNITS = {"K": "N/m", "C": "N s/m", "mass": "kg"}
 _ONE, _TWO = (("y", "force"), ("y", "force_y"), ("z", "force_z")), (("y", "force_y"), ("z", "force_z"))
 
 
 @attrs.frozen(eq=False)
-class Lines:
-    """Lines of a record: ``omega`` (n,) [rad/s]; force [N] and displacement [m], (n, d) each; ``axes``: the directions.
+class Spectra:
+    """Spectra of a record: ``omega`` (n,) [rad/s]; force [N] and displacement [m], (n, d) each; ``axes``: the directions.
 
-    ``places`` (n,) of the lines in the whole transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N] it is made of.
+    ``indices`` (n,) of the frequencies in the full transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N].
     """
 
     omega: np.ndarray
     force: np.ndarray
     displacement: np.ndarray
     axes: tuple[str, ...]
-    places: np.ndarray
+    indices: np.ndarray
     time: np.ndarray
     signal: np.ndarray
 
 
-def lines_of(signals: Signals) -> Lines:
-    """Lines of the excited band.
+def spectra_of(signals: Signals) -> Spectra:
+    """Spectra in the excited band.
 
     Raises
     ------
@@ -69,37 +72,33 @@ def lines_of(signals: Signals) -> Lines:
         A record without force and displacement along one axis, with uneven intervals, or without a force that changes.
     """
     columns, source = signals.columns, signals.source
-    pairs = (
-        _TWO
-        if all(name in columns for pair in _TWO for name in pair)
-        else next(([p] for p in _ONE if p[0] in columns and p[1] in columns), ())
-    )
-    if not pairs or ("force" in columns and "z" in columns and "y" in columns):
+    present = [pair for pair in _ONE if columns.keys() >= {*pair}]
+    pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
+    if not pairs or columns.keys() >= {"force", "y", "z"}:
         raise SceneError.at(
             source, None,
-            f"force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. It "
-            f"was read ({signals.told()}); --map \"HEAD=ignore\" leaves a column out",
+            "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "
+            f"It was read ({signals}); --map \"HEADER=ignore\" leaves a column out",
         )  # fmt: skip
     steps = np.diff(columns["time"])
     if np.ptp(steps) > 2.0 * _EVEN * steps.mean():
         text = f"intervals from {steps.min():.6g} to {steps.max():.6g} s: a Fourier transform needs even ones. Record at a fixed rate"
         raise SceneError.at(source, None, text)
-    force = np.column_stack([columns[name] for _, name in pairs])
-    moved = np.column_stack([columns[name] for name, _ in pairs])
-    for values, name in zip((*force.T, *moved.T), [*(f for _, f in pairs), *(x for x, _ in pairs)], strict=True):
-        if np.ptp(values) <= 1e-12 * np.abs(values).max():
+    for name in (*(force for _, force in pairs), *(moved for moved, _ in pairs)):
+        if np.ptp(columns[name]) <= 1e-12 * np.abs(columns[name]).max():
             raise SceneError.at(source, None, f"'{name}' is constant: it tells nothing. Is it connected?")
-    count = len(force)
-    omega = 2.0 * np.pi * np.fft.rfftfreq(count, float(steps.mean()))
-    spectra = [spectrum(values) for values in (force, moved)]
-    power = np.cumsum((np.abs(spectra[0]) ** 2).sum(axis=1))
+    displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
+    count, interval = len(force), float(steps.mean())
+    omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)
+    of_force, of_displacement = spectrum(force), spectrum(displacement)
+    power = np.cumsum((np.abs(of_force) ** 2).sum(axis=1))
     low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
-    chosen = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
-    axes, time = tuple(name for name, _ in pairs), float(steps.mean()) * np.arange(count)
-    return Lines(omega[chosen], spectra[0][chosen], spectra[1][chosen], axes, np.flatnonzero(chosen), time, force)
+    band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
+    axes, time = tuple(name for name, _ in pairs), interval * np.arange(count)
+    return Spectra(omega[band], of_force[band], of_displacement[band], axes, np.flatnonzero(band), time, force)
 
 
-def free_parts(names: Sequence[str], lines: Lines, mass: float | None) -> list[Free]:
+def free_parts(names: Sequence[str], spectra: Spectra, mass: float | None) -> list[Free]:
     """Free numbers of the linear model, by words K, C and mass; in two directions K stands for its four parts, or they by name.
 
     A mass that is None is free, too.
@@ -109,27 +108,27 @@ def free_parts(names: Sequence[str], lines: Lines, mass: float | None) -> list[F
     SceneError
         A word that the model does not have.
     """
-    known = {word: [word] for word in _UNITS}
-    if len(lines.axes) == 2:
-        known |= {word: [f"{word.lower()}{a}{b}" for a in lines.axes for b in lines.axes] for word in ("K", "C")}
-        known |= {part: [part] for word in ("K", "C") for part in known[word]}
-    found: list[str] = []
+    words = {word: [word] for word in _UNITS}
+    if len(spectra.axes) == 2:
+        words |= {word: [f"{word.lower()}{a}{b}" for a in spectra.axes for b in spectra.axes] for word in ("K", "C")}
+        words |= {part: [part] for word in ("K", "C") for part in words[word]}
+    parts: list[str] = []
     for word in (name.strip() for name in names if name.strip()):
-        if word not in known:
-            why = f"is no number of the linear model of a record of force and displacement: take {', '.join(known)}"
+        if word not in words:
+            why = f"is no number of the linear model of a record of force and displacement: take {', '.join(words)}"
             raise SceneError.at("--free", word, why)
-        found += [part for part in known[word] if part not in found]
-    if not found:
-        raise SceneError.at("--free", None, f"names no number: take {', '.join(known)}")
-    if "mass" in found and mass is not None:
+        parts += [part for part in words[word] if part not in parts]
+    if not parts:
+        raise SceneError.at("--free", None, f"names no number: take {', '.join(words)}")
+    if "mass" in parts and mass is not None:
         raise SceneError.at("--mass", mass, "is free, too: a mass is either known or fitted")
-    found += ["mass"] * (mass is None and "mass" not in found)
-    omega = float(lines.omega.mean())
-    size = float(np.linalg.norm(lines.force) / np.linalg.norm(lines.displacement))
+    parts += ["mass"] * (mass is None and "mass" not in parts)
+    omega = float(spectra.omega.mean())
+    size = float(np.linalg.norm(spectra.force) / np.linalg.norm(spectra.displacement))
     sizes = {"K": size, "C": size / omega, "mass": size / omega**2}
     return [
         Free(part, _UNITS[_word(part)], sizes["K"] if part in ("K", "kyy", "kzz") else 0.0, sizes[_word(part)])
-        for part in found
+        for part in parts
     ]
 
 
@@ -139,189 +138,247 @@ def _word(part: str) -> str:
 
 @attrs.define(eq=False)
 class Linear:
-    """Weighted residuals of the lines, ``raceway.studies.fit.estimate.Residuals``: free numbers, then the parts of T.
+    """Weighted residuals of the spectra, ``raceway.studies.fit.estimate.Residuals``: free numbers, then the parts of T.
 
     Attributes
     ----------
-    mass : where it is not free [kg];  noise : variances (2, k, d) of displacement and force at the lowest line, by power of 1 / w
-    tones : frequencies of hum [rad/s];  remarks : what residuals and force show
-    rest : e (n, d) at the end of the fit [N]
-    excited : (n,) lines whose force is told from noise; the others, where Z stays ``before`` (n, d, d), tell noise and leakage alone
+    mass : where it is not free [kg];  noise : variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
+    tones : frequencies of hum [rad/s];  remarks : on residuals and force
+    excited : (n,) frequencies whose force stands out of the noise; the others, where Z stays ``before`` (n, d, d), determine noise and leakage alone
+    slopes : derivatives of Z by the free numbers (n, d, d, p)
     """
 
-    lines: Lines
+    spectra: Spectra
     free: Sequence[Free]
     mass: float
     noise: np.ndarray
-    rest: np.ndarray = attrs.field(factory=lambda: np.empty((0, 0)), init=False)
-    excited: np.ndarray = attrs.field(factory=lambda: np.empty(0, bool), init=False)
-    before: np.ndarray = attrs.field(factory=lambda: np.empty((0, 0, 0)), init=False)
     tones: tuple[float, ...] = ()
     remarks: list[str] = attrs.field(factory=list, init=False)
+    excited: np.ndarray = attrs.field(init=False)
+    before: np.ndarray = attrs.field(factory=lambda: np.empty((0, 0, 0)), init=False)
     slopes: np.ndarray = attrs.field(init=False)
     _parts: np.ndarray = attrs.field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        """Derivatives of Z by the free numbers (n, d, d, p); all lines count as excited."""
-        self.excited = np.ones(len(self.lines.omega), bool)
-        x, turns = 1j * self.lines.omega / self.lines.omega[-1], np.outer(self.lines.time, self.tones)
-        grown = (self.lines.time / self.lines.time[-1])[:, None]
+        omega, axes, time = self.spectra.omega, self.spectra.axes, self.spectra.time
+        self.excited = np.ones(len(omega), bool)
+        x, turns = 1j * omega / omega[-1], np.outer(time, self.tones)
+        grown = (time / time[-1])[:, None]
         waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)]
-        self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE), *(spectrum(one)[self.lines.places] for one in waves)])
-        omega, d = self.lines.omega, len(self.lines.axes)
+        hum = [spectrum(wave)[self.spectra.indices] for wave in waves]
+        self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE), *hum])
         powers = {"K": np.ones_like(omega) + 0j, "C": 1j * omega, "mass": -(omega**2) + 0j}
-        self.slopes = np.zeros((len(omega), d, d, len(self.free)), complex)
-        for k, one in enumerate(self.free):
-            if one.name in ("K", "C", "mass"):
-                for a in range(d):
-                    self.slopes[:, a, a, k] = powers[one.name]
-            else:
-                a, b = (self.lines.axes.index(axis) for axis in one.name[1:])
-                self.slopes[:, a, b, k] = powers[_word(one.name)]
+        self.slopes = np.zeros((len(omega), len(axes), len(axes), len(self.free)), complex)
+        for k, number in enumerate(self.free):
+            same = [(a, a) for a in range(len(axes))]
+            pairs = same if number.name in powers else [(axes.index(number.name[1]), axes.index(number.name[2]))]
+            for a, b in pairs:
+                self.slopes[:, a, b, k] = powers[_word(number.name)]
 
     @property
     def colours(self) -> np.ndarray:
-        """Spectra of noise (n, k), 1 at the lowest line."""
-        return (self.lines.omega[0] / self.lines.omega[:, None]) ** np.arange(_COLOURS)
+        """Spectra of noise (n, k), 1 at the lowest frequency."""
+        return (self.spectra.omega[0] / self.spectra.omega[:, None]) ** np.arange(_COLOURS)
 
     @property
     def nuisance(self) -> list[Free]:
         """Parts of T and of tones, in sizes of the force."""
-        size = float(np.abs(self.lines.force).max())
-        return [Free(f"leakage {k} {axis}", "", 0.0, size) for axis in self.lines.axes for k in range(self._parts.shape[1])]
+        size, count = float(np.abs(self.spectra.force).max()), self._parts.shape[1]
+        return [Free(f"leakage {k} {axis}", "", 0.0, size) for axis in self.spectra.axes for k in range(count)]
 
     def stiffness(self, at: np.ndarray) -> np.ndarray:
         """Z (n, d, d) at the free numbers."""
         z: np.ndarray = self.slopes @ at[: len(self.free)]
         if self.mass:
-            z = z - self.mass * (self.lines.omega**2)[:, None, None] * np.eye(len(self.lines.axes))
+            z = z - self.mass * (self.spectra.omega**2)[:, None, None] * np.eye(len(self.spectra.axes))
         return z if self.excited.all() else np.where(self.excited[:, None, None], z, self.before)
 
-    def tell_apart(self, at: np.ndarray) -> None:
-        """Only lines whose force the noise does not hide tell Z from here on."""
+    def select_excited(self, at: np.ndarray) -> None:
+        """From here on only frequencies whose force the noise does not hide determine Z."""
         before = self.stiffness(at)
-        excited = (np.abs(self.lines.force) ** 2 > _ABOVE * self.variance(at)).any(axis=1)
+        excited = (np.abs(self.spectra.force) ** 2 > _ABOVE * self.variance(at)).any(axis=1)
         self.before = before
         self.excited = excited if excited.any() else np.ones_like(excited)
 
-    def apart(self, at: np.ndarray) -> np.ndarray:
-        """e (n, d) [N]."""
-        d, p = len(self.lines.axes), len(self.free)
+    def unweighted(self, at: np.ndarray) -> np.ndarray:
+        """Residuals e (n, d) [N]."""
+        d, p = len(self.spectra.axes), len(self.free)
         parts = self._parts @ at[p:].reshape(d, -1).T
-        return np.einsum("nab,nb->na", self.stiffness(at), self.lines.displacement) + parts - self.lines.force
+        return np.einsum("nab,nb->na", self.stiffness(at), self.spectra.displacement) + parts - self.spectra.force
 
     def variance(self, at: np.ndarray) -> np.ndarray:
         """s^2 (n, d)."""
-        moved, force = self.colours @ self.noise
-        return np.asarray(np.einsum("nab,nb->na", np.abs(self.stiffness(at)) ** 2, moved) + force)
+        displacement, force = self.colours @ self.noise
+        return np.asarray(np.einsum("nab,nb->na", np.abs(self.stiffness(at)) ** 2, displacement) + force)
 
     def residuals(self, at: np.ndarray) -> np.ndarray:
-        return _real(np.sqrt(2.0) * self.apart(at) / np.sqrt(self.variance(at)))
+        e = np.sqrt(2.0) * self.unweighted(at) / np.sqrt(self.variance(at))
+        return np.concatenate([e.real, e.imag]).ravel()
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        e, s2, z = self.apart(at), self.variance(at), self.stiffness(at)
-        d = len(self.lines.axes)
+        e, s2, z = self.unweighted(at), self.variance(at), self.stiffness(at)
+        d = len(self.spectra.axes)
         basis = self.slopes * self.excited[:, None, None, None]
-        slopes = np.einsum("nabp,nb->nap", basis, self.lines.displacement)
+        slopes = np.einsum("nabp,nb->nap", basis, self.spectra.displacement)
         widths = 2.0 * np.einsum("nab,nabp,nb->nap", z.conj(), basis, self.colours @ self.noise[0]).real
         columns = slopes / np.sqrt(s2)[..., None] - 0.5 * (e / s2**1.5)[..., None] * widths
         parts = np.einsum("nl,na,ab->nabl", self._parts, 1.0 / np.sqrt(s2), np.eye(d)).reshape(len(e), d, -1)
-        whole = np.sqrt(2.0) * np.concatenate([columns, parts], axis=2)
-        return np.concatenate([whole.real, whole.imag]).reshape(-1, whole.shape[2])
+        return _real_and_imaginary(np.sqrt(2.0) * np.concatenate([columns, parts], axis=2))
 
 
-def fit_lines(lines: Lines, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear]:
-    """Free numbers with their intervals, and the model with the noise that it sees.
+def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
+    """Columns (2 n d, p) of complex ones (n, d, p), as residuals are ordered."""
+    return np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2])
+
+
+def fit_spectra(spectra: Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear, np.ndarray]:
+    """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N].
 
     Raises
     ------
     ConvergenceError
-        The search finds no end.
+        The search does not converge.
     """
-    alone = found, problem = _turned(lines, free, mass, ())
-    while hum := tone(problem.apart(found.values), problem.variance(found.values), lines.omega):
-        if len(problem.tones) == TONES or _of_force(lines, (*problem.tones, hum)) > _TONAL:
-            found, problem = alone  # a model that misses the force itself does so at the lines that this has
+    without_tones = answer, problem = _iterated(spectra, free, mass, ())
+    while hum := tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
+        tones = (*problem.tones, hum)
+        if len(tones) > TONES or _share_of_force(spectra, tones) > _TONAL:
+            answer, problem = without_tones  # a model that misses the force itself does so at the force's frequencies
             break
-        found, problem = _turned(lines, free, mass, (*problem.tones, hum))
-    problem.rest = problem.apart(found.values)
+        answer, problem = _iterated(spectra, free, mass, tones)
+    residuals = problem.unweighted(answer.values)
     for omega in sorted(problem.tones):
         hz = omega / 2.0 / np.pi
         problem.remarks.append(f"residual concentrated at {hz:.4g} Hz: a tone there (hum?) is fitted beside the model")
-    return attrs.evolve(_disturbed(found, len(free), problem), free=tuple(free)), problem
+    return attrs.evolve(_without_nuisance(answer, len(free), problem), free=tuple(free)), problem, residuals
 
 
-def _of_force(lines: Lines, tones: Sequence[float]) -> float:
-    """Part of the force's power at the lines of tones."""
-    near = (np.abs(lines.omega[:, None] - np.array(tones)) < 1.5 * (lines.omega[1] - lines.omega[0])).any(axis=1)
-    return float((np.abs(lines.force[near]) ** 2).sum() / (np.abs(lines.force) ** 2).sum())
+def _share_of_force(spectra: Spectra, tones: Sequence[float]) -> float:
+    """Part of the force's power at the frequencies of tones."""
+    omega = spectra.omega
+    near = (np.abs(omega[:, None] - np.array(tones)) < 1.5 * (omega[1] - omega[0])).any(axis=1)
+    return float((np.abs(spectra.force[near]) ** 2).sum() / (np.abs(spectra.force) ** 2).sum())
 
 
-def _turned(lines: Lines, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, Linear]:
-    """Estimate and variances in turns, beside tones of known frequencies [rad/s]."""
-    d = len(lines.axes)
-    problem = Linear(lines, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
-    every = [*free, *problem.nuisance]
-    for turn in range(_TURNS):  # linear at first, the force's noise alone: wherever it begins, it ends at one place
-        found = estimate(problem, every, stated=False)
-        problem.noise = _variances(problem, found.values)
-        if turn >= _ALL:
-            problem.tell_apart(found.values)
-        every = [attrs.evolve(one, start=float(value)) for one, value in zip(every, found.values, strict=True)]
-    return estimate(problem, every, stated=False), problem
+def _iterated(spectra: Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, Linear]:
+    """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
+    d = len(spectra.axes)
+    problem = Linear(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
+    numbers = [*free, *problem.nuisance]
+    for iteration in range(_ITERATIONS):  # linear at first, the force's noise alone: the end does not depend on the start
+        answer = estimate(problem, numbers, stated=False)
+        problem.noise = _variances(problem, answer.values)
+        if iteration >= _ALL:
+            problem.select_excited(answer.values)
+        numbers = [attrs.evolve(n, start=float(value)) for n, value in zip(numbers, answer.values, strict=True)]
+    return estimate(problem, numbers, stated=False), problem
 
 
 def _variances(problem: Linear, at: np.ndarray) -> np.ndarray:
     """Variances (2, k, d) of displacement and force by which |e|^2 (n, d) is likeliest: exponential with the mean s^2."""
-    z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.apart(at)) ** 2
+    z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.unweighted(at)) ** 2
     n, d = e2.shape
     both = np.stack([z2, np.broadcast_to(np.eye(d), (n, d, d))])
     regressors = np.einsum("cnab,nk->nackb", both, problem.colours).reshape(n, d, -1)
     shares = regressors.mean(axis=(0, 1))
-    found = np.full(shares.size, float(e2.mean())) / shares / shares.size
+    variances = np.full(shares.size, float(e2.mean())) / shares / shares.size
     for _ in range(_STEPS):
-        mean = regressors @ found
+        mean = regressors @ variances
         # Multiplicative steps of the likelihood's gradient: variances stay positive.
         up = np.einsum("nak,na->k", regressors, e2 / mean**2)
         down = np.einsum("nak,na->k", regressors, 1.0 / mean)
         step = np.sqrt(up / down)
-        found = found * step
-        if np.abs(step - 1.0).max() < _STAYS:
+        variances = variances * step
+        if np.abs(step - 1.0).max() < _CONVERGED:
             break
-    return np.asarray(found.reshape(2, _COLOURS, d))
+    return np.asarray(variances.reshape(2, _COLOURS, d))
 
 
-def _disturbed(found: Estimate, count: int, problem: Linear) -> Estimate:
+def _without_nuisance(answer: Estimate, count: int, problem: Linear) -> Estimate:
     """The free numbers alone, the parts of T taken out of the derivatives, where they are fitted whatever the numbers are.
 
     Residuals that are not white and a force that is folded back widen the intervals.
     """
-    lines, variance = problem.lines, problem.variance(found.values)
-    d, hz = len(lines.axes), lines.omega / 2.0 / np.pi
-    j, t = found.jacobian[:, :count], found.jacobian[:, count:]
-    basis = np.linalg.svd(t * [one.size for one in found.free[count:]], full_matrices=False)[0]
+    spectra, variance = problem.spectra, problem.variance(answer.values)
+    d, hz = len(spectra.axes), spectra.omega / 2.0 / np.pi
+    j, t = answer.jacobian[:, :count], answer.jacobian[:, count:]
+    basis = np.linalg.svd(t * [number.size for number in answer.free[count:]], full_matrices=False)[0]
     slopes, scores = j - basis @ (basis.T @ j), None
-    white = attrs.evolve(problem, noise=problem.noise * (np.arange(_COLOURS) == 0)[:, None]).variance(found.values)
-    if (grows := float(np.sqrt((variance / white)[: max(len(hz) // 16, 1)].mean()))) > _COLOURED:
-        text = f"noise grows toward low frequencies (1/f): at {hz[0]:.4g} Hz {grows:.2g} times its white part"
+    white = attrs.evolve(problem, noise=problem.noise * (np.arange(_COLOURS) == 0)[:, None]).variance(answer.values)
+    if (growth := float(np.sqrt((variance / white)[: max(len(hz) // 16, 1)].mean()))) > _COLOURED:
+        text = f"noise grows toward low frequencies (1/f): at {hz[0]:.4g} Hz {growth:.2g} times its white part"
         problem.remarks.append(f"{text}; weights follow it")
-    if off := uneven((found.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
-        lever = 1.0 - (np.linalg.qr(found.jacobian)[0] ** 2).sum(axis=1)
-        scores = (slopes * (found.residuals / np.maximum(lever, _LEVER))[:, None]).reshape(2, -1, count).sum(axis=0)
-        text = f"residuals are not white: their power near {hz[off[0]]:.4g} Hz is {off[1]:.2g} times the mean"
+    if largest := uneven((answer.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
+        lever = 1.0 - (np.linalg.qr(answer.jacobian)[0] ** 2).sum(axis=1)
+        scores = (slopes * (answer.residuals / np.maximum(lever, _LEVER))[:, None]).reshape(2, -1, count).sum(axis=0)
+        text = f"residuals are not white: their power near {hz[largest[0]]:.4g} Hz is {largest[1]:.2g} times the mean"
         problem.remarks.append(f"{text}; intervals follow from each line's own")
-    alone = judged(found.free[:count], found.values[:count], found.residuals, slopes, False, found.evaluations, scores)
-    force, part = aliased(lines.signal, variance.min(axis=0))
-    if not part:
+    alone = judged(answer.free[:count], answer.values[:count], answer.residuals, slopes, False, answer.evaluations, scores)
+    force, share = aliased(spectra.signal, variance.min(axis=0))
+    if not share:
         return alone
     problem.remarks.append(
-        f"the force is not over at half the sampling rate ({0.5 / lines.time[1]:.4g} Hz), where it has {100.0 * part:.2g} % of its "
+        f"the force is not over at half the sampling rate ({0.5 / spectra.time[1]:.4g} Hz), where it has {100.0 * share:.2g} % of its "
         "largest line: sampled without a filter, what lies beyond is folded back. Filter it, or sample faster"
     )
-    moved = force[lines.places][:, None, :] * np.array([1.0, 1j])[:, None] * np.sqrt(2.0 / variance)[:, None, :]
+    moved = force[spectra.indices][:, None, :] * np.array([1.0, 1j])[:, None] * np.sqrt(2.0 / variance)[:, None, :]
     columns = np.einsum("nkb,ab->nakb", moved, np.eye(d)).reshape(len(hz), d, -1)
-    return alone.with_shifts("aliasing", np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2]))
+    return alone.with_shifts("aliasing", _real_and_imaginary(columns))
 
 
-def _real(one: np.ndarray) -> np.ndarray:
-    return np.concatenate([one.real, one.imag]).ravel()
+def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted:
+    """K, C and mass of a linear model from a record of force and displacement.
+
+    Parameters
+    ----------
+    mass : where it is not free [kg]; None: it is free, named or not
+
+    Raises
+    ------
+    SceneError
+        The fault of the record or the names.
+    ConvergenceError
+        The search does not converge.
+    """
+    if mass is not None and mass < 0.0:
+        raise SceneError.at("mass", mass, "must be at least 0 kg")
+    spectra = spectra_of(signals)
+    free = free_parts(names, spectra, mass)
+    refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), signals.source)
+    answer, model, residuals = fit_spectra(spectra, free, mass or 0.0)
+    words, notes = {_word(number.name) for number in free}, []
+    if mass is None and not any("mass" in name for name in names):
+        notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
+    if absent := [word for word in ("K", "C") if word not in words]:
+        notes.append(f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} not free: taken as 0")
+    notes += model.remarks
+    part = float(np.linalg.norm(residuals[model.excited]) / np.linalg.norm(spectra.force[model.excited]))
+    if part > _RESIDUAL:
+        missing = " and ".join([*absent, *(["mass"] if mass is not None else [])])
+        remedy = f"{f'free {missing} or ' if missing else ''}cut the record to frequencies below the next resonance"
+        notes.append(f"the model leaves {100.0 * part:.2g} % of the force (root mean square): {remedy}")
+    for number, value, half in zip(answer.free, answer.values, answer.half, strict=True):
+        if number.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:
+            question = "does the force's sign mean that of the displacement, and is the mass known?"
+            notes.append(f"{number.name} is negative: {question}")
+    title = f"F = K x + C x' + m x'', {spectra.omega[0] / 2.0 / np.pi:.4g} to {spectra.omega[-1] / 2.0 / np.pi:.4g} Hz"
+    return Fitted(title, signals.source, "record", False, answer, _series(model, answer, residuals), (), tuple(notes))
+
+
+def _series(model: Linear, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
+    """Real and imaginary part of F / x over frequency beside the model's, per axis, where there is force.
+
+    Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.
+    """
+    spectra, excited, series = model.spectra, model.excited, []
+    hz, variance = spectra.omega[excited] / 2.0 / np.pi, model.variance(answer.values)[excited]
+    stiffness, slopes = model.stiffness(answer.values)[excited], model.slopes[excited]
+    for k, axis in enumerate(spectra.axes):
+        displacement = spectra.displacement[excited, k]
+        measured = stiffness[:, k, k] - residuals[excited, k] / displacement
+        error = np.sqrt(0.5 * variance[:, k]) / np.abs(displacement)
+        for word, part in (("real", np.real), ("imaginary", np.imag)):
+            name, band = f"F / x along {axis}, {word} part", answer.half_widths(part(slopes[:, k, k]))
+            fitted = part(stiffness[:, k, k])
+            series.append(Series(name, "N/m", "frequency", "Hz", hz, part(measured), fitted, error, band))
+    return tuple(series)

@@ -1,10 +1,10 @@
-"""The rig's 1x line at its sensor beside a record of it: shaft and bearing together, as the free numbers make the bearing.
+"""Fit to the signals of a rig: the 1x response at its sensor by shaft and bearing together, as the free numbers make the bearing.
 
 Notes
 -----
-The line is one complex number, and the phase of its error is the mark's: residuals are those along the line and across it, each over
-its standard error.  Derivatives are central differences of the balance of shaft and bearing, which is solved to 1e-7: its
-integrator may be any, and each solution continues the motion of the one before.
+The response is one complex number, and the error of its phase is that of the keyphasor: residuals are those along the measured response
+and across it, each over its standard error.  Derivatives are central differences of the balance of shaft and bearing, which is solved
+to 1e-7: its integrator may be any, and each solution continues the motion of the one before.
 """
 
 from __future__ import annotations
@@ -17,171 +17,200 @@ import numpy as np
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
-from raceway.scene.continuous import key_of, with_number
+from raceway.scene.continuous import key_of
+from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
-from raceway.studies.fit.estimate import Free, uncertain
-from raceway.studies.fit.identification import refuse_no_load, seen
-from raceway.studies.fit.shaft_angle import turning
-from raceway.studies.fit.signals import Recording
-from raceway.studies.fit.synchronous import Order, RunOut, order
-from raceway.studies.fit.table import COVERAGE
+from raceway.studies.fit.estimate import COVERAGE, Free, estimate, free_keys, uncertain, with_free
+from raceway.studies.fit.fit import Derived, Fitted, Series, refuse_few
+from raceway.studies.fit.identify import refuse_no_load
+from raceway.studies.fit.shaft_angle import rotation_of
+from raceway.studies.fit.signals import Signals, faults_at, recording_of
+from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, synchronous
 from raceway.studies.shaft.bearing import State, balance, bearing
 from raceway.studies.shaft.rotor import rotor
 
 #: Step of differences over the size of a number: rounding of the balance is 1e-4 of them, and so is their curvature.
 _STEP = 1e-3
-#: Least standard error of a line over its size: that of the balance.
+#: Least standard error of a response over its size: that of the balance.
 _LEAST = 1e-6
+#: Words in keys that damp a bearing: without a free one C is the scene's, not the signals'.
+_DAMPING = ("damping", "time_constant", "loss_factor")
 
 
-@attrs.define(eq=False)
-class RigLine:
-    """Weighted residuals of the line: ``raceway.studies.fit.estimate.Residuals``.
+@attrs.frozen(eq=False)
+class Balanced:
+    """Shaft and bearing in balance, compared with the measured response.
 
     Attributes
     ----------
-    found : line of the record;  known, slow : run-out, or the slow roll that shows it
-    state : at the last numbers;  slopes : of K [N/m] and C [N s/m] by the free numbers there (2, p), and of the line (p,)
+    state : of the bearing;  computed, measured : response at the sensor [m], its size alone without pulses
+    errors : standard errors along the measured response and across it [m]
+    """
+
+    state: State
+    computed: complex
+    measured: complex
+    errors: tuple[float, float]
+
+
+@attrs.frozen(eq=False)
+class Slope:
+    """Derivatives by one number: of the weighted residuals (n,), of K [N/m] and C [N s/m] (2,), and of the response [m]."""
+
+    residuals: np.ndarray
+    coefficients: np.ndarray
+    response: complex
+
+
+@attrs.define(eq=False)
+class RigResiduals:
+    """Weighted residuals of the 1x response: ``raceway.studies.fit.estimate.Residuals``.
+
+    Attributes
+    ----------
+    component : of the record;  run_out : the run-out, or the 1x component of a slow roll
+    last : at the last numbers;  slopes : by the free numbers there
     """
 
     scene: Scene
     rig: Rig
     registry: Registry
     free: Sequence[Free]
-    found: Order
-    known: RunOut | None
-    slow: Order | None
-    state: State | None = None
-    line: complex = 0.0
-    errors: tuple[float, float] = (0.0, 0.0)
-    slopes: np.ndarray = attrs.field(factory=lambda: np.empty((2, 0)))
-    line_slopes: np.ndarray = attrs.field(factory=lambda: np.empty(0))
-    _last: list[Result] = attrs.field(factory=list, init=False)
-
-    @classmethod
-    def of(
-        cls,
-        recording: Recording,
-        scene: Scene,
-        rig: Rig,
-        registry: Registry,
-        free: Sequence[Free],
-        known: RunOut | None,
-        slow: Order | None,
-    ) -> RigLine:
-        """Of a record.
-
-        Raises
-        ------
-        RacewayError
-            A record that cannot be used.
-        """
-        if not any(one.name == "load.axial" for one in free):
-            refuse_no_load(scene)
-        return cls(scene, rig, registry, free, order(turning(recording)), known, slow)
+    component: Synchronous
+    run_out: RunOut | Synchronous | None
+    last: Balanced = attrs.field(init=False)
+    slopes: list[Slope] = attrs.field(factory=list, init=False)
+    _motion: list[Result] = attrs.field(factory=list, init=False)
 
     @property
     def count(self) -> int:
-        """Numbers that the record tells: with a mark two, without its size."""
-        return 2 if self.found.marked else 1
+        """Numbers in the response: two with pulses, its size without."""
+        return 2 if self.component.marked else 1
 
     def residuals(self, at: np.ndarray) -> np.ndarray:
-        self.state = self._balanced(at)
-        return self._whitened(self.state.sensor if self.found.marked else abs(self.state.sensor), self.line)
+        self.last = self._balanced(self.scene, at)
+        return self._weighted(self.last.computed - self.last.measured)
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        steps = [_STEP * one.size * along for one, along in zip(self.free, np.eye(len(at)), strict=True)]
-        found = [self._difference((self.scene, at - step), (self.scene, at + step), 2.0 * step.sum()) for step in steps]
-        columns, slopes, lines = zip(*found, strict=True)
-        self.slopes, self.line_slopes = np.array(slopes).T, np.array(lines)
-        return np.column_stack(columns)
+        steps = [_STEP * key.size * axis for key, axis in zip(self.free, np.eye(len(at)), strict=True)]
+        self.slopes = [self._slope((self.scene, at - step), (self.scene, at + step), 2.0 * step.sum()) for step in steps]
+        return np.column_stack([slope.residuals for slope in self.slopes])
 
-    def uncertain(self, at: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray, complex]]:
-        """Cause -> what a standard error of it moves residuals (n,), K and C (2,) and the line by."""
-        found = {}
-        for one in uncertain(self.scene, [key.name for key in self.free]):
-            path, size = next(iter(one.sizes.items()))
+    def uncertain(self, at: np.ndarray) -> dict[str, Slope]:
+        """Cause -> derivatives by its standard error."""
+        slopes = {}
+        for numbers in uncertain(self.scene, [key.name for key in self.free]):
+            path, size = next(iter(numbers.sizes.items()))
             step = min(_STEP * abs(key_of(self.scene, path).value) / size or 1.0, 1.0)
-            before, after = ((one.moved(self.scene, sign * step), at) for sign in (-1.0, 1.0))
-            found[one.cause] = self._difference(before, after, 2.0 * step)
-        return found
+            before, after = ((numbers.moved(self.scene, sign * step), at) for sign in (-1.0, 1.0))
+            slopes[numbers.cause] = self._slope(before, after, 2.0 * step)
+        return slopes
 
-    def _difference(
-        self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], over: float
-    ) -> tuple[np.ndarray, np.ndarray, complex]:
-        """Of residuals (n,), of K and C (2,) and of the line between two scenes with numbers, over a step."""
-        kept, ends = (self.state, self.line, self.errors), []
-        for scene, at in (before, after):
-            state = self._balanced(at, scene)
-            ends.append((state, self.line, state.sensor if self.found.marked else abs(state.sensor)))
-        self.state, self.line, self.errors = kept
-        (less, under, low), (more, line, high) = ends
-        # Of the run-out, too: what the unbalance does in a slow roll depends on the bearing.
-        column = self._whitened(high - line, low - under) / over
-        slopes = np.array([more.stiffness - less.stiffness, more.damping - less.damping]) / over
-        return column, slopes, (high - low) / over
+    def _slope(self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], step: float) -> Slope:
+        """Between two scenes with numbers."""
+        low, high = self._balanced(*before), self._balanced(*after)
+        # Of the run-out, too: the response to the unbalance in a slow roll depends on the bearing.
+        column = self._weighted(high.computed - high.measured, low.computed - low.measured) / step
+        stiffness, damping = high.state.stiffness - low.state.stiffness, high.state.damping - low.state.damping
+        return Slope(column, np.array([stiffness, damping]) / step, (high.computed - low.computed) / step)
 
-    def notes(self) -> tuple[str, ...]:
-        """What a reader of the numbers should know."""
+    def _weighted(self, residual: complex, less: complex = 0.0) -> np.ndarray:
+        """A difference of two responses along the measured one and across it, over the errors."""
+        rotated = (residual - less) * np.conj(self.last.measured) / abs(self.last.measured)
+        along, across = self.last.errors
+        return np.array([rotated.real / along, rotated.imag / across][: self.count])
+
+    def _balanced(self, scene: Scene, at: np.ndarray) -> Balanced:
+        """The rig with the bearing of such numbers, and the measured response less the run-out that this bearing leaves."""
+        scene = with_free(scene, self.free, at)
+        tested = bearing(scene, scene.load.axial, self.registry)
+        response = response_of(self.component, self.rig, tested, self.run_out)
+        shaft = rotor(self.rig, self.component.speed)
+        following = attrs.evolve(tested, last=list(self._motion))
+        try:
+            state = balance(shaft, following)
+        except ConvergenceError:
+            if not self._motion:
+                raise
+            following = tested  # the motion before leads to none
+            state = balance(shaft, following)
+        self._motion[:] = following.last
+        # Noise, slow roll, window, and across the response the angle of the pulses.
+        window = abs(response.fourier - response.deflection) / COVERAGE
+        noise = 0.5 * (self.component.error**2 + response.run_out.error**2 + window**2)
+        both = noise + (_LEAST * abs(response.deflection)) ** 2
+        across = both + (self.component.angle_error * abs(self.component.forward) / COVERAGE) ** 2
+        computed = state.sensor if self.component.marked else abs(state.sensor)
+        return Balanced(state, computed, response.deflection, (float(np.sqrt(both)), float(np.sqrt(across))))
+
+    def notes(self) -> list[str]:
+        """Sentences that a reader of the numbers needs."""
         out = [
             "shaft, unbalance and sensor's place of [rig] are taken as known: what they are off by is no part of the intervals"
         ]
-        if not self.found.marked:
+        if not self.component.marked:
             out.append("no mark (`key`): the line's size alone is fitted")
-        if self.known is None and self.slow is None:
+        if self.run_out is None:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
-        return tuple(out)
-
-    def _whitened(self, one: complex, other: complex) -> np.ndarray:
-        """Difference of two lines along the measured one and across it, over the errors."""
-        apart = (one - other) * np.conj(self.line) / abs(self.line)
-        along, across = self.errors
-        return np.array([apart.real / along, apart.imag / across][: self.count])
-
-    def _balanced(self, at: np.ndarray, scene: Scene | None = None) -> State:
-        """State of the rig with a bearing of such numbers; the line and its errors, less the run-out that it leaves."""
-        scene = scene or self.scene
-        for one, value in zip(self.free, at, strict=True):
-            try:
-                scene = with_number(scene, one.name, float(value))
-            except ValueError as why:
-                raise SceneError.at(one.name, float(value), str(why)) from None
-        held = bearing(scene, scene.load.axial, self.registry)
-        there = seen(self.found, self.rig, held, self.known, self.slow)
-        self.line, self.errors = there.line, self._errors(there.run_out.error, abs(there.fourier - there.line))
-        line = rotor(self.rig, self.found.speed)
-        following = attrs.evolve(held, last=list(self._last))
-        try:
-            state = balance(line, following)
-        except ConvergenceError:
-            if not self._last:
-                raise
-            following = held  # the motion before leads to none
-            state = balance(line, following)
-        self._last[:] = following.last
-        return state
-
-    def _errors(self, run_out: float, window: float) -> tuple[float, float]:
-        """Standard errors along the line and across it [m]: scatter, slow roll, window, and across it the marks."""
-        both = 0.5 * (self.found.error**2 + run_out**2 + (window / COVERAGE) ** 2) + (_LEAST * abs(self.line)) ** 2
-        across = both + (self.found.doubt * abs(self.found.line) / COVERAGE) ** 2
-        return float(np.sqrt(both)), float(np.sqrt(across))
+        return out
 
 
-def refuse_across(scene: Scene, free: Sequence[Free]) -> None:
-    """Keys that a rig which whirls in circles has not.
+def fit_rig(
+    signals: Signals, scene: Scene, names: list[str], registry: Registry, run_out: RunOut | Synchronous | None
+) -> Fitted:
+    """Free keys of a scene from the signals of its rig.
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        The fault of signals, keys or scene; no motion like the measured one, or no convergence of the search.
+    """
+    rig = rig_of(scene)
+    free = free_keys(scene, names)
+    _refuse_across(free)
+    if not any(key.name == "load.axial" for key in free):
+        refuse_no_load(scene)
+    with faults_at(signals.source):
+        component = synchronous(rotation_of(recording_of(signals)))
+        problem = RigResiduals(scene, rig, registry, free, component, run_out)
+        refuse_few(problem.count, len(free), signals.source)
+        answer = estimate(problem, free, stated=True)
+    problem.residuals(answer.values)
+    last, causes = problem.last, problem.uncertain(answer.values)
+    for cause, slope in causes.items():
+        answer = answer.with_shifts(cause, slope.residuals[:, None])
+    slopes = np.array([slope.coefficients for slope in problem.slopes]).T
+    halves = answer.half_widths(slopes, {cause: slope.coefficients[:, None] for cause, slope in causes.items()})
+    derived = [Derived("K", "N/m", last.state.stiffness, float(halves[0]))]
+    if component.marked and any(word in key.name for key in free for word in _DAMPING):
+        derived.append(Derived("C", "N s/m", last.state.damping, float(halves[1])))
+    measured = last.measured if component.marked else abs(last.measured)
+    parts = [("real", np.real), ("imaginary", np.imag)][: problem.count]
+    responses = np.array([slope.response for slope in problem.slopes])
+    directly = {cause: np.array([[part(slope.response)] for _, part in parts]) for cause, slope in causes.items()}
+    series = Series(
+        f"line at the sensor ({' and '.join(name for name, _ in parts)} part)", "m", "part", "", np.arange(1.0, len(parts) + 1.0),
+        np.array([part(measured) for _, part in parts]), np.array([part(last.computed) for _, part in parts]),
+        np.full(len(parts), answer.widened * last.errors[0]),
+        answer.half_widths(np.array([part(responses) for _, part in parts]), directly),
+    )  # fmt: skip
+    title, notes = f"{scene.title}, {component.speed * 30.0 / np.pi:.1f} r/min", tuple(problem.notes())
+    return Fitted(title, signals.source, "rig", True, answer, (series,), tuple(derived), notes)
+
+
+def _refuse_across(free: Sequence[Free]) -> None:
+    """Keys that a rig which whirls in circles does not have.
 
     Raises
     ------
     SceneError
         Naming the key.
     """
-    for one in free:
-        table = one.name.partition(".")[0]
-        if table in ("excitation", "rotor") and one.name != "rotor.damping":
-            raise SceneError.at(
-                one.name, None, "is the rig's: its table [rig] says unbalance and shaft, and the record the speed"
-            )
-        if one.name.startswith(("load.radial", "load.moment")):
-            raise SceneError.at(one.name, None, "the rig is taken to whirl in circles: no load across its axis can be free")
+    for key in free:
+        if key.name.partition(".")[0] in ("excitation", "rotor") and key.name != "rotor.damping":
+            message = "is the rig's: its table [rig] says unbalance and shaft, and the record the speed"
+            raise SceneError.at(key.name, None, message)
+        if key.name.startswith(("load.radial", "load.moment")):
+            message = "the rig is taken to whirl in circles: no load across its axis can be free"
+            raise SceneError.at(key.name, None, message)

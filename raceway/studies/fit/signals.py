@@ -1,9 +1,12 @@
-"""Columns of a measured record, in SI: from a CSV file, a mapping of arrays, a data frame or a labelled data set."""
+"""Measured data, in SI: tables and records in CSV files, mappings of arrays, data frames or labelled data sets.
+
+``Signals`` are any record over time, ``Recording`` is that of a rig's two displacement sensors, from which a bearing can be identified.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -11,80 +14,21 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.errors import SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.storage.files import write_whole
 from raceway.storage.number_table import NumberTable, read_heads, read_numbers
-from raceway.studies.fit.column_headers import IGNORE, columns_of, quantity_of
+from raceway.studies.fit.column_headers import IGNORE, columns_of
 
-#: Samples that say anything.
+#: Fewest samples of a record.
 _LEAST = 32
-
-
-@attrs.frozen(eq=False)
-class Signals:
-    """A record as it was read.
-
-    Attributes
-    ----------
-    source : its file, or "signals"
-    columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N]
-    where : what messages about its heads begin with
-    """
-
-    source: str
-    columns: dict[str, np.ndarray]
-    where: str = ""
-
-    def told(self) -> str:
-        """What it holds, in words."""
-        time = self.columns["time"]
-        others = [f"{name}{_spread(name, values)}" for name, values in self.columns.items() if name != "time"]
-        return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(others) or 'nothing but time'}"
-
-
-def _spread(name: str, values: np.ndarray) -> str:
-    """Half the range of a displacement or force."""
-    half = 0.5 * float(np.ptp(values))
-    if name in ("y", "z"):
-        return f" (+- {1e6 * half:.4g} µm)"
-    return f" (+- {half:.4g} N)" if name.startswith("force") else ""
-
-
-def signals_of(given: Any, columns: Mapping[str, str] | None = None) -> Signals:
-    """The record in whatever it is given.
-
-    Parameters
-    ----------
-    given : path of a CSV file; mapping of heads to arrays (n,); ``pandas.DataFrame``; ``xarray.Dataset``, whose variables may
-        have their units as attribute
-    columns : head -> name, for heads that say too little; see ``heads.COLUMNS``
-
-    Raises
-    ------
-    SceneError
-        What is wrong with it, with line and column.
-    """
-    if isinstance(given, str | Path):
-        return read_signals(Path(given), columns)
-    if hasattr(given, "data_vars"):
-        arrays = {_head(name, given[name].attrs.get("units")): given[name].values for name in given.variables}
-    elif isinstance(given, Mapping):
-        arrays = {str(name): values for name, values in given.items()}
-    elif hasattr(given, "columns") and hasattr(given, "to_numpy"):
-        arrays = {str(name): given[name].to_numpy() for name in given.columns}
-    else:
-        raise SceneError.at(
-            "signals",
-            type(given).__name__,
-            "must be a CSV file's path, a mapping of arrays, a pandas.DataFrame or an xarray.Dataset",
-        )
-    return _from_arrays(arrays, columns)
+#: Share of all samples that may lie at one end of the range beyond those of a sine of the same resolution.
+_AT_THE_END = 0.02
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[None]:
-    """What is wrong with a CSV file, as a ``SceneError`` of its path."""
+def _reading(path: Path) -> Iterator[None]:
+    """Faults of a CSV file, as a ``SceneError`` of its path."""
     try:
         yield
     except FileNotFoundError:
@@ -96,74 +40,158 @@ def reading(path: Path) -> Iterator[None]:
         raise SceneError.at(str(path), None, str(why)) from None
 
 
-def read_signals(path: Path, columns: Mapping[str, str] | None = None) -> Signals:
-    """The record in a CSV file.
+@contextmanager
+def faults_at(source: str) -> Iterator[None]:
+    """Faults of a record, as a ``SceneError`` of its source; numerical failures as they are."""
+    try:
+        yield
+    except RacewayError as why:
+        if why.exit_code != 2 or isinstance(why, SceneError):
+            raise
+        raise SceneError.at(source, None, str(why)) from None
+
+
+def headers_of(data: Any, name: str) -> list[str]:
+    """Column headers of data, without the numbers of a file.
 
     Raises
     ------
     SceneError
-        What is wrong with the file, with the line.
+        A file that cannot be read, or data of another form; ``name`` stands for data that are no file.
     """
-    with reading(path):
-        table = read_numbers(path, lambda heads: _needed(heads, columns, "line 1: "))
-        return _from_table(table, str(path), columns, "line 1: ")
+    if not isinstance(data, str | Path):
+        return list(_arrays(data, name))
+    with _reading(Path(data)):
+        return read_heads(Path(data))
 
 
-def _from_arrays(arrays: Mapping[str, Any], columns: Mapping[str, str] | None) -> Signals:
+def table_of(
+    data: Any, name: str, word: str, judge: Callable[[list[str]], object] = lambda headers: None
+) -> tuple[NumberTable, str]:
+    """Numbers below their column headers, and their source: a CSV file's path, or ``name``.
+
+    Parameters
+    ----------
+    data : path of a CSV file; mapping of headers to arrays (n,); ``pandas.DataFrame``; ``xarray.Dataset``, whose variables may
+        have their units as attribute
+    word : what a row is, for messages;  judge : of the headers, before the numbers are read; it raises ``ValueError``
+
+    Raises
+    ------
+    SceneError
+        The fault of a file or of arrays, with line or row and column.
+    """
+    if isinstance(data, str | Path):
+        with _reading(Path(data)):
+            return read_numbers(Path(data), judge), str(data)
+    arrays = _arrays(data, name)
     try:
-        _needed(list(arrays), columns, "")
-        found = {head: _numbers(head, values) for head, values in arrays.items()}
-        sizes = {head: len(values) for head, values in found.items()}
+        judge(list(arrays))
+        if not arrays:
+            raise ValueError("is empty: column headers and numbers are needed")
+        columns = {header: _numbers(header, values, word) for header, values in arrays.items()}
+        sizes = {header: len(values) for header, values in columns.items()}
         if len(set(sizes.values())) > 1:
-            raise ValueError(f"the columns differ in length: {', '.join(f'{head} {size}' for head, size in sizes.items())}")
-        values = np.column_stack(list(found.values()))
-        return _from_table(NumberTable(list(found), values, np.arange(len(values)), "sample"), "signals", columns, "")
+            raise ValueError(
+                f"the columns differ in length: {', '.join(f'{header} {size}' for header, size in sizes.items())}"
+            )
     except ValueError as why:
-        raise SceneError.at("signals", None, str(why)) from None
+        raise SceneError.at(name, None, str(why)) from None
+    values = np.column_stack(list(columns.values()))
+    return NumberTable(list(columns), values, np.arange(len(values)), word), name
 
 
-def _numbers(head: str, given: Any) -> np.ndarray:
+def _arrays(data: Any, name: str) -> dict[str, Any]:
+    if hasattr(data, "data_vars"):
+        units = {variable: str(data[variable].attrs.get("units", "1")) for variable in data.variables}
+        return {f"{key} [{unit}]" if unit not in ("", "1") else str(key): data[key].values for key, unit in units.items()}
+    if isinstance(data, Mapping):
+        return {str(header): values for header, values in data.items()}
+    if hasattr(data, "columns") and hasattr(data, "to_numpy"):
+        return {str(header): data[header].to_numpy() for header in data.columns}
+    message = "must be a CSV file's path, a mapping of arrays, a pandas.DataFrame or an xarray.Dataset"
+    raise SceneError.at(name, type(data).__name__, message)
+
+
+def _numbers(header: str, array: Any, word: str) -> np.ndarray:
     try:
-        values = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
-        raise ValueError(f"column '{head}' holds something that is no number") from None
+        values = np.atleast_1d(np.asarray(array, dtype=float))
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"column '{header}' holds something that is no number") from None
     if values.ndim != 1:
-        raise ValueError(f"column '{head}' has the shape {values.shape}: one number a sample is needed, (n,)")
+        raise ValueError(f"column '{header}' has the shape {values.shape}: one number per {word} is needed, (n,)")
     if not np.isfinite(values).all():
-        raise ValueError(f"column '{head}': sample {int(np.argmin(np.isfinite(values)))} is missing: cut the record there")
+        row = int(np.argmin(np.isfinite(values)))
+        raise ValueError(f"column '{header}': {word} {row} is missing (no finite number): cut the data there")
     return values
 
 
-def _needed(heads: list[str], columns: Mapping[str, str] | None, where: str) -> dict[str, tuple[int, float]]:
-    """``columns_of`` with a time and something beside it."""
-    found = columns_of(heads, columns, where)
-    if "time" not in found or len(found) < 2:
-        needed = "no column for time" if "time" not in found else "time alone is no record"
-        raise ValueError(f"{where}{needed}; needed: time, y and z, for instance time_s,y_um,z_um,key")
-    return found
+@attrs.frozen(eq=False)
+class Signals:
+    """A record as it was read.
+
+    Attributes
+    ----------
+    source : its file, or "signals"
+    columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N]
+    where : prefix of messages about its column headers
+    """
+
+    source: str
+    columns: dict[str, np.ndarray]
+    where: str = ""
+
+    def __str__(self) -> str:
+        """Samples, duration and columns, in words."""
+        time = self.columns["time"]
+        others = [f"{name}{_amplitude(name, values)}" for name, values in self.columns.items() if name != "time"]
+        return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(others) or 'nothing but time'}"
 
 
-def _from_table(table: NumberTable, source: str, columns: Mapping[str, str] | None, where: str) -> Signals:
-    places = _needed(table.header, columns, where)
+def _amplitude(name: str, values: np.ndarray) -> str:
+    """Half the range of a displacement or force."""
+    half = 0.5 * float(np.ptp(values))
+    if name in ("y", "z"):
+        return f" (+- {1e6 * half:.4g} µm)"
+    return f" (+- {half:.4g} N)" if name.startswith("force") else ""
+
+
+def signals_of(data: Any, columns: Mapping[str, str] | None = None) -> Signals:
+    """The record in data of any form that ``table_of`` takes.
+
+    Parameters
+    ----------
+    columns : header -> name in ``column_headers.COLUMNS``, for headers that are not understood; "ignore" leaves a column out
+
+    Raises
+    ------
+    SceneError
+        The fault, with line and column.
+    """
+    where = "line 1: " if isinstance(data, str | Path) else ""
+
+    def recognised(headers: list[str]) -> dict[str, tuple[int, float]]:
+        """``columns_of`` with a time and something beside it."""
+        indices = columns_of(headers, columns, where)
+        if "time" not in indices or len(indices) < 2:
+            missing = "no column for time" if "time" not in indices else "time alone is no record"
+            raise ValueError(f"{where}{missing}; needed: time, y and z, for instance time_s,y_um,z_um,key")
+        return indices
+
+    table, source = table_of(data, "signals", "sample", recognised)
     if len(table.values) < _LEAST:
-        raise ValueError(f"{len(table.values)} samples; at least {_LEAST} are needed")
-    found = {name: table.values[:, place] * factor for name, (place, factor) in places.items()}
-    table.refuse_uneven(found["time"])
-    return Signals(source, found, where)
-
-
-def _head(name: object, unit: object) -> str:
-    """Of a labelled variable: its unit stands in its attributes, or in its name."""
-    return str(name) if unit is None or str(unit) in ("", "1") else f"{name} [{unit}]"
-
-
-#: Samples that may lie at one end of the range beyond those of a sine of the same resolution, of all.
-_AT_THE_END = 0.02
+        raise SceneError.at(source, None, f"{len(table.values)} samples; at least {_LEAST} are needed")
+    quantities = {name: table.values[:, k] * factor for name, (k, factor) in recognised(table.header).items()}
+    try:
+        table.refuse_uneven(quantities["time"])
+    except ValueError as why:
+        raise SceneError.at(source, None, str(why)) from None
+    return Signals(source, quantities, where)
 
 
 @attrs.frozen(eq=False)
 class Recording:
-    """Samples (n,): time [s], gaps along y and z [m], voltage of the mark's probe, speed [rad/s]; the last two may be None."""
+    """Samples (n,): time [s], gaps along y and z [m], voltage of the keyphasor, speed [rad/s]; the last two may be None."""
 
     time: np.ndarray
     y: np.ndarray
@@ -182,48 +210,56 @@ class Recording:
         return Recording(self.time[chosen], self.y[chosen], self.z[chosen], key, speed)
 
 
-def read_recording(path: Path) -> Recording:
-    """A record from its CSV file.
-
-    Raises
-    ------
-    SceneError
-        What is wrong with the file, with the line.
-    """
-    return recording_of(read_signals(path))
-
-
 def recording_of(signals: Signals) -> Recording:
     """The record that a bearing in a rig is identified from.
 
     Raises
     ------
     SceneError
-        Signals that were read well and that K and C cannot be identified from: what they are, why, and what to do.
+        Signals from which K and C cannot be identified: what they are, why, and the remedy.
     """
-    columns, source = signals.columns, signals.source
-    force = [name for name in columns if name.startswith("force")]
-    if force:
-        raise SceneError.at(
-            source, None,
-            f"was read ({signals.told()}), but what excites the rig of the scene is its unbalance. A linear model's K, C and mass from force and "
-            "displacement: raceway fit FILE.csv --free K,C. For the rig give a record of both displacements and the mark under the unbalance "
-            f'(a force that is recorded beside them is left out with --map "HEAD={IGNORE}")',
-        )  # fmt: skip
-    if missing := [name for name in ("y", "z") if name not in columns]:
-        raise SceneError.at(
-            source, None,
-            f"no column for {', '.join(missing)}. It was read ({signals.told()}), but K and C of a bearing in a rig are identified from "
-            "its orbit: record y and z together, or name the column that holds the other axis with --map",
-        )  # fmt: skip
-    if not {"key", "speed"} & set(columns):
-        raise SceneError.at(
-            source, None,
-            f"{signals.where}no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed; it was read ({signals.told()})",
-        )  # fmt: skip
-    for name in ("y", "z"):
-        _refuse_clipped(source, name, columns[name])
+    columns, fault = signals.columns, ""
+    if any(name.startswith("force") for name in columns):
+        fault = (
+            f"was read ({signals}), but what excites the rig of the scene is its unbalance. A linear model's K, C and mass from force and "
+            "displacement: raceway fit FILE.csv --free K,C. For the rig give a record of both displacements and the keyphasor under the unbalance "
+            f'(a force that is recorded beside them is left out with --map "HEADER={IGNORE}")'
+        )
+    elif missing := [name for name in ("y", "z") if name not in columns]:
+        fault = (
+            f"no column for {', '.join(missing)}. It was read ({signals}), but K and C of a bearing in a rig are identified from "
+            "its orbit: record y and z together, or name the column that holds the other axis with --map"
+        )
+    elif not {"key", "speed"} & set(columns):
+        fault = f"{signals.where}no speed: a column `key` (once-per-turn probe) or `speed_rpm` is needed; it was read ({signals})"
+    fault = fault or _clipping("y", columns["y"]) or _clipping("z", columns["z"])
+    if fault:
+        raise SceneError.at(signals.source, None, fault)
     return Recording(columns["time"], columns["y"], columns["z"], columns.get("key"), columns.get("speed"))
+
+
+def _clipping(name: str, signal: np.ndarray) -> str:
+    """Fault of a signal that stays at the end of its range: cut off there, its 1x component is that of another motion.
+
+    Notes
+    -----
+    A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.  A signal
+    without noise that keeps step with its samples has few values, each as often as another.
+    """
+    values, counts = np.unique(signal, return_counts=True)
+    if len(values) < 3:
+        return ""
+    amplitude, step = 0.5 * (values[-1] - values[0]), float(np.diff(values).min())
+    usual = math.acos(max(1.0 - step / amplitude, -1.0)) / math.pi
+    usual = max(usual, float(np.median(counts)) / len(signal))
+    for word, end in (("top", values[-1]), ("bottom", values[0])):
+        share = float((signal == end).mean())
+        if share > 2.0 * usual + _AT_THE_END:
+            return (
+                f"{100.0 * share:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is cut off there. "
+                "Take a larger range of the sensor or of its amplifier, and record again"
+            )
+    return ""
 
 
 def write_recording(recording: Recording, path: Path) -> Path:
@@ -234,96 +270,14 @@ def write_recording(recording: Recording, path: Path) -> Path:
     RacewayError
         A folder that cannot be written.
     """
-    known = {
+    columns = {
         "time_s": (recording.time, "%.9g"),
         "y_um": (recording.y * 1e6, "%.7g"),
         "z_um": (recording.z * 1e6, "%.7g"),
         "key": (recording.key, "%.6g"),
         "speed_rpm": (None if recording.speed is None else recording.speed * 30.0 / math.pi, "%.9g"),
     }
-    there = {name: (values, form) for name, (values, form) in known.items() if values is not None}
-    lines = [",".join(there)]
-    form = ",".join(form for _, form in there.values())
-    lines += [form % row for row in zip(*(values for values, _ in there.values()), strict=True)]
+    present = {header: (values, form) for header, (values, form) in columns.items() if values is not None}
+    row = ",".join(form for _, form in present.values())
+    lines = [",".join(present), *(row % numbers for numbers in zip(*(v for v, _ in present.values()), strict=True))]
     return write_whole(("\n".join(lines) + "\n").encode(), path)
-
-
-def _refuse_clipped(source: str, name: str, signal: np.ndarray) -> None:
-    """A signal that stays at the end of its range was cut off there: its 1x line is that of another motion.
-
-    Notes
-    -----
-    A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.  A signal
-    without noise that keeps step with its samples has few values, each as often as another.
-    """
-    values, counts = np.unique(signal, return_counts=True)
-    if len(values) < 3:
-        return
-    amplitude, step = 0.5 * (values[-1] - values[0]), float(np.diff(values).min())
-    usual = math.acos(max(1.0 - step / amplitude, -1.0)) / math.pi
-    usual = max(usual, float(np.median(counts)) / len(signal))
-    for word, end in (("top", values[-1]), ("bottom", values[0])):
-        there = float((signal == end).mean())
-        if there > 2.0 * usual + _AT_THE_END:
-            text = f"{100.0 * there:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is cut off"
-            raise SceneError.at(
-                source, None, f"{text} there. Take a larger range of the sensor or of its amplifier, and record again"
-            )
-
-
-def over_time(data: Any, columns: Mapping[str, str] | None) -> bool:
-    """Whether the data have a column of time.
-
-    Raises
-    ------
-    SceneError
-        A file that cannot be read.
-    """
-    if hasattr(data, "data_vars"):
-        return True
-    heads = _heads(Path(data)) if isinstance(data, str | Path) else read_table(data)[0].header
-    return any(quantity_of((columns or {}).get(head, head)) == "time" for head in heads)
-
-
-def read_table(data: Any) -> tuple[NumberTable, str]:
-    """Numbers below their heads, and their source: a CSV file's path, or "data".
-
-    Raises
-    ------
-    SceneError
-        What is wrong with them, with the line.
-    """
-    if isinstance(data, str | Path):
-        path = Path(data)
-        with reading(path):
-            return read_numbers(path, lambda heads: None), str(data)
-    if hasattr(data, "columns") and hasattr(data, "to_numpy"):
-        data = {str(name): data[name].to_numpy() for name in data.columns}
-    if not isinstance(data, Mapping):
-        raise SceneError.at(
-            "data", type(data).__name__, "must be a CSV file's path, a mapping of arrays or a pandas.DataFrame"
-        )
-    return _table_of_arrays({str(head): values for head, values in data.items()}), "data"
-
-
-def _heads(path: Path) -> list[str]:
-    with reading(path):
-        return read_heads(path)
-
-
-def _table_of_arrays(given: Mapping[str, Any]) -> NumberTable:
-    if not given:
-        raise SceneError.at("data", None, "is empty: heads and numbers are needed")
-    found = {}
-    for head, values in given.items():
-        try:
-            found[head] = np.atleast_1d(np.asarray(values, dtype=float))
-        except (OverflowError, TypeError, ValueError):
-            raise SceneError.at("data", None, f"column '{head}' holds something that is no number") from None
-        if found[head].ndim != 1 or not np.isfinite(found[head]).all():
-            raise SceneError.at("data", None, f"column '{head}' must hold one finite number a measurement")
-    if len({len(values) for values in found.values()}) > 1:
-        sizes = ", ".join(f"{head} {len(values)}" for head, values in found.items())
-        raise SceneError.at("data", None, f"the columns differ in length: {sizes}")
-    values = np.column_stack(list(found.values()))
-    return NumberTable(list(found), values, np.arange(len(values)), "measurement")

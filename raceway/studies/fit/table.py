@@ -1,4 +1,7 @@
-"""A table of measured quantities over keys of a scene: ``load.axial [N], K [N/µm], K error [N/µm]`` and a line a measurement."""
+"""Fit to a table of measured quantities over keys of a scene: ``load.axial [N], K [N/µm], K error [N/µm]``, a row per measurement.
+
+Residuals are those of the scene's answers, with their exact derivatives by the free keys.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,7 @@ from collections.abc import Mapping, Sequence
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import build_model
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.framework.shown import read_in
@@ -21,30 +23,24 @@ from raceway.scene.continuous import Key, continuous_keys, key_of, with_number
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable
-from raceway.studies.fit.estimate import Free, uncertain
+from raceway.studies.fit.column_headers import IGNORE
+from raceway.studies.fit.estimate import COVERAGE, Estimate, Free, estimate, free_keys, uncertain, with_free
+from raceway.studies.fit.fit import Fitted, Series, refuse_few
 
+#: Index of displacements across the axis in the coordinates at rest.
+_ACROSS = {"y": 1, "z": 2}
 #: Quantities that may be measured, with units: those of sensitivities, and the displacement across the axis at rest.
-MEASURED = UNITS | {"y": "m", "z": "m"}
-#: Half-width at 95 % over the standard error.
-COVERAGE = 1.96
-#: Measurements of one thing that differ by more than this many standard errors contradict each other.
+MEASURED = UNITS | dict.fromkeys(_ACROSS, "m")
+#: Quantities of a motion, which need its orbit.
+_MOTION = ("K", "C", "amplitude")
+#: Standard errors by which measurements of the same quantity may differ before they contradict each other.
 _CONTRADICT = 6.0
-IGNORE = "ignore"
-_HEAD = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
-
-
-@attrs.frozen
-class Column:
-    """A head: key of the scene or measured quantity, and its factor.  ``kind``: "key", "value", "error" or "ignore"."""
-
-    kind: str
-    name: str
-    factor: float
+_HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
 
 
 @attrs.frozen(eq=False)
-class Observed:
-    """Measurements, one a row.
+class Measurements:
+    """Measurements, one per row.
 
     Attributes
     ----------
@@ -58,6 +54,11 @@ class Observed:
     errors: dict[str, np.ndarray]
 
     @property
+    def count(self) -> int:
+        """Rows."""
+        return len(next(iter(self.values.values())))
+
+    @property
     def stated(self) -> bool:
         """Whether every quantity has its errors."""
         return set(self.errors) == set(self.values)
@@ -67,7 +68,7 @@ class Observed:
         """Standard errors (n,) by quantity; where none are stated, those of one relative size for all quantities."""
         if self.stated:
             return self.errors
-        return {name: np.full(len(one), float(np.median(np.abs(one))) or 1.0) for name, one in self.values.items()}
+        return {name: np.full(self.count, float(np.median(np.abs(numbers))) or 1.0) for name, numbers in self.values.items()}
 
     def scenes(self, scene: Scene) -> list[Scene]:
         """The scene of each row.
@@ -77,61 +78,68 @@ class Observed:
         SceneError
             A number that a key of the scene cannot have.
         """
-        count = len(next(iter(self.values.values())))
-        out = []
-        for row in range(count):
-            here = scene
+        scenes = [scene] * self.count
+        for row in range(self.count):
             for path, numbers in self.keys.items():
                 try:
-                    here = with_number(here, path, float(numbers[row]))
+                    scenes[row] = with_number(scenes[row], path, float(numbers[row]))
                 except ValueError as why:
-                    raise SceneError.at(
-                        self.source, None, f"measurement {row + 1}: `{path}` = {numbers[row]:g}: {why}"
-                    ) from None
-            out.append(here)
-        return out
+                    words = f"measurement {row + 1}: `{path}` = {numbers[row]:g}: {why}"
+                    raise SceneError.at(self.source, None, words) from None
+        return scenes
 
 
-def observed(table: NumberTable, source: str, scene: Scene, heads: Mapping[str, str] | None = None) -> Observed:
+def measurements_in(table: NumberTable, source: str, scene: Scene, columns: Mapping[str, str] | None = None) -> Measurements:
     """The measurements in a table.
 
     Parameters
     ----------
-    heads : head -> what it is taken for, a head itself, or "ignore"
+    columns : header -> the header that is meant, or "ignore"
 
     Raises
     ------
     SceneError
-        What is wrong with it, with the column or the row.
+        The fault, with its column or row.
     """
     try:
-        columns = columns_of(table.header, scene, heads)
+        kinds = _columns(table.header, scene, columns or {})
         if not len(table.values):
-            raise ValueError("has no measurements: a line of numbers each is needed below the heads")
-        found = _taken(table, columns)
-        _refuse_contradictions(found)
-        return found if source == found.source else attrs.evolve(found, source=source)
+            raise ValueError("has no measurements: a line of numbers each is needed below the column headers")
+        parts: dict[str, dict[str, np.ndarray]] = {"key": {}, "value": {}, "error": {}, IGNORE: {}}
+        for k, (kind, name, factor) in enumerate(kinds):
+            parts[kind][name] = factor * table.values[:, k]
+        for name, errors in parts["error"].items():
+            if (errors <= 0.0).any():
+                row = f"{table.word} {table.lines[int(np.argmin(errors))]}"
+                raise ValueError(f"{row}: '{name} error' must be greater than 0: half the width of its 95 %")
+        if parts["error"] and (missing := [name for name in parts["value"] if name not in parts["error"]]):
+            raise ValueError(
+                f"errors are stated of {', '.join(parts['error'])}, none of {', '.join(missing)}: state all of them or none"
+            )
+        standard_errors = {name: numbers / COVERAGE for name, numbers in parts["error"].items()}
+        measured = Measurements(source, parts["key"], parts["value"], standard_errors)
+        _refuse_contradictions(measured)
+        return measured
     except ValueError as why:
         raise SceneError.at(source, None, str(why)) from None
 
 
-def columns_of(header: Sequence[str], scene: Scene, heads: Mapping[str, str] | None = None) -> list[Column]:
-    """What each head is.
+def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> list[tuple[str, str, float]]:
+    """Kind ("key", "value", "error" or "ignore"), name and factor of each column.
 
     Raises
     ------
     ValueError
-        A head that is nothing known, a unit that is missing or wrong, or heads without a measured quantity.
+        A header that is not understood, a unit that is missing or wrong, or headers without a measured quantity.
     """
-    heads = dict(heads or {})
-    if unknown := next((head for head in heads if head not in header), None):
+    if unknown := next((text for text in meant if text not in header), None):
         raise ValueError(f"no column '{unknown}' for --map; there are {', '.join(map(repr, header))}")
     keys = {key.path: key for key in continuous_keys(scene)}
-    columns = [_column(heads.get(head, head), head, keys) for head in header]
-    places = [(one.kind, one.name) for one in columns if one.kind != IGNORE]
-    if twice := next((one for one in places if places.count(one) > 1), None):
-        raise ValueError(f"'{twice[1]}' stands there twice: leave one of its columns out with --map \"HEAD={IGNORE}\"")
-    values = [one.name for one in columns if one.kind == "value"]
+    columns = [_column(meant.get(text, text), text, keys) for text in header]
+    names = [(kind, name) for kind, name, _ in columns if kind != IGNORE]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise ValueError(f"'{twice[1]}' stands there twice: leave one of its columns out with --map \"HEADER={IGNORE}\"")
+    values = [name for kind, name in names if kind == "value"]
     if not values:
         raise ValueError(
             f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(MEASURED)}, such as K [N/µm]"
@@ -140,197 +148,147 @@ def columns_of(header: Sequence[str], scene: Scene, heads: Mapping[str, str] | N
         raise ValueError(
             "kyy_tilts_follow is none of a scene with supports.tilt = 'locked': name it kyy, or let the tilts follow"
         )
-    if lonely := next((one.name for one in columns if one.kind == "error" and one.name not in values), None):
+    if lonely := next((name for kind, name in names if kind == "error" and name not in values), None):
         raise ValueError(f"'{lonely} error' has no column {lonely} beside it")
     return columns
 
 
-def _column(text: str, head: str, keys: Mapping[str, Key]) -> Column:
+def _column(text: str, header: str, keys: Mapping[str, Key]) -> tuple[str, str, float]:
     if text.strip() == IGNORE:
-        return Column(IGNORE, head, 0.0)
-    match = _HEAD.match(text)
+        return IGNORE, header, 0.0
+    match = _HEADER.match(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
-    base, word = "_".join(name.removesuffix(" error").split()), name.endswith(" error")
-    if base in MEASURED:
+    quantity = "_".join(name.removesuffix(" error").split())
+    if quantity in MEASURED:
         if not unit:
-            raise ValueError(f"'{head}' has no unit: write {name} [{read_in(1.0, MEASURED[base])[1]}]")
-        return Column("error" if word else "value", base, _factor(head, MEASURED[base], unit))
-    path = _path(name, keys)
-    if path is None:
-        known = [*MEASURED, *keys]
-        what = f"{', '.join(MEASURED)}, each with a unit, '... error', keys of the scene"
+            raise ValueError(f"'{header}' has no unit: write {name} [{read_in(1.0, MEASURED[quantity])[1]}]")
+        return "error" if name.endswith(" error") else "value", quantity, _factor(header, MEASURED[quantity], unit)
+    # A key by its path, or by its last word where one key of the scene ends so.
+    paths = [name] if name in keys else [path for path in keys if path.rpartition(".")[2] == name]
+    if len(paths) != 1:
         raise ValueError(
-            f"unknown column '{head}'{nearest(name, known)}. Known are {what}; --map \"{head}=NAME\" says what it is, or {IGNORE}"
+            f"unknown column '{header}'{nearest(name, [*MEASURED, *keys])}. Known are {', '.join(MEASURED)}, each with a unit, '... error', "
+            f'keys of the scene; --map "{header}=NAME" says what it is, or {IGNORE}'
         )
-    return Column("key", path, _factor(head, keys[path].unit, unit) if unit else 1.0)
+    return "key", paths[0], _factor(header, keys[paths[0]].unit, unit) if unit else 1.0
 
 
-def _path(name: str, keys: Mapping[str, Key]) -> str | None:
-    """A key by its path, or by its last word where one key of the scene ends so."""
-    if name in keys:
-        return name
-    ends = [path for path in keys if path.rpartition(".")[2] == name]
-    return ends[0] if len(ends) == 1 else None
-
-
-def _factor(head: str, unit: str, given: str) -> float:
-    if not unit and given.strip() in ("", "1", "-"):
+def _factor(header: str, unit: str, written: str) -> float:
+    if not unit and written.strip() in ("", "1", "-"):
         return 1.0
     try:
-        return number_in(unit, f"1 {given}")
+        return number_in(unit, f"1 {written}")
     except ValueError as why:
-        raise ValueError(f"'{head}': {why}") from None
+        raise ValueError(f"'{header}': {why}") from None
 
 
-def _taken(table: NumberTable, columns: Sequence[Column]) -> Observed:
-    parts: dict[str, dict[str, np.ndarray]] = {"key": {}, "value": {}, "error": {}, IGNORE: {}}
-    for place, column in enumerate(columns):
-        parts[column.kind][column.name] = column.factor * table.values[:, place]
-    for name, errors in parts["error"].items():
-        if (errors <= 0.0).any():
-            row = int(np.argmin(errors))
-            raise ValueError(
-                f"{table.word} {table.lines[row]}: '{name} error' must be greater than 0: half the width of its 95 %"
-            )
-    if parts["error"] and (rest := [name for name in parts["value"] if name not in parts["error"]]):
-        raise ValueError(
-            f"errors are stated of {', '.join(parts['error'])}, none of {', '.join(rest)}: state all of them or none"
-        )
-    return Observed("", parts["key"], parts["value"], {name: one / COVERAGE for name, one in parts["error"].items()})
-
-
-def _refuse_contradictions(found: Observed) -> None:
-    """Two measurements under one set of keys that their stated errors do not explain."""
-    if not found.errors:
+def _refuse_contradictions(measured: Measurements) -> None:
+    """Two measurements under the same keys whose stated errors do not explain their difference."""
+    if not measured.errors:
         return
-    count = len(next(iter(found.values.values())))
-    keys = np.column_stack([*found.keys.values(), np.zeros(count)])
+    keys = np.column_stack([*measured.keys.values(), np.zeros(measured.count)])
     _, groups = np.unique(keys, axis=0, return_inverse=True)
-    for name, numbers in found.values.items():
+    for name, numbers in measured.values.items():
         for group in range(int(groups.max()) + 1):
             rows = np.flatnonzero(groups.ravel() == group)
             low, high = rows[np.argmin(numbers[rows])], rows[np.argmax(numbers[rows])]
-            apart = (numbers[high] - numbers[low]) / np.hypot(found.errors[name][low], found.errors[name][high])
-            if apart > _CONTRADICT:
+            distance = (numbers[high] - numbers[low]) / np.hypot(measured.errors[name][low], measured.errors[name][high])
+            if distance > _CONTRADICT:
                 raise ValueError(
                     f"measurements {min(low, high) + 1} and {max(low, high) + 1} contradict each other: under the same keys {name} is "
-                    f"{numbers[low]:.6g} and {numbers[high]:.6g} {MEASURED[name]}, {apart:.3g} of their stated standard errors apart"
+                    f"{numbers[low]:.6g} and {numbers[high]:.6g} {MEASURED[name]}, {distance:.3g} of their stated standard errors apart"
                 )
 
 
-def refuse_few(points: int, free: int, source: str) -> None:
-    """Fewer data than free numbers.
-
-    Raises
-    ------
-    SceneError
-        With both counts.
-    """
-    if points < free:
-        numbers = "1 measured number" if points == 1 else f"{points} measured numbers"
-        raise SceneError.at(
-            source, None, f"{numbers} for {free} free ones: free fewer keys, or measure at more loads or speeds"
-        )
-
-
-#: Quantities of a motion, which need its orbit; place of displacements in the coordinates at rest.
-_MOTION, _PLACES = ("K", "C", "amplitude"), {"y": 1, "z": 2}
-
-
 @attrs.define(eq=False)
-class Predicted:
+class TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway.studies.fit.estimate.Residuals``.
 
     Attributes
     ----------
-    scene : without the rows' keys;  scenes : of the rows
+    scenes : of the rows
     """
 
-    observed: Observed
+    measured: Measurements
     free: Sequence[Free]
     scenes: list[Scene]
     _answers: list[Gradients] = attrs.field(factory=list, init=False)
 
     @classmethod
-    def of(cls, observed: Observed, scene: Scene, free: Sequence[Free]) -> Predicted:
-        """Beside the answers of a scene.
+    def of(cls, measured: Measurements, scene: Scene, free: Sequence[Free]) -> TableResiduals:
+        """Of the answers of a scene.
 
         Raises
         ------
         SceneError
-            A key that is free and measured under, a number that a key cannot have, or a motion that is asked of a scene at rest.
+            A key that is both free and measured, a number that a key cannot have, or a quantity of a motion in a scene at rest.
         """
-        if both := next((one.name for one in free if one.name in observed.keys), None):
+        if both := next((key.name for key in free if key.name in measured.keys), None):
             raise SceneError.at(
                 "--free", both, "is a column of the data, too: a key is either free or known in each measurement"
             )
-        asked = [name for name in observed.values if name in _MOTION]
-        if asked and scene.excitation is None:
+        moving = [name for name in measured.values if name in _MOTION]
+        if moving and scene.excitation is None:
             raise SceneError.at(
-                "excitation", None, f"is missing: {', '.join(asked)} are those of a motion under an excitation"
+                "excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation"
             )
-        return cls(observed, free, observed.scenes(scene))
-
-    def residuals(self, at: np.ndarray) -> np.ndarray:
-        return self._weighted(self.fitted(at), self.observed.values)
-
-    def fitted(self, at: np.ndarray) -> dict[str, np.ndarray]:
-        """Quantity -> the scene's answers (n,), SI."""
-        self._answers = [self._answer(scene, at) for scene in self.scenes]
-        rows = [self._values(one) for one in self._answers]
-        return {name: np.array([row[name] for row in rows]) for name in self.observed.values}
-
-    def jacobian(self, at: np.ndarray) -> np.ndarray:
-        return np.column_stack([self._column(one.name) for one in self.free])
-
-    def uncertain(self) -> tuple[dict[str, np.ndarray], list[str]]:
-        """Cause -> what a standard error of it moves the residuals by (n, 1), at the last numbers; what is left out of them."""
-        names, keys = [one.name for one in self.free], tuple(self.observed.keys)
-        found, left_out = {}, []
-        rows = [uncertain(one, names, keys) for one in self.scenes]  # a range in per cent is that of each row's number
-        for same in zip(*rows, strict=True):
-            try:
-                parts = [self._column(path, [one.sizes[path] for one in same]) for path in same[0].sizes]
-            except SceneError as why:
-                left_out.append(f"what {same[0].cause} may be off by is no part of the intervals: {why.mistakes[0].message}")
-            else:
-                found[same[0].cause] = np.sum(parts, axis=0)[:, None]
-        return found, left_out
-
-    def _column(self, path: str, sizes: Sequence[float] | None = None) -> np.ndarray:
-        """Derivatives of the weighted residuals by a key, times a size a row."""
-        gradients = [self._gradient(answer, path) for answer in self._answers]
-        rows = [self._derivatives(a, g) for a, g in zip(self._answers, gradients, strict=True)]
-        factors = np.ones(len(rows)) if sizes is None else np.array(sizes)
-        return self._weighted({name: factors * [row[name] for row in rows] for name in self.observed.values})
-
-    def _answer(self, scene: Scene, at: np.ndarray) -> Gradients:
-        for one, value in zip(self.free, at, strict=True):
-            try:
-                scene = with_number(scene, one.name, float(value))
-            except ValueError as why:
-                raise SceneError.at(one.name, float(value), str(why)) from None
-        model = build_model(scene, make_plan(scene))
-        return Gradients(model, settle(model))
-
-    def _values(self, answer: Gradients) -> dict[str, float]:
-        model, equilibrium = answer.model, answer.equilibrium
-        found = values(model, equilibrium, answer.orbit if self._moving else None) | _across(equilibrium.displacement)
-        if lacking := next((name for name in self.observed.values if name not in found), None):
-            raise SceneError.at(
-                lacking, None, f"[{MEASURED[lacking]}] is no number that this scene has: its motion has too little of it"
-            )
-        return found
-
-    def notes(self) -> tuple[str, ...]:
-        """What the measured numbers are taken for, where their names may mean another thing to who measured."""
-        model, words = self._answers[0].model, definitions(self._answers[0].model, self._answers[0].equilibrium)
-        names = ["largest_ball_load", *(["kyy"] if model.scene.supports.tilt != "locked" else [])]
-        return tuple(f"{name} is taken as {words[name]}" for name in names if name in self.observed.values)
+        return cls(measured, free, measured.scenes(scene))
 
     @property
     def _moving(self) -> bool:
-        return any(name in _MOTION for name in self.observed.values)
+        return any(name in _MOTION for name in self.measured.values)
+
+    def residuals(self, at: np.ndarray) -> np.ndarray:
+        answers, weights = self.answers(at), self.measured.weights
+        return np.concatenate([(answers[name] - numbers) / weights[name] for name, numbers in self.measured.values.items()])
+
+    def jacobian(self, at: np.ndarray) -> np.ndarray:
+        return np.column_stack([self._column(key.name) for key in self.free])
+
+    def answers(self, at: np.ndarray) -> dict[str, np.ndarray]:
+        """Quantity -> the scene's answers (n,), SI."""
+        self._answers = []
+        for scene in self.scenes:
+            loaded = with_free(scene, self.free, at)
+            model = build_model(loaded, make_plan(loaded))
+            self._answers.append(Gradients(model, settle(model)))
+        rows = [self._values(answer) for answer in self._answers]
+        return {name: np.array([row[name] for row in rows]) for name in self.measured.values}
+
+    def _values(self, answer: Gradients) -> dict[str, float]:
+        row = values(answer.model, answer.equilibrium, answer.orbit if self._moving else None)
+        row |= _across(answer.equilibrium.displacement)
+        if missing := next((name for name in self.measured.values if name not in row), None):
+            raise SceneError.at(
+                missing, None, f"[{MEASURED[missing]}] is no number that this scene has: its motion has too little of it"
+            )
+        return row
+
+    def uncertain(self) -> tuple[dict[str, np.ndarray], list[str]]:
+        """Cause -> change of the residuals (n, 1) by its standard error, at the last numbers; causes that are left out."""
+        names, keys = [key.name for key in self.free], tuple(self.measured.keys)
+        columns, left_out = {}, []
+        rows = [uncertain(scene, names, keys) for scene in self.scenes]  # a range in per cent is that of each row's number
+        for same in zip(*rows, strict=True):
+            cause = same[0].cause
+            try:
+                parts = [self._column(path, [row.sizes[path] for row in same]) for path in same[0].sizes]
+            except SceneError as why:
+                left_out.append(f"the uncertainty of {cause} is no part of the intervals: {why.mistakes[0].message}")
+            else:
+                columns[cause] = np.sum(parts, axis=0)[:, None]
+        return columns, left_out
+
+    def _column(self, path: str, sizes: Sequence[float] | None = None) -> np.ndarray:
+        """Derivatives of the weighted residuals by a key, times a size per row."""
+        gradients = [self._gradient(answer, path) for answer in self._answers]
+        rows = [
+            derivatives(answer.model, answer.equilibrium, gradient) | _across(gradient.statics.displacement)
+            for answer, gradient in zip(self._answers, gradients, strict=True)
+        ]
+        factors = np.ones(len(rows)) if sizes is None else np.array(sizes)
+        columns = {name: factors * [row[name] for row in rows] for name in self.measured.values}
+        return np.concatenate([column / self.measured.weights[name] for name, column in columns.items()])
 
     def _gradient(self, answer: Gradients, path: str) -> Gradient:
         """By one key; the orbit is left out where no quantity needs it."""
@@ -341,15 +299,53 @@ class Predicted:
         except NoDerivative as why:
             raise SceneError.at(path, None, str(why)) from None
 
-    def _derivatives(self, answer: Gradients, gradient: Gradient) -> dict[str, float]:
-        model: Model = answer.model
-        equilibrium: Equilibrium = answer.equilibrium
-        return derivatives(model, equilibrium, gradient) | _across(gradient.statics.displacement)
-
-    def _weighted(self, one: dict[str, np.ndarray], less: dict[str, np.ndarray] | None = None) -> np.ndarray:
-        weights = self.observed.weights
-        return np.concatenate([(one[name] - (less[name] if less else 0.0)) / weights[name] for name in self.observed.values])
+    def notes(self) -> list[str]:
+        """Definitions of measured numbers whose names may mean another quantity to the reader."""
+        answer = self._answers[0]
+        words = definitions(answer.model, answer.equilibrium)
+        names = ["largest_ball_load", *(["kyy"] if answer.model.scene.supports.tilt != "locked" else [])]
+        return [f"{name} is taken as {words[name]}" for name in names if name in self.measured.values]
 
 
 def _across(displacement: np.ndarray) -> dict[str, float]:
-    return {name: float(displacement[place]) for name, place in _PLACES.items()}
+    return {name: float(displacement[k]) for name, k in _ACROSS.items()}
+
+
+def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
+    """Free keys of a scene from a table.
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        The fault of table, keys or scene; no answer, or no convergence of the search.
+    """
+    free = free_keys(scene, names)
+    refuse_few(measured.count * len(measured.values), len(free), measured.source)
+    problem = TableResiduals.of(measured, scene, free)
+    answer = estimate(problem, free, measured.stated)
+    fitted = problem.answers(answer.values)
+    causes, left_out = problem.uncertain()
+    notes = [*problem.notes(), *left_out]
+    if "conformit" not in " ".join([*causes, *names, *left_out, *measured.keys]):
+        notes.append("groove conformities are taken as exact: [tolerances] of the scene says by how much they may be off")
+    for cause, columns in causes.items():
+        answer = answer.with_shifts(cause, columns)
+    series = _series(measured, scene, answer, fitted, causes)
+    return Fitted(scene.title, measured.source, "table", measured.stated, answer, series, (), tuple(notes))
+
+
+def _series(
+    measured: Measurements, scene: Scene, answer: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
+) -> tuple[Series, ...]:
+    key = next((path for path, numbers in measured.keys.items() if np.ptp(numbers) > 0.0), None)
+    x = measured.keys[key] if key else np.arange(1.0, measured.count + 1.0)
+    unit = key_of(scene, key).unit if key else ""
+    band = answer.half_widths(answer.jacobian, causes).reshape(-1, measured.count)
+    noise = answer.widened if measured.stated else (answer.scatter or 0.0)
+    return tuple(
+        Series(
+            name, MEASURED[name], key or "measurement", unit, x, numbers, fitted[name],
+            noise * measured.weights[name], band[k] * measured.weights[name],
+        )
+        for k, (name, numbers) in enumerate(measured.values.items())
+    )  # fmt: skip

@@ -24,8 +24,9 @@ import attrs
 import numpy as np
 
 from raceway.scene.rig import Rig, Signals
-from raceway.studies.fit.identification import changed_rotors, identify, invert, with_moment, with_tilt_of
-from raceway.studies.fit.shaft_angle import Turning, turning
+from raceway.studies.fit.identify import identify_recording
+from raceway.studies.fit.inversion import changed_rotors, invert, with_moment, with_tilt_of
+from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.shaft.bearing import Bearing, State, balance
@@ -133,20 +134,20 @@ class Reading:
     damping: float
 
 
-def amplitude(found: Turning) -> complex:
+def amplitude(rotation: Rotation) -> complex:
     """1x line of the y channel [m], phase against the mark, as the article has it."""
     from scipy.signal import butter, sosfiltfilt
 
-    time, y = found.recording.time, found.recording.y
-    mean = float(found.angle[-1] - found.angle[0]) / float(time[-1] - time[0])
+    time, y = rotation.recording.time, rotation.recording.y
+    mean = float(rotation.angle[-1] - rotation.angle[0]) / float(time[-1] - time[0])
     rate = 1.0 / float(np.median(np.diff(time)))
     straight = y - np.polyval(np.polyfit(time, y, 1), time)
     corner = min(_LOW_PASS_ORDERS * mean / (2.0 * pi), 0.45 * rate)
     denoised = sosfiltfilt(butter(4, corner, fs=rate, output="sos"), straight)
-    samples = round(found.turns * 2.0 * pi / mean * rate)
+    samples = round(rotation.turns * 2.0 * pi / mean * rate)
     denoised = denoised[:samples]
-    line = 2.0 * np.fft.rfft(denoised)[found.turns] / len(denoised)
-    return complex(line * np.exp(-1j * found.angle[0]))
+    line = 2.0 * np.fft.rfft(denoised)[rotation.turns] / len(denoised)
+    return complex(line * np.exp(-1j * rotation.angle[0]))
 
 
 def critical_speed(rig: Rig, held: Bearing | None) -> float:
@@ -212,7 +213,11 @@ def split(rig: Rig, held: Bearing, state: State) -> list[Cause]:
     """Every cause by itself, for a bearing in a known state."""
     quiet, line = silent(rig.signals), rotor(rig, state.speed)
     clean = record(rig, response(rig, held, state, quiet), quiet, rig.signals.seed)
-    causes = [Cause("none", "clean signals, order tracking, beam inverted", _error(identify(clean, rig, held).state, state))]
+    causes = [
+        Cause(
+            "none", "clean signals, order tracking, beam inverted", _error(identify_recording(clean, rig, held).state, state)
+        )
+    ]
     causes += _correction(rig, held, state, clean)
     causes += _disturbed(rig, held, state, quiet)
     causes += _window(line, held, state, clean)
@@ -225,7 +230,7 @@ def _error(found: State, true: State) -> float:
 
 
 def _correction(rig: Rig, held: Bearing, state: State, clean: Recording) -> list[Cause]:
-    line = amplitude(turning(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    line = amplitude(rotation_of(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
     found = readings(rig, held, state.speed, line)
     return [Cause("correction", one.correction, one.stiffness / state.stiffness - 1.0) for one in found]
 
@@ -237,7 +242,9 @@ def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Ca
         answer = response(rig, held, state, signals)
         noise = white_noise(answer, signals)
         slow = slow_roll(slow_roll_record(rig, held, signals, own.seed + 1, noise)) if roll else None
-        return Cause(kind, what, _error(identify(record(rig, answer, signals, own.seed), rig, held, slow=slow).state, state))
+        return Cause(
+            kind, what, _error(identify_recording(record(rig, answer, signals, own.seed), rig, held, slow).state, state)
+        )
 
     run_out = attrs.evolve(quiet, run_out=own.run_out)
     size = f"{1e6 * own.run_out:g} µm"

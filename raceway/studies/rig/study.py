@@ -15,8 +15,8 @@ from raceway.pipeline.result import without_nan
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
-from raceway.studies.fit.identification import Found, identify
-from raceway.studies.fit.shaft_angle import turning
+from raceway.studies.fit.identify import Identified, identify_recording
+from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.signals import Recording, write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.many.engine import Item, local, work_through
@@ -46,7 +46,7 @@ class Point:
     Attributes
     ----------
     state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
-    signals, slow : the records;  found : what ``identify`` makes of them
+    signals, slow : the records;  found : what is identified from them
     readings : by the article's procedure, on the same signals
     causes : ``error_split``
     """
@@ -56,7 +56,7 @@ class Point:
     unbalance_force: float
     signals: Recording
     slow: Recording
-    found: Found
+    found: Identified
     readings: list[Reading]
     causes: list[Cause]
 
@@ -95,7 +95,7 @@ class Point:
         }
 
     def _identified(self) -> Tables:
-        found, true = self.found.to_dict(), self.state.stiffness
+        found, true = self.found.content(), self.state.stiffness
         uncertain = found["identification"]["equivalent_stiffness_error"] / true
         return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
 
@@ -221,8 +221,8 @@ def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
     answer = response(rig, held, state, rig.signals)
     signals = record(rig, answer, rig.signals, seed)
     slow = slow_roll_record(rig, held, rig.signals, seed + 1, white_noise(answer, rig.signals))
-    found = identify(signals, rig, held, slow=slow_roll(slow))
-    seen = amplitude(turning(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    found = identify_recording(signals, rig, held, slow_roll(slow))
+    seen = amplitude(rotation_of(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
     by_article = readings(rig, held, speed, seen)
     causes = split(rig, held, state)
     return Point(held.scene.load.axial, state, line.unbalance_force, signals, slow, found, by_article, causes)
