@@ -13,10 +13,10 @@ import pytest
 
 import raceway as rw
 from raceway import RacewayError, SceneError
-from raceway.studies.ross.harmonic_load import harmonic_load
 from raceway.studies.ross.installed import ross
 from raceway.studies.ross.node_bearing import node_bearing
 from raceway.studies.ross.secant import secant
+from raceway.studies.shaft.bearing import harmonic_load
 from validation.command_line import EXAMPLES
 
 SPEED = 12000.0 * np.pi / 30.0

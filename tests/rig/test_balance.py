@@ -8,7 +8,7 @@ import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.studies.fit.inversion import coefficients, invert, standard_errors, with_moment, with_tilt_of
-from raceway.studies.shaft.bearing import bearing, find_root, shaft_load
+from raceway.studies.shaft.bearing import bearing, find_root, whirling_load
 from raceway.studies.shaft.rotor import rotor, shaft
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
@@ -29,7 +29,7 @@ def test_no_root_ends_with_a_message():
 
 
 def test_force_and_moment_of_a_shaft_turn():
-    load = shaft_load(600.0, 3.0 + 4.0j, 0.2 - 0.1j)
+    load = whirling_load(600.0 * np.pi / 30.0, 3.0 + 4.0j, 0.2 - 0.1j)
     kernel, out = load.kernel(), np.empty(5)
     for t in (0.0, 0.013):
         kernel(t, load.parameters(), out)

@@ -1,4 +1,4 @@
-"""A force that turns, or swings along one direction, in the radial plane."""
+"""A force that turns, or swings along one direction, in the radial plane; a load of one frequency in all coordinates of the ring."""
 
 import numpy as np
 
@@ -19,6 +19,14 @@ def harmonic(t, params, out):
     out[2] = params[5] * c + params[6] * s
     out[3] = 0.0
     out[4] = 0.0
+
+
+@jit(FORCE)
+def harmonic_load(t, params, out):
+    """out (5,) from params (11,): speed [rad/s], then real and imaginary part of F_x, F_y, F_z [N], M_y, M_z [N m] e^{jwt}."""
+    c, s = np.cos(params[0] * t), np.sin(params[0] * t)
+    for i in range(out.size):
+        out[i] = params[1 + 2 * i] * c - params[2 + 2 * i] * s
 
 
 @jit(FORCE)

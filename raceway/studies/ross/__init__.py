@@ -7,7 +7,7 @@ reading        interpolation by ROSS 2
 table          all of it as an object: the element, the file
 installed      the ROSS that is installed
 node_bearing   a bearing as a rotor's node meets it: Z, motion under a load, force of a displacement
-secant         stiffness that one motion meets;  harmonic_load: the excitation for it;  harmonic_load_kernel: compiled
+secant         stiffness that one motion meets
 bearing        ``raceway.ross.RollingBearing``;  unbalance, transient: responses with its own amplitude
 front          ``raceway.export_ross``;  command: ``raceway export``;  points: its rows;  screen: what it prints
 

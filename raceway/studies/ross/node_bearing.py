@@ -22,8 +22,8 @@ from raceway.planning.plan import make_plan
 from raceway.scene.given import as_scene
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
-from raceway.studies.ross.harmonic_load import harmonic_load
 from raceway.studies.ross.secant import secant
+from raceway.studies.shaft.bearing import harmonic_load
 
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3

@@ -27,25 +27,31 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(kw_only=True)
-class ShaftLoad(Bidirectional):
-    """The rotating force of ``bidirectional`` as a complex number F_y + j F_z [N], with a moment M_z - j M_y [N m]."""
+class HarmonicLoad(Bidirectional):
+    """Complex amplitudes (5,) of F_x, F_y, F_z [N], M_y, M_z [N m]; the load is their real part times e^{jwt}."""
 
-    turning_force: complex = 0.0
-    turning_moment: complex = 0.0
+    amplitudes: tuple[complex, ...] = (0.0,) * 5
 
     def parameters(self) -> np.ndarray:
-        force, moment = complex(self.turning_force), complex(self.turning_moment)
-        return np.array([self.whirl_speed, force.real, force.imag, moment.real, moment.imag])
+        return np.concatenate([[self.whirl_speed], np.array(self.amplitudes, dtype=complex).view(float)])
 
     def kernel(self) -> Kernel:
-        from raceway.studies.shaft.shaft_load_kernel import shaft_load
+        from raceway.core.excitations.harmonic import harmonic_load
 
-        return shaft_load
+        return harmonic_load
 
 
-def shaft_load(speed_rpm: float, force: complex, moment: complex) -> ShaftLoad:
-    """The excitation of a force F_y + j F_z [N] and a moment M_z - j M_y [N m], both at time zero."""
-    return ShaftLoad(speed_rpm=speed_rpm, amplitude="constant", force=abs(force), turning_force=force, turning_moment=moment)
+def harmonic_load(speed: float, load: np.ndarray) -> HarmonicLoad:
+    """The excitation of a load (5,) [N, N m] at a speed [rad/s]."""
+    largest = float(np.abs(load[:3]).max())
+    return HarmonicLoad(
+        speed_rpm=speed * 30.0 / pi, amplitude="constant", force=largest, amplitudes=tuple(map(complex, load))
+    )
+
+
+def whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:
+    """The excitation of a force F_y + j F_z [N] and a moment M_z - j M_y [N m] that turn forward, both at time zero."""
+    return harmonic_load(speed, np.array([0.0, force, -1j * force, 1j * moment, moment]))
 
 
 @attrs.frozen(eq=False)
@@ -98,7 +104,7 @@ class Bearing:
         if len(self.given) < len(self.known):
             self.given.append(self.known[len(self.given)])
             return np.array(self.given[-1]).view(complex)
-        scene = attrs.evolve(self.scene, excitation=shaft_load(speed * 30.0 / pi, force, moment))
+        scene = attrs.evolve(self.scene, excitation=whirling_load(speed, force, moment))
         # Loads that are tried one after another belong to one motion of the rig.
         found = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
         self.last[:] = [found]
