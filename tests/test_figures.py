@@ -143,7 +143,7 @@ def of_a_record() -> list[Figure]:
     component = synchronous(rotation)
     state = SimpleNamespace(sensor=3.0 * component.forward, deflection=9.0 * component.forward)
     whole = SimpleNamespace(rotation=rotation, component=component, state=state)
-    return [fits.signals(whole), fits.spectrum(whole), fits.orbits(whole)]
+    return [*fits.figures(whole).values()]
 
 
 def of_contacts() -> list[Figure]:

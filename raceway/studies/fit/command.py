@@ -102,9 +102,12 @@ def identify(given: IdentifyOptions) -> int:
     content, files = found.to_dict(), list[str]()
     failed = attempt(lambda: [write_json(content, folder / CONTENT)], files)
     if pictures and failed is None:
-        from raceway.studies.fit.picture import write_figures
+        from raceway.plugins.pictures import save_figure
+        from raceway.studies.fit.picture import figures
 
-        failed = attempt(lambda: write_figures(found, folder), files)
+        failed = attempt(
+            lambda: [save_figure(figure, folder / f"{name}.png", 110) for name, figure in figures(found).items()], files
+        )
     from raceway.studies.fit.identify import identify_screen
 
     show(content, given.as_json, failed, lambda: identify_screen(content, files))

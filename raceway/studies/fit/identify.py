@@ -50,7 +50,6 @@ if TYPE_CHECKING:
 
 #: The answer's file, in the folder of the results.
 CONTENT = "identify.json"
-_PLOTS = ("orbits", "spectrum")
 #: Deflection of the bearing below this part of that at the sensor is a small difference of large numbers.
 _SMALL = 0.1
 #: Part by which the tilt stiffness may be off, over that by which the scene misses K.
@@ -256,11 +255,13 @@ class Identified(Shown):
         """
         from raceway.studies.fit.picture import draw_orbits, draw_spectrum
 
-        if what not in _PLOTS:
-            raise SceneError.at("what", what, f"must be one of {', '.join(_PLOTS)}")
+        if what not in ("orbits", "spectrum"):
+            raise SceneError.at("what", what, "must be one of orbits, spectrum")
         axes = given_axes(ax, 6.0, 6.0 if what == "orbits" else 3.5)
-        (draw_orbits if what == "orbits" else draw_spectrum)(self, axes)
-        if what == "orbits":
+        if what == "spectrum":
+            draw_spectrum(self, axes)
+        else:
+            draw_orbits(self, axes)
             axes.legend(frameon=False, fontsize=8)
         return axes
 

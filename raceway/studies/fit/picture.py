@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.framework.shown import read_in
-from raceway.plugins.pictures import new_figure, save_figure
+from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import ReadTables
 from raceway.studies.fit.identify import Identified
 
@@ -104,23 +103,25 @@ def _with_unit(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def write_figures(answer: Identified, folder: Path) -> list[Path]:
-    """signals.png, spectrum.png and orbits.png.
+def figures(answer: Identified) -> dict[str, Figure]:
+    """Figures "signals", "spectrum" and "orbits" of a record.
 
     Raises
     ------
     RacewayError
-        matplotlib is missing, or a folder that cannot be written.
+        matplotlib is missing.
     """
-    figures = {"signals": signals(answer), "spectrum": spectrum(answer), "orbits": orbits(answer)}
-    return [save_figure(figure, folder / f"{name}.png", 110) for name, figure in figures.items()]
+    drawn = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
+    draw_signals(answer, *drawn["signals"].subplots(2, 1, height_ratios=(3, 2)))
+    draw_spectrum(answer, drawn["spectrum"].subplots())
+    draw_orbits(answer, drawn["orbits"].subplots())
+    drawn["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return drawn
 
 
-def signals(answer: Identified) -> Figure:
+def draw_signals(answer: Identified, first: Axes, means: Axes) -> None:
     """The first turns, and the full record as its means over turns."""
     rotation, record = answer.rotation, answer.rotation.recording
-    figure = new_figure(8.0, 4.4)
-    first, means = figure.subplots(2, 1, height_ratios=(3, 2))
     shown = rotation.angle < 2.0 * np.pi * _TURNS_SHOWN
     turns, time = rotation.angle[shown] / (2.0 * np.pi), rotation.means(record.time)
     for name, values, colour in (("y", record.y, _BLUE), ("z", record.z, _RED)):
@@ -129,14 +130,6 @@ def signals(answer: Identified) -> Figure:
     _finish(first, "turns", "gap [µm]")
     _finish(means, "time [s]", "mean of a turn [µm]")
     first.legend(loc="upper right", ncols=2, frameon=False)
-    return figure
-
-
-def spectrum(answer: Identified) -> Figure:
-    """Amplitude of y + j z over orders, as a figure."""
-    figure = new_figure(8.0, 3.4)
-    draw_spectrum(answer, figure.subplots())
-    return figure
 
 
 def draw_spectrum(answer: Identified, axes: Axes) -> None:
@@ -152,14 +145,6 @@ def draw_spectrum(answer: Identified, axes: Axes) -> None:
     axes.semilogy(order[shown], _MICRO * np.maximum(amplitudes[shown], 1e-14), color=_BLUE, linewidth=0.9)
     axes.set_xticks(range(-int(_ORDERS_SHOWN), int(_ORDERS_SHOWN) + 1))
     _finish(axes, "order (positive: turning with the shaft)", "amplitude [µm]")
-
-
-def orbits(answer: Identified) -> Figure:
-    """The orbits, as a figure."""
-    figure = new_figure(5.6, 5.4)
-    draw_orbits(answer, figure.subplots())
-    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return figure
 
 
 def draw_orbits(answer: Identified, axes: Axes) -> None:

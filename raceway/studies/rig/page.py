@@ -14,7 +14,7 @@ from raceway import __version__
 from raceway.commands.screen import Words, rows_table, written
 from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.fit.picture import orbits, signals, spectrum
+from raceway.studies.fit.picture import figures
 from raceway.studies.many.page import Page
 
 if TYPE_CHECKING:
@@ -142,9 +142,7 @@ def write_page(study: RigStudy, folder: Path) -> list[Path]:
     first = study.points[0].found
     drawn = {
         "procedures": procedures(study),
-        "signals": signals(first),
-        "spectrum": spectrum(first),
-        "orbits": orbits(first),
+        **figures(first),
         "error-split": causes(study),
     }
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawn.items()]
