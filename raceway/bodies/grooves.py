@@ -7,7 +7,7 @@ import numpy as np
 from raceway.bodies.basis import Basis
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError
-from raceway.scene.inner_ring import groove_depth, load_at_edge, shoulder_height
+from raceway.scene.inner_ring import groove_depth, load_at_edge
 from raceway.scene.scene import Scene
 
 
@@ -51,13 +51,8 @@ def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.n
     return found
 
 
-def groove_edge(scene: Scene) -> float:
-    """Angle from the groove's bottom to its edge, seen from the ball's centre [rad]."""
-    return float(np.arccos(1.0 - shoulder_height(scene) / (0.5 * scene.bearing.ball_diameter)))
-
-
 def groove_edges(scene: Scene, basis: Basis) -> np.ndarray:
-    """(Z,) ``groove_edge`` of every ball's row [rad]."""
+    """(Z,) angle from the groove's bottom to its edge, seen from the ball's centre, of every ball's row [rad]."""
     rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in scene.bearing.of_rows]
     return np.asarray(np.array(rows)[basis.row])
 

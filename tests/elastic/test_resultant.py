@@ -133,7 +133,7 @@ def test_tangent_is_the_difference_of_the_forces_and_symmetric():
     assert (made.pressure > 0.0).all()
     blocks = made.stiffness.copy()
     direction, step = np.random.default_rng(7).standard_normal(36), 1e-10
-    image = made.tangent_times(blocks, direction)
+    image = made.tangent(blocks) @ direction
     more, less = (made.evaluate(0.0, u + sign * step * direction).copy() for sign in (1.0, -1.0))
     # 1e-10 m of some 1e-6 m: (1e-4)^2 of the values; the law's tolerance of 1e-12 of the gap, over the step: 1e-8.
     np.testing.assert_allclose((more - less) / (2.0 * step), image, atol=1e-6 * np.abs(image).max())

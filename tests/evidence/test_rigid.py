@@ -14,7 +14,7 @@ import pytest
 from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.friction import friction_energy
-from raceway.core.signals.lines import phasors, sharpest
+from raceway.core.signals.lines import phasors
 from raceway.studies.article.runs import SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
@@ -84,6 +84,33 @@ def test_tangent(claim):
     quantity = f"{where}: difference from central differences of the force"
     source = "of fourth order: rounding of forces over steps of 0.1 nm"
     claim(quantity, largest, at_most=DIFFERENCES, basis="own other method", source=source)
+
+
+def sharpest(time: np.ndarray, signal: np.ndarray, near: float, width: float) -> float:
+    """The frequency [Hz] within ``near * (1 +- width)`` at which a sine takes most out of a signal (n,).
+
+    Notes
+    -----
+    Golden-section search around the best of a grid a quarter of a spectral line apart.
+    """
+    span = time[-1] - time[0]
+    straight = signal - np.polyval(np.polyfit(time, signal, 1), time)
+
+    def power(frequency: float) -> float:
+        return float(abs(phasors(time, straight[:, None], [frequency])[0, 0]))
+
+    low, high = near * (1.0 - width), near * (1.0 + width)
+    grid = np.linspace(low, high, max(int(4.0 * span * (high - low)) + 2, 9))
+    best = int(np.argmax([power(f) for f in grid]))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    golden = 0.5 * (np.sqrt(5.0) - 1.0)
+    for _ in range(60):
+        a, b = high - golden * (high - low), low + golden * (high - low)
+        if power(a) > power(b):
+            high = b
+        else:
+            low = a
+    return 0.5 * (low + high)
 
 
 def test_ball_pass(claim):

@@ -62,10 +62,8 @@ def test_masses(kind):
     points, cells, _ = distorted((3, 2, 4))
     op = HexOperator(points, cells, *STEEL, kind)
     matrices = [reference.element_mass(points[cell], 7810.0) for cell in cells]
-    expected = np.kron(reference.assembled(cells, len(points), matrices, 1), np.eye(3))
-    M = op.consistent_mass().toarray()
-    assert np.abs(M - expected).max() <= 1e-13 * expected.max()
-    assert np.abs(M.sum(axis=1)[::3] - op.lumped_mass()).max() <= 1e-13 * op.lumped_mass().max()
+    expected = reference.assembled(cells, len(points), matrices, 1).sum(axis=1)
+    assert np.abs(expected - op.lumped_mass()).max() <= 1e-13 * op.lumped_mass().max()
     straight = HexOperator(*block((0.5, 0.25, 2.0), (3, 2, 4)), *STEEL, kind)
     assert straight.lumped_mass().sum() == pytest.approx(7810.0 * 0.25, rel=1e-14)
 

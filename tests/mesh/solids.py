@@ -1,4 +1,4 @@
-"""Solids for the gmsh mesher, made by Gmsh, and meshes as Gmsh writes them."""
+"""Solids for the gmsh mesher, made by Gmsh, meshes as Gmsh writes them, and normals of facets."""
 
 from __future__ import annotations
 
@@ -45,3 +45,10 @@ def write_msh(path: Path, mesh: HexMesh) -> None:
     cell_data = {"gmsh:physical": data, "gmsh:geometrical": [part.copy() for part in data]}
     content = meshio.Mesh(mesh.points, blocks, cell_data=cell_data, field_data=names)
     meshio.gmsh.write(path, content, fmt_version="2.2")
+
+
+def facet_normals(mesh: HexMesh, name: str) -> np.ndarray:
+    """(k, 3) mean unit normals of the facets of a set, outward."""
+    a, b, c, d = np.moveaxis(mesh.points[mesh.facet_nodes(name)], 1, 0)
+    normal = np.cross(c - a, d - b)
+    return normal / np.linalg.norm(normal, axis=1, keepdims=True)

@@ -14,14 +14,20 @@ from raceway.core.mesh.hex_mesh import EDGES
 from raceway.core.mesh.quality import quality, refuse_bad_cells
 from raceway.core.mesh.ring_mesh import ring_mesh
 from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.mesh.spacing import graded, growing, halved
+from raceway.core.mesh.spacing import graded, growing
 from raceway.core.mesh.summary import summary
 from raceway.plugins.structured_mesh import Structured
+from tests.mesh.solids import facet_normals
 from validation.command_line import EXAMPLES
 from validation.quarter import quarter_groove
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)
+
+
+def halved(points):
+    """The same points with one in the middle of each two: a refinement by exactly 2."""
+    return np.sort(np.concatenate([points, 0.5 * (points[1:] + points[:-1])]))
 
 
 def test_spacings_reach_their_ends_and_keep_their_limits():
@@ -131,8 +137,8 @@ def test_nodes_of_the_groove_bore_and_sides_lie_on_them():
     assert np.hypot(groove[:, 0] - shape.centre_x, radius - shape.centre_r) == pytest.approx(shape.groove, rel=1e-12)
     assert np.hypot(bore[:, 1], bore[:, 2]) == pytest.approx(0.5 * BEARING.bore, rel=1e-12)
     assert mesh.points[mesh.nodes("face_positive"), 0] == pytest.approx(0.5 * BEARING.width)
-    assert mesh.facet_normals("raceway")[:, 1:].shape[1] == 2
-    outward = (mesh.facet_normals("seat")[:, 1:] * mesh.points[mesh.facet_nodes("seat")].mean(axis=1)[:, 1:]).sum(axis=1)
+    assert facet_normals(mesh, "raceway")[:, 1:].shape[1] == 2
+    outward = (facet_normals(mesh, "seat")[:, 1:] * mesh.points[mesh.facet_nodes("seat")].mean(axis=1)[:, 1:]).sum(axis=1)
     assert (outward < 0.0).all()
 
 

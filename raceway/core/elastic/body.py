@@ -9,10 +9,6 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import FACES
 
 
-def _no_nodes() -> np.ndarray:
-    return np.zeros(0, dtype=np.int64)
-
-
 @attrs.frozen(eq=False)
 class Frame:
     """A rigid frame of a few degrees of freedom, and the nodes that move with it.

@@ -108,10 +108,6 @@ class ElasticSystem:
         m = self.assembly.frame_size
         return np.concatenate([self.assembly.frame_mass @ a[:m], self.assembly.free_mass * a[m:]])
 
-    def damping_times(self, v: np.ndarray) -> np.ndarray:
-        m = self.assembly.frame_size
-        return np.concatenate([self.assembly.frame_damping @ v[:m], np.zeros(self.size - m)])
-
     def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
         a = self.assembly
         m = a.frame_size

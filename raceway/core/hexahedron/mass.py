@@ -43,12 +43,3 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
             )
         out[part] = np.einsum("kp,pn->kn", determinant * weights, values)
     return out
-
-
-def element_masses(corners: Floats, density: float) -> Floats:
-    """(k, 8, 8) Consistent masses of one component [kg]; three Gauss points a direction are exact."""
-    at, weights = gauss(3)
-    values = shape_values(at)
-    determinant = determinants(jacobians(corners, shape_slopes(at)))
-    pairs = np.einsum("pn,pm->pnm", values, values).reshape(len(at), 64)
-    return np.asarray((density * determinant * weights) @ pairs).reshape(-1, 8, 8)

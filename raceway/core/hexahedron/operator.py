@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from raceway.core.hexahedron.mass import element_masses, nodal_volumes
+from raceway.core.hexahedron.mass import nodal_volumes
 from raceway.core.hexahedron.one_point import WORK, range_force, range_hourglass_energy
 from raceway.core.hexahedron.point_force import range_point_force
 from raceway.core.hexahedron.ranges import add_parts, add_parts_and_move, divide
@@ -172,15 +172,6 @@ class HexOperator:
         """(n,) Masses of the nodes [kg]: row sums of the consistent mass."""
         masses = np.bincount(self.cells.ravel(), weights=self.element_masses.ravel(), minlength=len(self.points))
         return masses.astype(np.float64, copy=False)
-
-    def consistent_mass(self) -> csr_matrix:
-        """(3 n, 3 n) Consistent mass [kg], scipy.sparse.csr_array."""
-        from scipy.sparse import eye_array, kron
-
-        one = assemble(
-            self.cells, len(self.points), 1, lambda part: element_masses(self.points[self.cells[part]], self.density)
-        )
-        return kron(one, eye_array(3), format="csr")
 
     def stress(self, u: ArrayLike) -> Floats:
         """(m, 6) Stresses at the elements' centres [Pa], xx yy zz xy yz zx; "one_point" has but these."""

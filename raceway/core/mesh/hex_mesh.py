@@ -139,16 +139,6 @@ class HexMesh:
                 total += np.linalg.norm(np.cross(along, across), axis=1) / 16.0
         return total
 
-    def facet_normals(self, name: str) -> np.ndarray:
-        """(k, 3) mean unit normals of the facets of a set, outward."""
-        a, b, c, d = np.moveaxis(self.points[self.facet_nodes(name)], 1, 0)
-        normal = np.cross(c - a, d - b)
-        return normal / np.linalg.norm(normal, axis=1, keepdims=True)
-
-    def locality(self) -> float:
-        """Mean distance of the largest and the smallest node number of a cell: how far apart in memory its points lie."""
-        return float((self.cells.max(axis=1) - self.cells.min(axis=1)).mean())
-
     def renumbered(self) -> HexMesh:
         """The same mesh with neighbours near each other in memory.
 

@@ -43,11 +43,3 @@ def graded(
     below = fine_low - growing(fine_low - low, size, coarse, growth)[:0:-1]
     above = fine_high + growing(high - fine_high, size, coarse, growth)[1:]
     return np.concatenate([below, zone, above])
-
-
-def halved(points: np.ndarray) -> np.ndarray:
-    """The same points with one in the middle of each two: a refinement by exactly 2."""
-    out = np.empty(2 * len(points) - 1)
-    out[::2] = points
-    out[1::2] = 0.5 * (points[1:] + points[:-1])
-    return out

@@ -57,30 +57,3 @@ def lines(time: np.ndarray, displacement: np.ndarray, wanted: dict[str, float]) 
         Line(name, frequency, 0.5 * abs(y + 1j * z), 0.5 * abs(y - 1j * z), abs(x))
         for (name, frequency), (x, y, z) in zip(kept.items(), found, strict=True)
     ]
-
-
-def sharpest(time: np.ndarray, signal: np.ndarray, near: float, width: float) -> float:
-    """The frequency [Hz] within ``near * (1 +- width)`` at which a sine takes most out of a signal (n,).
-
-    Notes
-    -----
-    Golden-section search around the best of a grid a quarter of a spectral line apart.
-    """
-    span = time[-1] - time[0]
-    straight = signal - np.polyval(np.polyfit(time, signal, 1), time)
-
-    def power(frequency: float) -> float:
-        return float(abs(phasors(time, straight[:, None], [frequency])[0, 0]))
-
-    low, high = near * (1.0 - width), near * (1.0 + width)
-    grid = np.linspace(low, high, max(int(4.0 * span * (high - low)) + 2, 9))
-    best = int(np.argmax([power(f) for f in grid]))
-    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    golden = 0.5 * (np.sqrt(5.0) - 1.0)
-    for _ in range(60):
-        a, b = high - golden * (high - low), low + golden * (high - low)
-        if power(a) > power(b):
-            high = b
-        else:
-            low = a
-    return 0.5 * (low + high)

@@ -163,11 +163,6 @@ class Contact(ABC):
             self.force += self.area[:, None] * traction
             self.stiffness += self.area[:, None, None] * tangent
 
-    def tangent_times(self, blocks: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """(3 nodes,) B^T D B u with blocks D (n, 3, 3)."""
-        moved = (self.move @ u).reshape(-1, 3)
-        return np.asarray(self.move.T @ np.einsum("iab,ib->ia", blocks, moved).reshape(-1))
-
     def tangent(self, blocks: np.ndarray) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse B^T D B, of the points whose block is not zero."""
         from scipy.sparse import bsr_array
