@@ -85,7 +85,7 @@ def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:
     """Read a store and go on with it: ``EQUAL``, ``TOLD``, or what went wrong.  A whole foreign store may be read as itself."""
     from click.testing import CliRunner
 
-    from raceway.cli import main as command
+    from raceway.cli.main import main as command
 
     try:
         with open_store(store) as there:
@@ -108,7 +108,7 @@ def tried(count: int = 150, seed: int = 17) -> dict[str, Counter[str]]:
     """Outcomes by harm, each as often as the others."""
     from click.testing import CliRunner
 
-    from raceway.cli import main as command
+    from raceway.cli.main import main as command
 
     chance = random.Random(seed)
     found = {name: Counter[str]() for name in HARMS}

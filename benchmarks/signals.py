@@ -142,7 +142,7 @@ def resumed(end: Ended, wanted: Any) -> bool:
     if end.command.startswith("sweep"):
         from click.testing import CliRunner
 
-        from raceway.cli import main as command
+        from raceway.cli.main import main as command
 
         done = CliRunner().invoke(command, [*_SWEEP, "--out", str(end.out), "--resume"])
         same = done.exit_code == 0 and kept(end.command, end.out) == wanted

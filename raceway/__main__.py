@@ -2,8 +2,7 @@
 
 import sys
 
-from raceway.commands.interrupt import Interrupts, end, farewell
-from raceway.commands.streams import prepare
+from raceway.cli.interrupt import Interrupts, end, farewell, prepare
 
 
 def main() -> None:
@@ -12,7 +11,7 @@ def main() -> None:
     prepare()
     code = 1
     try:
-        from raceway.cli import main as commands
+        from raceway.cli.main import main as commands
 
         commands()
     except SystemExit as ended:

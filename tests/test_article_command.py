@@ -101,7 +101,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
 @pytest.fixture
 def made_page(monkeypatch):
     """The page of invented numbers; its figures are drawn by ``test_figures``."""
-    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.out.page.svg", lambda figure: b"<svg/>")
     monkeypatch.setattr(Picture, "figure", lambda self: None)
 
     def make(k, bodies=("rigid", "condensed"), **options) -> str:

@@ -198,7 +198,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
 
 
 def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
-    monkeypatch.setattr("raceway.studies.many.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.out.page.svg", lambda figure: b"<svg/>")
     content = elastic_study().to_dict()
     text = page(content, drawings(content), None, "raceway study article --bodies elastic").html()
     images = re.findall(r'<img alt="([^"]+)"', text)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
-from raceway.cli import main
+from raceway.cli.main import main
 from raceway.pipeline.run import PATIENCE, Allowance
 from raceway.testing import run
 from tests.test_elastic_scene import QUICK

@@ -20,9 +20,9 @@ import pytest
 from rich.console import Console
 
 import raceway as rw
-from raceway.cli import main
-from raceway.commands import frame
-from raceway.commands.progress import ProgressBar
+from raceway.cli import frame
+from raceway.cli.main import main
+from raceway.out.progress import ProgressBar
 from validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
 
 HERE = click.Context(main)
@@ -461,8 +461,8 @@ def test_a_slip_on_the_command_line(case, seen, folder, tmp_path, monkeypatch):
 
 #: Packages that an installation may lack: what asks for them, and the extra that has them.
 MISSING = {
-    "run": ("raceway.commands.inputs.find_spec", "matplotlib", "pictures"),
-    "plot": ("raceway.commands.inputs.find_spec", "matplotlib", "pictures"),
+    "run": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
+    "plot": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
     "mesh": ("raceway.studies.view.mesh_command.find_spec", "meshio", "mesh"),
     "mesh --picture": (None, "pyvista", "view"),  # files come first
     "view": ("raceway.studies.view.front.find_spec", "pyvista", "view"),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from raceway import run
-from raceway.commands.screen.text import number_within
+from raceway.out.table import number_within
 from raceway.pipeline import error as error_estimate
 from raceway.pipeline.error import more_equilibria
 from raceway.pipeline.transient_error import _at_speed, settles_elsewhere

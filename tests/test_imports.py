@@ -19,7 +19,7 @@ sys.stderr.write("\\n" + json.dumps(sorted({{name.partition(".")[0] for name in 
 """
 PICTURES = {"meshio", "gmsh", "pyvista", "matplotlib"}
 HEAVY = PICTURES | {"numba", "scipy"}
-MAIN = "from raceway.cli import main; main({!r})"
+MAIN = "from raceway.cli.main import main; main({!r})"
 #: Code, and what it loads not.
 CASES = {
     "import": ("import raceway as rw; dir(rw)", HEAVY | {"numpy", "pandas", "xarray", "pluggy", "attrs", "click", "rich"}),

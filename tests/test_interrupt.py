@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from raceway.commands.interrupt import Interrupts, farewell
+from raceway.cli.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.joblib import Joblib
@@ -313,7 +313,7 @@ class Interrupted:
     def __getattr__(self, attribute):
         if attribute == "main":
             signal.raise_signal(signal.{name})
-sys.modules["raceway.cli"] = Interrupted()
+sys.modules["raceway.cli.main"] = Interrupted()
 from raceway.__main__ import main
 main()
 """

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.commands.screen.result_answer import model_rows
+from raceway.cli.run_screen import model_rows
 from raceway.framework.estimate import Estimate
 from raceway.studies.sweep.variables import values_of
 from validation.command_line import EXAMPLES

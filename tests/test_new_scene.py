@@ -8,7 +8,7 @@ import re
 import pytest
 
 import raceway as rw
-from raceway.commands.new_scene import scene_text
+from raceway.cli.new_scene import scene_text
 from raceway.framework.registry import default_registry
 from raceway.scene.catalogue import single_presets
 from validation.command_line import invoke

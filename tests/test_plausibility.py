@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
-from raceway.commands.screen.result import run_screen
+from raceway.cli.run_screen import run_screen
 from raceway.framework.options import nearest
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts

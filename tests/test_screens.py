@@ -12,15 +12,14 @@ from rich.console import Console
 
 import raceway as rw
 from raceway.bodies.equilibrium import tilts_follow
-from raceway.commands.screen import Words, rows_table
-from raceway.commands.screen.result_parts import cost_rows, equilibrium_rows
+from raceway.cli.run_parts import cost_rows, equilibrium_rows
 from raceway.framework.estimate import Estimate, short
+from raceway.out.table import rows_table
+from raceway.out.wrapping import Words
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
-#: Modules that count digits, signs and columns, and know nothing of results.
-LAYOUT = ("text.py", "wrapping.py", "rows.py")
-SCREENS = [path for path in (*PACKAGE.glob("commands/screen/*.py"), *PACKAGE.rglob("*screen.py")) if path.name not in LAYOUT]
+SCREENS = [*PACKAGE.glob("cli/run_parts.py"), *PACKAGE.rglob("*screen.py")]
 #: What ``raceway verify`` sorts its rows by, and does not show.
 SORTED_BY = {"verify": ["row['error'] / row['tolerance']"]}
 
@@ -222,7 +221,7 @@ def test_a_precision_study_says_how_well_its_reference_is_known():
 NAMES_IN_ASCII = {"verify/bearings.py", "stability/extremes.py", "measured/command.py", "measured/heads.py"}
 
 
-@pytest.mark.parametrize("folder", ["commands", "studies", "plugins"])
+@pytest.mark.parametrize("folder", ["cli", "studies", "plugins"])
 def test_micrometres_are_written_one_way(folder):
     written = {}
     for path in (PACKAGE / folder).rglob("*.py"):

@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, run
-from raceway.commands.screen.result import run_screen
+from raceway.cli.run_screen import run_screen
 from raceway.core.periodic import beginning, direct
 from raceway.core.ring.orbit import differentiation
 from validation.several import article, by_integration, heavy

@@ -7,10 +7,10 @@ import json
 import pytest
 
 from raceway import load_scene, scene_from_dict
-from raceway.commands.inputs import slug
+from raceway.cli.frame import slug
+from raceway.out.page import Page
 from raceway.plugins.pictures import ball_loads
 from raceway.scene.changes import parse_change, titled
-from raceway.studies.many.page import Page
 from raceway.studies.many.row_store import row_key
 from raceway.studies.sweep.selection import select
 from raceway.studies.sweep.store_command import head

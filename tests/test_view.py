@@ -160,7 +160,7 @@ def test_rings_without_dimensions_are_drawn_and_told(result):
 
 
 DRAWING = """
-from raceway.cli import main
+from raceway.cli.main import main
 for words in {commands!r}:
     try:
         main(words)

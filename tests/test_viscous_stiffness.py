@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.commands.screen.damping import RULE_OF_THUMB_S, dry_damping_note, dry_damping_words
+from raceway.cli.run_screen import RULE_OF_THUMB_S, dry_damping_note, dry_damping_words
 from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
 from raceway.testing import settled
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from click.testing import CliRunner, Result
 
-from raceway.cli import main
+from raceway.cli.main import main
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")

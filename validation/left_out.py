@@ -325,7 +325,7 @@ def stresses() -> Rule:
 _PROBE = """
 import contextlib, io, json, pathlib, resource, sys, tempfile, time
 from raceway.core.schemes.drivers import integrate
-from raceway.cli import main
+from raceway.cli.main import main
 from raceway.framework.registry import default_registry
 registry = default_registry()
 begun = time.process_time()

@@ -49,7 +49,7 @@ from raceway.planning.machine import timed
 slowness = [timed(60)]
 before = time.process_time()
 from raceway import load_scene
-from raceway.cli import main
+from raceway.cli.main import main
 with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
     with contextlib.suppress(SystemExit):
         main(["run", sys.argv[1], "--out", folder, *(word for change in sys.argv[2:] for word in ("--set", change))])

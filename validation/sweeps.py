@@ -164,7 +164,7 @@ def full_disk(limits: tuple[int, ...] = (20_000, 40_000, 80_000, 120_000), count
             code = (
                 "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
                 f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}));"
-                "from raceway.cli import main; main(sys.argv[1:])"
+                "from raceway.cli.main import main; main(sys.argv[1:])"
             )
             done = subprocess.run(
                 [sys.executable, "-c", code, *words(count, store)], capture_output=True, text=True, check=False
@@ -222,7 +222,7 @@ def _finish(given: list[str]) -> None:
     """A command in this process, to its end."""
     from click.testing import CliRunner
 
-    from raceway.cli import main as command
+    from raceway.cli.main import main as command
 
     done = CliRunner().invoke(command, given)
     if done.exit_code:

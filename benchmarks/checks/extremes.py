@@ -12,7 +12,7 @@ from rich.console import Console
 
 from benchmarks.checks import Row, below, near
 from benchmarks.checks._scenes import Chance, Tables
-from raceway.commands.screen.result import run_screen
+from raceway.cli.run_screen import run_screen
 from raceway.errors import RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run

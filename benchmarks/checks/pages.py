@@ -9,7 +9,7 @@ from pathlib import Path
 from click.testing import CliRunner
 
 from benchmarks.checks import Row, below
-from raceway.cli import main
+from raceway.cli.main import main
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES as CHEAP
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import click
 from click.testing import CliRunner
 
-from raceway.cli import main
+from raceway.cli.main import main
 
 _HEAD = """# Command line
 

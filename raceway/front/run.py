@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from raceway.commands.progress import telling
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
+from raceway.out.progress import telling
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import PATIENCE
 from raceway.pipeline.run import run as compute
@@ -16,7 +16,7 @@ from raceway.scene.given import as_scene
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
-    from raceway.commands.progress import ShowProgress
+    from raceway.out.progress import ShowProgress
 
 
 @door

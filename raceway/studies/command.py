@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.console import Commands
+from raceway.cli.console import Commands
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.framework.sources import foreign_words

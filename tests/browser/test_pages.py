@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import raceway as rw
+from raceway.out.page import Page
 from raceway.plugins.pictures import new_figure
-from raceway.studies.many.page import Page
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES
 from validation.command_line import MINIMAL

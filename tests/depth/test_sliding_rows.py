@@ -8,7 +8,7 @@ import pytest
 
 import raceway as rw
 from raceway import ConvergenceError
-from raceway.commands.screen.result_parts import _mounted
+from raceway.cli.run_parts import _mounted
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.studies.ross.node_bearing import node_bearing
 from raceway.testing import b7206c

@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
-from raceway.commands.screen.result import run_screen
+from raceway.cli.run_screen import run_screen
 from raceway.core.ring.friction import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.start import at_rest

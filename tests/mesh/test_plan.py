@@ -11,7 +11,7 @@ import pytest
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
 from raceway.bodies.mesh_plan import predicted_mesh
 from raceway.bodies.meshing import mesh_scene
-from raceway.commands.screen import plan_screen
+from raceway.cli.plan_screen import plan_screen
 from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.structured_mesh import Structured

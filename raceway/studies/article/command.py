@@ -1,4 +1,4 @@
-"""``raceway study article``.  Part of ``raceway.cli``."""
+"""``raceway study article``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 from click.core import ParameterSource
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
+    changed_tables,
     common,
+    has_matplotlib,
     keeping,
     out_option,
     plugin_files,
@@ -22,8 +24,9 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
 from raceway.errors import ConvergenceError, Mistake, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Words, rows_table, written
+from raceway.out.page import Cell, Page
+from raceway.out.table import rows_table, written
+from raceway.out.wrapping import Words
 from raceway.pipeline.result import write_json
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.elastic import RACES
 from raceway.studies.article.figures import Panel, Picture, finish
 from raceway.studies.article.page import save_pictures, write_csv
-from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,7 +15,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from raceway.commands.screen import Words, written
+from raceway.out.page import Cell, Page
+from raceway.out.table import written
+from raceway.out.wrapping import Words
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.pictures import save_figure
 from raceway.storage.files import write_whole
@@ -24,7 +26,6 @@ from raceway.studies.article import runs
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, FRICTIONS, TILT_WORDS, TILTS
 from raceway.studies.article.figures import Picture, drawings, named
 from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Verdict
-from raceway.studies.many.page import Cell, Page
 
 if TYPE_CHECKING:
     from raceway.studies.article.study import Article

@@ -1,4 +1,4 @@
-"""``raceway band``, with its table.  Part of ``raceway.cli``."""
+"""``raceway band``, with its table.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
     common,
+    has_matplotlib,
     keeping,
+    load,
     on_scene,
     out_folder,
     plugin_files,
@@ -19,8 +21,9 @@ from raceway.commands.frame import (
     record,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables
@@ -95,8 +98,8 @@ def _screen(content: ReadTables, files: list[str]) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    from raceway.commands.screen import rows_table
     from raceway.framework.shown import read_in
+    from raceway.out.table import rows_table
 
     keys = [one["key"] for one in content["tolerances"]]
     rows = []

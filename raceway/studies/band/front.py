@@ -6,16 +6,16 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from raceway.commands.progress import telling
 from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
+from raceway.out.progress import telling
 from raceway.scene.given import as_scene, leaves
 from raceway.scene.tolerance import tolerances_of
 from raceway.studies.band.study import Band, band_of
 
 if TYPE_CHECKING:
-    from raceway.commands.progress import ShowProgress
+    from raceway.out.progress import ShowProgress
 
 
 @door

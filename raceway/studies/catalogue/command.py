@@ -1,4 +1,4 @@
-"""``raceway catalogue``.  Part of ``raceway.cli``."""
+"""``raceway catalogue``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.frame import PATH, attempt, common, show
+from raceway.cli.frame import PATH, attempt, common, show
 from raceway.storage.tables import Tables
 
 
@@ -45,7 +45,7 @@ def catalogue(pattern: str, picture: Path | None, materials: bool, as_json: bool
     files: list[str] = []
     failed = None
     if picture is not None:
-        from raceway.commands.inputs import require_matplotlib
+        from raceway.cli.frame import require_matplotlib
         from raceway.studies.catalogue.drawing import draw_section
 
         require_matplotlib("leave out --picture")

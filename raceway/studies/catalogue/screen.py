@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Words, rows_table, written
-from raceway.commands.screen.text import Row, number, sections
+from raceway.out.table import Row, number, rows_table, sections, written
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 _NAMES = {

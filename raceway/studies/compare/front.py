@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.progress import ShowProgress, telling
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
+from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import write_json
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable

@@ -1,4 +1,4 @@
-"""``raceway fit``.  Part of ``raceway.cli``."""
+"""``raceway fit``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,19 +7,23 @@ from typing import NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     PATH,
     RESULTS,
     attempt,
+    columns_by_head,
     common,
+    has_matplotlib,
+    load,
     out_option,
     plugin_files,
     record,
     set_keys,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import columns_by_head, has_matplotlib, load, slug, tell_faults
 from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

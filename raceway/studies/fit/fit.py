@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number, number_within, read_in
+from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.scene.given import as_scene
 from raceway.storage.tables import ReadTables, Tables
@@ -319,7 +319,8 @@ def fit_screen(content: ReadTables, files: list[str]) -> RenderableType:
     """Free numbers with their intervals, what follows from them; below, how well the model meets the data, and warnings."""
     from rich.console import Group
 
-    from raceway.commands.screen import Words, rows_table, written
+    from raceway.out.table import rows_table, written
+    from raceway.out.wrapping import Words
 
     rows = []
     for free in content["free"]:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number
+from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
 from raceway.plugins.pictures import given_axes
@@ -417,7 +417,8 @@ def identify_screen(content: ReadTables, files: Sequence[str]) -> RenderableType
     """Signals, 1x component, bearing, K and C."""
     from rich.console import Group
 
-    from raceway.commands.screen import Words, sections, written
+    from raceway.out.table import sections, written
+    from raceway.out.wrapping import Words
 
     signals, line, run_out, bearing = content["signals"], content["line"], content["run_out"], content["bearing"]
     answer, speed = content["identification"], signals["speed_rpm"]

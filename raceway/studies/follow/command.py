@@ -1,4 +1,4 @@
-"""``raceway follow``.  Part of ``raceway.cli``."""
+"""``raceway follow``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,18 +7,21 @@ from typing import NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
+    changed_tables,
     common,
+    has_matplotlib,
     on_scene,
     out_option,
     plugin_files,
     record,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
 from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
+from raceway.out.progress import ShowProgress, telling
 from raceway.scene.changes import parse_value, with_value
 from raceway.scene.continuous import key_of
 from raceway.scene.given import Change, plain_tables

@@ -1,4 +1,4 @@
-"""``raceway infer``.  Part of ``raceway.cli``."""
+"""``raceway infer``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import click
 
-from raceway.commands.frame import common, record, show, show_progress
+from raceway.cli.frame import common, record, show, show_progress
 from raceway.errors import SceneError
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Words, rows_table
-from raceway.commands.screen.text import Row, number, sections
+from raceway.out.table import Row, number, rows_table, sections
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 

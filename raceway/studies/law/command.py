@@ -1,4 +1,4 @@
-"""``raceway law``.  Part of ``raceway.cli``."""
+"""``raceway law``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.frame import PATH, attempt, common, plugin_files, record, set_keys, show, show_progress
+from raceway.cli.frame import PATH, attempt, common, plugin_files, record, set_keys, show, show_progress
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables
 
@@ -58,7 +58,7 @@ def law(given: LawOptions) -> int:
       raceway law film --set contact.viscosity=0.03 \\
           --set kinematics.spin_speed_rpm=10000
     """
-    from raceway.commands.inputs import require_matplotlib, tell_faults
+    from raceway.cli.frame import require_matplotlib, tell_faults
     from raceway.framework.registry import registry_with
 
     place = given.picture
@@ -86,7 +86,8 @@ def _screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     """The contact, the law beside Hertz', the cycle."""
     from rich.console import Group
 
-    from raceway.commands.screen import Words, rows_table, sections, written
+    from raceway.out.table import rows_table, sections, written
+    from raceway.out.wrapping import Words
 
     head = (
         f"{content['law']}: {content['race']} contact of ball {content['ball']}, {content['load']:.4g} N at an approach of "

@@ -1,4 +1,4 @@
-"""``raceway study limits``.  Part of ``raceway.cli``."""
+"""``raceway study limits``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from raceway.commands.frame import common, on_scene, plugin_files, show, show_progress
-from raceway.commands.inputs import load, tell_faults
+from raceway.cli.frame import common, load, on_scene, plugin_files, show, show_progress, tell_faults
 from raceway.framework.registry import registry_with
 from raceway.storage.tables import ReadTables
 
@@ -44,7 +43,7 @@ def study_limits(scene: Path, changes: tuple[str, ...], pressure: float, plugins
 
 def _screen(content: ReadTables) -> RenderableType:
     """A line for each direction."""
-    from raceway.commands.screen import rows_table
+    from raceway.out.table import rows_table
 
     rows = []
     for one in content["limits"]:

@@ -1,4 +1,4 @@
-"""``raceway precision``.  Part of ``raceway.cli``."""
+"""``raceway precision``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
+    changed_tables,
     common,
+    has_matplotlib,
     keeping,
     out_option,
     plugin_files,
@@ -19,8 +21,9 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import changed_tables, has_matplotlib, slug, tell_faults
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

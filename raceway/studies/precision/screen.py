@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Words, rows_table, written
+from raceway.out.table import rows_table, written
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 

@@ -1,4 +1,4 @@
-"""``raceway study rig`` and ``raceway identify``.  Part of ``raceway.cli``."""
+"""``raceway study rig`` and ``raceway identify``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -6,18 +6,21 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
     common,
+    has_matplotlib,
     keeping,
+    load,
     on_scene,
     out_folder,
     plugin_files,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 

@@ -11,11 +11,12 @@ import numpy as np
 from rich.console import Group, RenderableType
 
 from raceway import __version__
-from raceway.commands.screen import Words, rows_table, written
+from raceway.out.page import Page
+from raceway.out.table import rows_table, written
+from raceway.out.wrapping import Words
 from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.picture import figures
-from raceway.studies.many.page import Page
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

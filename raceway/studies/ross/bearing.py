@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from raceway.commands.inputs import slug
+from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.studies.ross.installed import generation, ross
 from raceway.studies.ross.node_bearing import NodeBearing, node_bearing

@@ -17,7 +17,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.commands.screen.damping import dry_damping_words
+from raceway.cli.run_screen import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.doors import member
 from raceway.scene.tables import TIME_CONSTANTS

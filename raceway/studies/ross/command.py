@@ -1,4 +1,4 @@
-"""``raceway export``.  Part of ``raceway.cli``."""
+"""``raceway export``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.console import warn
-from raceway.commands.frame import PATH, attempt, common, record, show
+from raceway.cli.console import warn
+from raceway.cli.frame import PATH, attempt, common, record, show
 from raceway.errors import SceneError
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables

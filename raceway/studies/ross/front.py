@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from raceway.commands.inputs import slug
+from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from raceway.commands.inputs import slug
+from raceway.cli.frame import slug
 from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.studies.ross.coefficients import coefficients

@@ -1,4 +1,4 @@
-"""``raceway sensitivities``.  Part of ``raceway.cli``."""
+"""``raceway sensitivities``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -6,8 +6,20 @@ from pathlib import Path
 
 import click
 
-from raceway.commands.frame import RESULTS, attempt, common, on_scene, out_folder, plugin_files, show, show_progress
-from raceway.commands.inputs import has_matplotlib, load, slug, tell_faults
+from raceway.cli.frame import (
+    RESULTS,
+    attempt,
+    common,
+    has_matplotlib,
+    load,
+    on_scene,
+    out_folder,
+    plugin_files,
+    show,
+    show_progress,
+    slug,
+    tell_faults,
+)
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.bodies.model import build_model
-from raceway.commands.progress import telling
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
+from raceway.out.progress import telling
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import continuous_keys, key_of
@@ -18,7 +18,7 @@ from raceway.scene.given import as_scene
 from raceway.studies.sensitivities.sensitivities import Sensitivities, sensitivities_of
 
 if TYPE_CHECKING:
-    from raceway.commands.progress import ShowProgress
+    from raceway.out.progress import ShowProgress
 
 
 @door

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.commands.screen import rows_table
 from raceway.framework.shown import read_in
+from raceway.out.table import rows_table
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""``raceway stability``.  Part of ``raceway.cli``."""
+"""``raceway stability``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
+    changed_tables,
     common,
     keeping,
     out_option,
@@ -20,8 +21,9 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import changed_tables, slug, tell_faults
 from raceway.errors import SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

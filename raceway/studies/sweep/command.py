@@ -1,4 +1,4 @@
-"""The command ``raceway sweep``.  Part of ``raceway.cli``."""
+"""The command ``raceway sweep``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.console import warn
-from raceway.commands.frame import (
+from raceway.cli.console import warn
+from raceway.cli.frame import (
     RESULTS,
     attempt,
+    changed_tables,
     common,
+    has_netcdf,
     out_option,
     plugin_files,
     record,
@@ -20,8 +22,9 @@ from raceway.commands.frame import (
     set_keys,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import changed_tables, has_netcdf, slug, tell_faults
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.commands.progress import telling
 from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
+from raceway.out.progress import telling
 from raceway.scene.given import plain_tables
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
@@ -27,8 +27,8 @@ from raceway.studies.sweep.store import Store
 if TYPE_CHECKING:
     import xarray
 
-    from raceway.commands.progress import ShowProgress
     from raceway.framework.contracts import Executor
+    from raceway.out.progress import ShowProgress
 
 SPEED = "excitation.speed_rpm"
 _FROM_ZERO = (

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Words, micro, rows_table, written
+from raceway.out.table import micro, rows_table, written
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Commands that read the results of a sweep: ``raceway plot``, ``raceway export``.  Part of ``raceway.cli``."""
+"""Commands that read the results of a sweep: ``raceway plot``, ``raceway export``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.frame import PATH, attempt, common, record, show
-from raceway.commands.inputs import require_matplotlib, slug
+from raceway.cli.frame import PATH, attempt, common, record, require_matplotlib, show, slug
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 
@@ -116,7 +115,8 @@ def plot_words(content: Tables) -> list[str]:
 def told(lines: list[str], *tables: RenderableType) -> RenderableType:
     from rich.console import Group
 
-    from raceway.commands.screen import Words, written
+    from raceway.out.table import written
+    from raceway.out.wrapping import Words
 
     names = [line.removeprefix(WRITTEN) for line in lines if line.startswith(WRITTEN)]
     return Group(*tables, *(Words(line) for line in lines if not line.startswith(WRITTEN)), *written(names))

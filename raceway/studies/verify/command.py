@@ -1,10 +1,10 @@
-"""``raceway verify``.  Part of ``raceway.cli``."""
+"""``raceway verify``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     common,
     show,
     show_progress,

@@ -10,7 +10,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from raceway.commands.screen import micro, number
+from raceway.out.table import micro, number
 from raceway.storage.tables import ReadTables
 from raceway.studies.many.reference import BASES
 

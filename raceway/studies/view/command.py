@@ -1,4 +1,4 @@
-"""The command that draws a bearing.  Part of ``raceway.cli``."""
+"""The command that draws a bearing.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     common,
+    load,
     on_scene,
     out_folder,
     plugin_files,
     record,
     show,
     show_progress,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import load, slug, tell_faults
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import largest_facts
 from raceway.storage.files import writable
@@ -70,7 +72,7 @@ def _screen(content: Tables) -> RenderableType:
     from rich.console import Group
     from rich.text import Text
 
-    from raceway.commands.screen.text import sections, written
+    from raceway.out.table import sections, written
 
     rows = [(f"Pictures {content['shown']}", "", ""), *largest_facts(content, content["shown"])]
     if content["assumed"]:

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from raceway.bodies.meshing import mesh_scene
-from raceway.commands.progress import ShowProgress, telling
 from raceway.errors import RacewayError, extra
 from raceway.framework.doors import door
 from raceway.framework.duties import traits_of
 from raceway.framework.registry import registry_with
+from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.plugins.system_libraries import refuse_pictures

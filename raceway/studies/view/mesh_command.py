@@ -1,4 +1,4 @@
-"""The command about meshes.  Part of ``raceway.cli``."""
+"""The command about meshes.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -10,20 +10,22 @@ from typing import TYPE_CHECKING
 import attrs
 import click
 
-from raceway.commands.frame import (
+from raceway.cli.frame import (
     RESULTS,
     attempt,
     common,
+    load,
     on_scene,
     out_folder,
     plugin_files,
     show,
+    slug,
+    tell_faults,
 )
-from raceway.commands.inputs import load, slug, tell_faults
-from raceway.commands.progress import ProgressBar
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
+from raceway.out.progress import ProgressBar
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables

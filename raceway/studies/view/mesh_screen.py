@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from rich.console import Group, RenderableType
 
-from raceway.commands.screen import Row, Words, grouped, number, sections, written
+from raceway.out.table import Row, grouped, number, sections, written
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 

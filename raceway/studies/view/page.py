@@ -15,8 +15,8 @@ from string import Template
 
 import numpy as np
 
+from raceway.out.page import Page, data_uri
 from raceway.storage.tables import Tables
-from raceway.studies.many.page import Page, data_uri
 from raceway.studies.view.bearing import Bearing, Part, State
 from raceway.studies.view.scene import LOADS, PRESSURES
 from raceway.studies.view.surfaces import Surface, ball, joined

@@ -1,14 +1,11 @@
-"""Ctrl-C and a request to end (SIGTERM, SIGHUP) that are not lost where Python drops exceptions.  Part of ``raceway.cli``.
-
-The compiler of the kernels calls back into Python, and an exception that is raised in such a callback or in a finalizer is
-printed and forgotten.  A signal that arrives there is delivered again a moment later, and one whose exception nobody handles
-any more and nobody has answered, which a library swallowed, is delivered again until it is.
-"""
+"""Standard streams as they come: closed ones, and consoles that know ASCII only.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
 import _thread
 import atexit
+import codecs
+import io
 import os
 import signal
 import sys
@@ -18,6 +15,38 @@ from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
 from typing import NoReturn, Self
+
+#: What stands for the characters of units and names where a console has none of them.
+_PLAIN = {
+    "\u00b5": "u",
+    "\u03bc": "u",
+    "\u00b2": "^2",
+    "\u00b3": "^3",
+    "\u00b0": " deg",
+    "\u00b7": " ",
+    "\u2013": "-",
+    "\u2026": "...",
+}
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(_PLAIN.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
+
+
+def prepare() -> None:
+    """Let every character be written somehow, and what is closed lead nowhere; a terminal without columns has those of any."""
+    if os.environ.get("COLUMNS", "").isdigit() and int(os.environ["COLUMNS"]) == 0:
+        del os.environ["COLUMNS"]
+    codecs.register_error("raceway", _plain)
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  as long as the process lives
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="raceway")
+
 
 #: Time after which a signal is delivered again [s]: longer than a callback, short for a person.
 _AGAIN_S = 0.05

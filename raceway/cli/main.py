@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import click
 
 from raceway import __version__
-from raceway.commands.console import Commands, print_json, warn
-from raceway.commands.frame import (
+from raceway.cli.console import Commands, print_json, warn
+from raceway.cli.frame import (
     RESULTS,
     attempt,
     common,
@@ -55,12 +55,12 @@ _LATER = {
     "identify": ("raceway.studies.fit.command", "K and C of a bearing from measured signals."),
     "view": ("raceway.studies.view.command", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
     "mesh": ("raceway.studies.view.mesh_command", "Mesh the bodies of a scene: counts, quality, files."),
-    "new-scene": ("raceway.commands.new_scene", "Write a scene to start from."),
-    "plugins": ("raceway.commands.plugins", "List what is installed, with options."),
-    "check-plugin": ("raceway.commands.plugins", "Does a plug-in keep its contract?"),
-    "new-plugin": ("raceway.commands.plugins", "Write a package for a new plug-in."),
-    "schema": ("raceway.commands.plugins", "JSON schema of a scene."),
-    "cache": ("raceway.commands.cache", "See or clear what is kept between runs."),
+    "new-scene": ("raceway.cli.new_scene", "Write a scene to start from."),
+    "plugins": ("raceway.cli.plugins", "List what is installed, with options."),
+    "check-plugin": ("raceway.cli.plugins", "Does a plug-in keep its contract?"),
+    "new-plugin": ("raceway.cli.plugins", "Write a package for a new plug-in."),
+    "schema": ("raceway.cli.plugins", "JSON schema of a scene."),
+    "cache": ("raceway.cli.cache", "See or clear what is kept between runs."),
 }
 
 
@@ -141,8 +141,8 @@ def run(given: RunOptions) -> int:
       raceway run examples/b7206.toml --pictures \\
           --set excitation.speed_rpm=15000 --set supports.tilt=free
     """
-    from raceway.commands.inputs import load, require_matplotlib, slug, tell_faults
-    from raceway.commands.reports import chosen_reports, write_reports
+    from raceway.cli.frame import load, require_matplotlib, slug, tell_faults
+    from raceway.cli.run import chosen_reports, write_reports
     from raceway.framework.registry import registry_with
     from raceway.storage.files import writable
 
@@ -165,11 +165,11 @@ def run(given: RunOptions) -> int:
     files: list[str] = []
     failed = attempt(lambda: [result.save(folder)], files)
     if failed is None:
-        from raceway.commands.failure import forget_failure
+        from raceway.cli.run import forget_failure
 
         forget_failure(folder)
         failed = write_reports(chosen, result, folder, files)
-    from raceway.commands.screen.result import run_screen
+    from raceway.cli.run_screen import run_screen
 
     show(content, given.as_json, failed, lambda: run_screen(content, files))
     return 0
@@ -191,7 +191,7 @@ def plan(
     Example:
       raceway plan examples/b7206.toml --set supports.tilt=free
     """
-    from raceway.commands.inputs import load, tell_faults
+    from raceway.cli.frame import load, tell_faults
     from raceway.framework.registry import registry_with
     from raceway.front.plan import plan as planned
 
@@ -199,7 +199,7 @@ def plan(
     loaded = load(scene, changes, registry)
     content = planned(loaded).to_dict()
     tell_faults(registry)
-    from raceway.commands.screen.plan import plan_screen
+    from raceway.cli.plan_screen import plan_screen
 
     show({"title": loaded.title, **content}, as_json, None, lambda: plan_screen(loaded.title, content))
     return 0
@@ -221,7 +221,7 @@ def check(
     Example:
       raceway check examples/b7206.toml --json
     """
-    from raceway.commands.inputs import load, tell_faults
+    from raceway.cli.frame import load, tell_faults
     from raceway.framework.registry import registry_with
     from raceway.front.check import check as checked
 
@@ -241,7 +241,7 @@ def check(
 
 def _keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
     """Write the last good state of a run that failed, and say so in the error."""
-    from raceway.commands.failure import save_failure
+    from raceway.cli.run import save_failure
 
     try:
         paths = save_failure(error, scene, folder)

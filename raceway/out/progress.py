@@ -1,4 +1,4 @@
-"""A progress bar on standard error, on a terminal, for what takes longer than a second.  Part of ``raceway.cli``.
+"""A progress bar on standard error, on a terminal, for what takes longer than a second.  Part of ``raceway.cli.main``.
 
 Each new thing that is told of goes to the logger ``raceway``, too, which ``-v`` shows.
 """

@@ -1,4 +1,4 @@
-"""``raceway new-scene``: a scene with comments to start from.  Part of ``raceway.cli``."""
+"""``raceway new-scene``: a scene with comments to start from.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import attrs
 import click
 
-from raceway.commands.frame import PATH, common, show
+from raceway.cli.frame import PATH, common, show
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.storage.files import write_whole

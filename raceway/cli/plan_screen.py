@@ -8,8 +8,8 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 
-from raceway.commands.screen.text import Row, grouped, number, sections
-from raceway.commands.screen.wrapping import Words
+from raceway.out.table import Row, grouped, number, sections
+from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables
 
 

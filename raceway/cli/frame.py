@@ -1,22 +1,136 @@
-"""Inputs of commands: scenes, result folders, plug-ins.  Part of ``raceway.cli``."""
+"""Options, progress, writing and showing of results, shared by all commands.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
 import hashlib
 import re
 import unicodedata
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from raceway.commands.console import warn
+import click
+
+from raceway.cli.console import described, print_json, warn
+from raceway.cli.verbose import listen
 from raceway.errors import Mistake, RacewayError, SceneError, extra
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
+    from raceway.out.progress import ProgressBar
     from raceway.scene.given import Given
     from raceway.scene.scene import Scene
+
+
+R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., object])
+
+#: Where results go unless --out says otherwise.
+RESULTS = Path("raceway-out")
+#: A file or folder that need not be there yet: what reads it says what is wrong with it.
+PATH = click.Path(path_type=Path, readable=False)
+
+scene_file = click.argument("scene", type=PATH)
+#: For studies that have a scene of their own.
+scene_if_any = click.argument("scene", type=PATH, required=False)
+set_keys = click.option(
+    "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
+)
+processes_at_a_time = click.option(
+    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
+)
+
+
+def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Callable[[F], F]:
+    """--out; ``default`` is only shown, the command chooses it."""
+    return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
+
+
+out_folder = out_option(f"{RESULTS}/TITLE", "Folder of the results")
+
+plugin_files = click.option(
+    "--plugin", "plugins", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py",
+    help="A one-off plug-in file, not installed; repeat for more.",
+)  # fmt: skip
+
+
+def on_scene(command: F) -> F:
+    """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
+    return scene_file(set_keys(command))
+
+
+def common(command: F) -> F:
+    """--json, -v and --debug, which every command takes; ``console`` reads --json and --debug from the command line, too."""
+    command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
+    command = click.option(
+        "-v", "--verbose", is_flag=True, expose_value=False, callback=listen, help="Say on standard error what is computed."
+    )(command)
+    return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
+
+
+def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
+    """The innermost decorator of a command with many options: they come as one record, a named tuple with their names."""
+
+    def decorate(command: Callable[[R], int]) -> Callable[..., int]:
+        @wraps(command)
+        def filled(**given: object) -> int:
+            return command(kind(**given))
+
+        return filled
+
+    return decorate
+
+
+def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
+    """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
+    from raceway.out.progress import ProgressBar
+    from raceway.storage.cache_folder import current_folder
+
+    folder = current_folder()
+    warm = folder.is_dir() and any(folder.iterdir())
+    start = waiting or ("starting" if warm else "compiling kernels (first run only)")
+    return ProgressBar(start, remaining=remaining)
+
+
+def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:
+    """Write files; hand a failure back, so that what was computed is shown before it is reported."""
+    from raceway.out.progress import ProgressBar
+
+    try:
+        with ProgressBar("writing"):
+            files += [str(path) for path in write()]
+    except RacewayError as error:
+        return error
+    return None
+
+
+def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Callable[[], object]) -> None:
+    """JSON or tables on standard output; then the failure of writing them, if there was one."""
+    if as_json:
+        print_json(content if failed is None else {**content, "errors": described(failed)[1]})
+        if failed is not None:
+            raise click.exceptions.Exit(failed.exit_code)
+        return
+    from rich.console import Console
+
+    Console(highlight=False).print(screen(), crop=False)
+    if failed is not None:
+        raise failed
+
+
+@contextmanager
+def keeping(what: str, file: Path) -> Iterator[None]:
+    """Say where a study goes on that is stopped meanwhile, if anything was finished."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if file.is_file():
+            warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
+        raise
 
 
 def slug(title: str) -> str:

@@ -1,13 +1,15 @@
-"""Tables of ``raceway cache``."""
+"""The command about what is kept between runs.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
 from collections import Counter
 from datetime import datetime
 
+import click
 from rich.console import RenderableType
 
-from raceway.commands.screen.text import sections
+from raceway.cli.frame import common, show, show_progress
+from raceway.out.table import sections
 from raceway.storage.tables import ReadTables
 
 #: Compliances that are listed one by one; a study keeps thousands.
@@ -36,3 +38,41 @@ def cache_screen(found: ReadTables) -> RenderableType:
     if not arrays:
         rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
     return sections(rows)
+
+
+@click.command(short_help="See or clear what is kept between runs.")
+@click.option("--clear", is_flag=True, help="Remove all of it; the next run compiles and condenses again.")
+@common
+def cache(clear: bool, as_json: bool) -> int:
+    """Say where compiled kernels and compliances of bodies are kept (RACEWAY_CACHE_DIR overrides it), how many, how large,
+    what each is and when it was last used; and clear them.
+
+    \b
+    Example:
+      raceway cache --clear
+    """
+    import attrs
+
+    from raceway.storage import array_cache, cache_folder
+
+    with show_progress(waiting="looking through what is kept"):
+        if clear:
+            cache_folder.clear()
+            array_cache.clear()
+        folders = [attrs.asdict(folder) for folder in cache_folder.kernel_folders()]
+        arrays = [attrs.asdict(entry) for entry in array_cache.entries()]
+    content = {
+        "root": str(cache_folder.cache_root() / "kernels"),
+        "current": cache_folder.source_key(),
+        "folders": folders,
+        "kernels": sum(f["kernels"] for f in folders),
+        "bytes": sum(f["bytes"] for f in folders),
+        "arrays_root": str(array_cache.folder()),
+        "arrays": arrays,
+        "arrays_bytes": sum(entry["bytes"] for entry in arrays),
+        "arrays_limit_bytes": array_cache.LIMIT,
+        "cleared": clear,
+    }
+
+    show(content, as_json, None, lambda: cache_screen(content))
+    return 0

@@ -1,4 +1,4 @@
-"""``-v``: what a command computes as it goes, on standard error, through the logger ``raceway``.  Part of ``raceway.cli``."""
+"""``-v``: what a command computes as it goes, on standard error, through the logger ``raceway``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Lines(logging.Handler):
         self._begun = time.perf_counter()
 
     def emit(self, record: logging.LogRecord) -> None:
-        from raceway.commands.screen.wrapping import lines_of
+        from raceway.out.wrapping import lines_of
 
         first, *others = lines_of(record.getMessage(), shutil.get_terminal_size().columns - _TIME) or [""]
         click.echo(f"{time.perf_counter() - self._begun:{_TIME - 4}.2f} s  {first}", err=True)

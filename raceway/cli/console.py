@@ -1,6 +1,6 @@
 """Messages and exit codes: one message for each thing that can go wrong.
 
-0 success, 1 a numerical failure, 2 the user's mistake; 130, 143, 129 stopped by Ctrl-C, SIGTERM, SIGHUP.  Part of ``raceway.cli``, which alone
+0 success, 1 a numerical failure, 2 the user's mistake; 130, 143, 129 stopped by Ctrl-C, SIGTERM, SIGHUP.  Part of ``raceway.cli.main``, which alone
 may print and exit.
 """
 
@@ -19,7 +19,7 @@ from typing import Any
 
 import click
 
-from raceway.commands.interrupt import Interrupts, farewell, stopped_by
+from raceway.cli.interrupt import Interrupts, farewell, stopped_by
 from raceway.errors import MeshError, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.storage.tables import Tables

@@ -1,0 +1,242 @@
+"""Tables of ``raceway run``, from the content of result.json: the answer first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+
+from raceway.cli.run_parts import (
+    ball_pass_rows,
+    bodies_rows,
+    cost_rows,
+    equilibrium_rows,
+    error_rows,
+    film_rows,
+    loaded_balls,
+    orbit_rows,
+    stability_rows,
+    stiffness_rows,
+    tangent_rows,
+    tolerance_rows,
+)
+from raceway.framework.shown import percents, within
+from raceway.out.table import Row, micro, number, sections, tilt_words, written
+from raceway.out.wrapping import Words
+from raceway.scene.sets import GEOMETRY, signs_of
+from raceway.storage.tables import ReadTables
+
+#: Damping over stiffness by the rule of thumb of rotor programs [s]: ROSS 2.3 takes c = 1.25e-5 s k for a ball bearing without a
+#: given damping (``ross.BallBearingElement``), the middle of its "typical range" of 0.25e-5 to 2.5e-5 s.
+RULE_OF_THUMB_S = 1.25e-5
+#: Part of the rule's damping below which a damping is next to nothing: a twentieth of the lower end of the typical range.
+_NOTHING = 1e-2
+
+
+#: What to do in the scene.
+_REMEDY = "take contact.damping = 'band', or give contact.time_constant, contact.loss_factor or contact.damping"
+
+
+def dry_damping_note(content: ReadTables) -> str | None:
+    """The sentence for one run.
+
+    Parameters
+    ----------
+    content : of result.json
+
+    Returns
+    -------
+    None where nothing is identified, or where C is not far below the rule of thumb.
+    """
+    found = content["identification"]
+    if found is None:
+        return None
+    error, damping = found["equivalent_damping_error"], found["equivalent_damping"]
+    resolved = error is None or abs(damping) > error
+    return dry_damping_words(damping if resolved else None, found["equivalent_stiffness"])
+
+
+def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _REMEDY) -> str | None:
+    """The sentence for C [N s/m], None where it is not resolved, and K [N/m]; None where C is not far below the rule of thumb."""
+    rule = RULE_OF_THUMB_S * abs(stiffness)
+    if damping is not None and abs(damping) > _NOTHING * rule:
+        return None
+    told = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
+    return (
+        f"C {told}: a dry bearing damps next to nothing, where the rule of thumb of rotor programs, 1.25e-5 s times K, gives "
+        f"{rule:.2g} N s/m. Lubricant, cage and seats damp more: {remedy}"
+    )
+
+
+#: An orbit whose minor axis is a smaller share of the major one is a line: the rest is rounding.
+_LINE = 1e-9
+#: Rows that stand or fall with Z.
+_OF_Z = (
+    "equivalent stiffness K", "equivalent damping C", "|Z|", "Z real", "Z imaginary", "loss factor", "phase lag", "orbit, semi-axes",
+)  # fmt: skip
+#: Relative change of a stiffness by a hypothesis below which it is not told.
+LEAST_CHANGE = 1e-3
+
+
+def answer_rows(result: ReadTables) -> list[Row]:
+    """The first section."""
+    found = result["identification"]
+    if found is None:
+        return _static(result)
+    z, orbit, mass = found["dynamic_stiffness"], found["orbit"], found["mass_used_kg"]
+    thin = orbit["minor_m"] <= _LINE * orbit["major_m"]
+    minor = "0" if thin else f"{1e6 * orbit['minor_m']:.4g}"
+    dry, remark = dry_damping_note(result), f"K = Re Z + m w^2, m = {mass:.4g} kg"
+    return [
+        (f"Answer at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
+        # The error of Z: larger than the same share of K where m w^2 cancels K.
+        within(
+            "equivalent stiffness K",
+            found["equivalent_stiffness"],
+            found["equivalent_stiffness_error"],
+            1e-6,
+            "N/µm",
+            remark,
+        ),
+        *model_rows(result, "equivalent_stiffness", "kyy_tilts_follow", "kyy"),
+        *damping_rows(found),
+        ("|Z|", number(1e-6 * z["abs"], "N/µm"), "dynamic stiffness, force over displacement"),
+        ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {minor} µm", f"1x motion{', a line' if thin else ''}"),
+        *([("", "", dry)] if dry else []),
+    ]
+
+
+def only_resolved(rows: Sequence[Row], error: ReadTables) -> list[Row]:
+    """The rows without the numbers that a part of the error of Z is as large as, or larger."""
+    parts = error.get("unresolved")
+    why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
+    return [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
+
+
+def damping_rows(found: ReadTables) -> list[Row]:
+    """C with its origin; of a band C, loss factor and phase at both ends."""
+    band, origin = found["band"], found["damping_origin"]
+    if band is None:
+        damping, error = found["equivalent_damping"], found["equivalent_damping_error"]
+        return [within("equivalent damping C", damping, error, 1.0, "N s/m", origin)]
+    return [
+        ("equivalent damping C", _range(band["equivalent_damping"], "N s/m"), origin),
+        ("loss factor", _range(band["loss_factor"]), "w C / K at both ends; all else is that of the low end"),
+        ("phase lag", _range(band["phase_lag_deg"], "deg"), "displacement behind force"),
+    ]
+
+
+def _range(ends: Sequence[float], unit: str = "") -> str:
+    return f"{ends[0]:.3g} to {ends[1]:.3g} {unit}".rstrip()
+
+
+def model_rows(result: ReadTables, *quantities: str) -> list[Row]:
+    """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
+    spread, why = result["error"]["model"], result["error"]["short"]["model"]
+    if spread is None:
+        return [("", "", f"model: change by hypotheses left at their defaults {why}")] if why else []
+    name = next((one for one in quantities if spread[one] is not None), "")
+    of = "" if name in ("", "equivalent_stiffness") else f"{name.replace('_', ' ')} "
+    rows: list[Row] = []
+    for key, what in (("kinematics.gyroscopic", "gyroscopic moments"), ("kinematics.ring_growth", "ring growth")):
+        changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
+        if max(map(abs, changes), default=0.0) >= LEAST_CHANGE:
+            rows.append(("", "", f"model: {what} would give {of}{percents(*changes)}: {key}"))
+    together = [("", "", f"model: over all of them {of}{percents(*spread[name])}: error.model")] if len(rows) > 1 else []
+    return rows + together
+
+
+def _static(result: ReadTables) -> list[Row]:
+    return [
+        ("Answer of a static scene", "", "without a table [excitation] there is no K(w), C or orbit to identify"),
+        *tangent_rows(result),
+        *model_rows(result, "kyy_tilts_follow", "kyy"),
+        *loaded_balls(result, ["most"]),
+    ]
+
+
+_LEFT_OUT_SHOWN = 3
+
+
+def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
+    """One run.
+
+    Parameters
+    ----------
+    result : content of result.json;  files : what was written
+    """
+    rows = [
+        *answer_rows(result),
+        *equilibrium_rows(result),
+        *film_rows(result),
+        *ball_pass_rows(result["ball_pass"]),
+        *stiffness_rows(result),
+        *tolerance_rows(result.get("tolerances")),
+        *error_rows(result),
+    ]
+    rows = only_resolved(rows, result["error"])
+    rows += bodies_rows(result.get("model"))
+    rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
+    rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]
+    # What makes the numbers doubtful is read before them.
+    parts: list[RenderableType] = [Words(f"warning: {micro(text)}", "yellow") for text in result["warnings"]]
+    parts += [
+        Words(result["title"], "bold"),
+        Words(_bearing(result), "dim"),
+        sections(rows),
+        Words(_left_out(result), "dim"),
+        Words("notes in full: result.json", "dim"),
+    ]
+    return Group(*parts, *written(files))
+
+
+def _left_out(result: ReadTables) -> str:
+    left_out = result["plan"]["left_out"]
+    parts = "; ".join(f"{row['part']} ({row['why']})" for row in left_out[:_LEFT_OUT_SHOWN])
+    more = len(left_out[_LEFT_OUT_SHOWN:])
+    return f"left out: {parts}{f'; and {more} more, see raceway plan' if more else ''}"
+
+
+def _bearing(result: ReadTables) -> str:
+    """Geometry, arrangement, model and loads, a line each."""
+    scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
+    b, load = scene["bearing"], scene["load"]
+    if b.get("radial_clearance") and not b.get("contact_angle_deg"):
+        angle += ", from the clearance"
+    balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}"]
+    if b.get("arrangement", "single") != "single" or b.get("row"):
+        words.append(_set(b))
+    if result.get("geometry"):
+        words.append(result["geometry"]["words"])
+    words += [
+        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
+        f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
+    ]
+    if any(load["moment"]):
+        words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
+    return "\n".join(words)
+
+
+#: How the rows of a pair stand to each other.
+_PAIRS = {"DB": "back to back", "DF": "face to face", "DT": "tandem"}
+
+
+def _set(bearing: ReadTables) -> str:
+    """Arrangement, distances and preload of a set of rows."""
+    kind, own = bearing.get("arrangement", "single"), bearing.get("row") or []
+    forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
+    if bearing.get("second_preload"):
+        forces += f" and {bearing['second_preload']:g} N"
+    braced = bearing.get("preload") or any(row.get("preload") for row in own)
+    each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
+    mounted = f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if braced else "without preload"
+    count = len(own) if kind == "single" else len(signs_of(kind))
+    apart = bearing.get("row_distance") or bearing.get("width")
+    placed = own and all(row.get("position") is not None for row in own)
+    places = (
+        ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm" if placed else f"{1e3 * (apart or 0.0):g} mm apart"
+    )
+    what = "rows that differ, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
+    name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
+    return f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}"
