@@ -8,9 +8,24 @@ turns the first three into exit code 2 and the others into exit code 1.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import StrEnum
 from typing import Any
 
 import attrs
+
+
+class Status(StrEnum):
+    """Whether a point of a study has an answer, and why not; the words of ``status`` in its row."""
+
+    COMPLETED = "completed"
+    #: The steady motion is unstable: its row says where a motion that leaves it leads.
+    UNSTABLE = "unstable"
+    #: No steady motion was found: its row says what the motion from rest does.
+    UNSTEADY = "unsteady"
+    #: The numbers failed, or took many times the planned time.
+    FAILED = "failed"
+    #: The scene, a plug-in or the machine does not allow it.
+    REFUSED = "refused"
 
 
 class RacewayError(Exception):
@@ -37,6 +52,11 @@ class RacewayError(Exception):
         super().__init__(message)
         self.state = state or {}
         self.files: dict[str, str] = {}
+
+    @property
+    def status(self) -> Status:
+        """Of a point that ended so."""
+        return Status.FAILED if self.exit_code == 1 else Status.REFUSED
 
 
 def extra(name: str) -> str:

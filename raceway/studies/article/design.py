@@ -11,7 +11,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from raceway.errors import SceneError
+from raceway.errors import SceneError, Status
 from raceway.framework.registry import Registry
 from raceway.scene.changes import with_value
 from raceway.scene.file import read_toml
@@ -241,7 +241,7 @@ def _values(option: str, text: str) -> tuple[float, ...]:
 
 
 #: What became of a run that is neither failed nor refused.
-ANSWERED = ("completed", "unstable", "unsteady")
+ANSWERED = (Status.COMPLETED, Status.UNSTABLE, Status.UNSTEADY)
 #: What may be called k: name -> key of a row.
 MEASURES = {"K": "k", "|Z|": "abs_z"}
 

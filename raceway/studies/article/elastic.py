@@ -355,7 +355,7 @@ def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fol
             found |= _section(result, folder)
         del result
     except RacewayError as why:
-        status, reason = "failed" if why.exit_code == 1 else "refused", " ".join(str(why).split())
+        status, reason = str(why.status), " ".join(str(why).split())
     except MemoryError:
         status, reason = "refused", "the memory of this machine does not suffice: take larger elements, mesh.element_size"
     except Exception as why:  # a fault of the program costs its run, not the study

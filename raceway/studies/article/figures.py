@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.errors import Status
 from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import Tables
 from raceway.studies.article import runs
@@ -28,7 +29,7 @@ from raceway.studies.article.design import (
     Setting,
 )
 from raceway.studies.article.rules import LEVEL
-from raceway.studies.article.runs import UNSTEADY, hardening
+from raceway.studies.article.runs import hardening
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -218,7 +219,9 @@ def _excitation_panel(
     caption = "Dashed: the same with weightless balls."
     if np.isfinite(bad).any():
         caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
-    gaps = {f"{row['speed_rpm']:g}" for s in lines.values() for row in curves.rows[s, load] if row["status"] == UNSTEADY}
+    gaps = {
+        f"{row['speed_rpm']:g}" for s in lines.values() for row in curves.rows[s, load] if row["status"] == Status.UNSTEADY
+    }
     if gaps:
         caption += f" No steady motion is found at {', '.join(sorted(gaps))} r/min; what a ring does there stands in the last table."
     return Panel(draw, alternative, caption)

@@ -16,7 +16,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -29,8 +29,6 @@ from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 
 Row = Tables
-#: Of a point at which no steady motion is found, and what a ring does instead is known.
-UNSTEADY = "unsteady"
 #: Turns of the motion that is integrated where no ring stays on a steady one; half of them are judged.
 TURNS = 800
 
@@ -80,10 +78,9 @@ def _row(tables: Tables, registry: Registry) -> Row:
             if motion.kind == FAILED:
                 raise
             reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
-            return {**row, "status": UNSTEADY, "reason": reason, "instead": _plain(motion)}
+            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain(motion)}
     except RacewayError as why:
-        status = "failed" if why.exit_code == 1 else "refused"
-        return {**row, "status": status, "reason": " ".join(str(why).split())}
+        return {**row, "status": why.status, "reason": " ".join(str(why).split())}
     found, error = result.identification, result.error
     assert found is not None
     fate = result.stability["floquet"]
@@ -94,7 +91,7 @@ def _row(tables: Tables, registry: Registry) -> Row:
         grows = f"the steady motion is unstable, disturbances grow {fate['largest']:.4g} times a turn"
     return {
         **row,
-        "status": "unstable" if unstable else "completed",
+        "status": Status.UNSTABLE if unstable else Status.COMPLETED,
         "reason": f"{grows}; instead: {motion.words}" if unstable else "",
         "found": None if fate is None else fate["found"],
         "k": found.equivalent_stiffness,

@@ -92,4 +92,4 @@ def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
         return run(scene_from_dict(tables, registry), registry).to_dict()
     except RacewayError as error:
-        return {"status": "failed" if error.exit_code == 1 else "refused", "reason": str(error)}
+        return {"status": error.status, "reason": str(error)}

@@ -76,9 +76,8 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
             cpu = time.process_time() - cpu
             result = found.to_dict()
         except RacewayError as error:
-            status = "failed" if error.exit_code == 1 else "refused"
             return {
-                "status": status,
+                "status": error.status,
                 "reason": str(error).splitlines()[0],
                 "quantities": {},
                 "own_error": None,
