@@ -228,14 +228,3 @@ def has_matplotlib() -> bool:
     if not there:
         warn(f"no picture: it needs matplotlib, {extra('pictures')}")
     return there
-
-
-def columns_by_head(texts: tuple[str, ...]) -> dict[str, str]:
-    """Head -> name from ``HEAD=NAME``; a head may have an equals sign, a name has none."""
-    found = {}
-    for text in texts:
-        head, sign, name = text.rpartition("=")
-        if not sign or not head.strip() or not name.strip():
-            raise SceneError.at("--map", text, 'must have the form "HEAD=NAME", for instance "X [µm]=y_um"')
-        found[head.strip()] = name.strip()
-    return found

@@ -18,7 +18,7 @@ from raceway.framework.shown import Fact, Shown, number
 from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
-from raceway.plugins.pictures import given_axes
+from raceway.plugins.pictures import given_axes, save_figure
 from raceway.scene.given import as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
@@ -48,8 +48,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from xarray import Dataset
 
-#: The answer's file, in the folder of the results.
-CONTENT = "identify.json"
 #: Deflection of the bearing below this part of that at the sensor is a small difference of large numbers.
 _SMALL = 0.1
 #: Part by which the tilt stiffness may be off, over that by which the scene misses K.
@@ -238,6 +236,28 @@ class Identified(Shown):
         }
         return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
 
+    def save(self, folder: Path) -> Path:
+        """Write identify.json.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.to_dict(), folder / "identify.json")
+
+    def pictures(self, folder: Path) -> list[Path]:
+        """Draw signals.png, spectrum.png and orbits.png.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder that cannot be written.
+        """
+        from raceway.studies.fit.picture import figures
+
+        return [save_figure(figure, folder / f"{name}.png", 110) for name, figure in figures(self).items()]
+
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:
         """Draw the orbits at the sensor and in the bearing [um], or the spectrum over orders.
 
@@ -353,7 +373,7 @@ def identify(
             answer = identify_recording(recording, rig, tested, subtracted)
     answer = attrs.evolve(answer, title=read.title, source=record.source)
     if folder is not None:
-        write_json(answer.to_dict(), folder / CONTENT)
+        answer.save(folder)
     return answer
 
 
