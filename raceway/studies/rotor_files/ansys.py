@@ -25,10 +25,10 @@ CONSTANTS = {
     "K11": "kyy", "K22": "kzz", "K12": "kyz", "K21": "kzy",
     "C11": "cyy", "C22": "czz", "C12": "cyz", "C21": "czy",
 }  # fmt: skip
-_COMMENT = "! "
+_APDL_COMMENT = "! "
 #: Values of a line, which APDL assigns to successive rows; it takes up to ten.
 _VALUES = 4
-_LARGEST = 99_999
+_LARGEST_TYPE = 99_999
 
 
 def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
@@ -44,12 +44,12 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     RacewayError
         A table over the frequency, which COMBI214 does not depend on; a number out of range.
     """
-    if not 0 < number <= _LARGEST:
-        raise RacewayError(f"number {number}: give an element type of Ansys from 1 to {_LARGEST}")
+    if not 0 < number <= _LARGEST_TYPE:
+        raise RacewayError(f"number {number}: give an element type of Ansys from 1 to {_LARGEST_TYPE}")
     speed = _speed(table)
     columns = table.columns()
     largest = {"K": float(np.max(np.abs(table.stiffness))), "C": float(np.max(np.abs(table.damping)))}
-    lines = comments(head, _COMMENT)
+    lines = comments(head, _APDL_COMMENT)
     constants = []
     for constant, ours in CONSTANTS.items():
         ours += table.ending
@@ -58,17 +58,17 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
         there = bool(np.max(np.abs(values)) > ROUNDING * largest[constant[0]])
         constants.append(f"%{name}%" if there else "0")
         if there:
-            lines += [f"{_COMMENT}{constant}, {ours} [{unit}] over rad/s", f"*DIM,{name},TABLE,{len(speed)},1,1,OMEGS"]
+            lines += [f"{_APDL_COMMENT}{constant}, {ours} [{unit}] over rad/s", f"*DIM,{name},TABLE,{len(speed)},1,1,OMEGS"]
             lines += [*_assigned(name, 0, speed), *_assigned(name, 1, values)]
     lines += [f"ET,{number},COMBI214", f"KEYOPT,{number},2,1"]
     if not _symmetric(table):
         lines.append(f"KEYOPT,{number},3,1")
     lines += [f"R,{number},{','.join(constants[:6])}", f"RMORE,{','.join(constants[6:])}"]
     lines += [
-        *comments(["the element, to complete: nodes on the shaft and on the housing"], _COMMENT),
-        f"{_COMMENT}TYPE,{number}",
-        f"{_COMMENT}REAL,{number}",
-        f"{_COMMENT}E,SHAFT,HOUSING",
+        *comments(["the element, to complete: nodes on the shaft and on the housing"], _APDL_COMMENT),
+        f"{_APDL_COMMENT}TYPE,{number}",
+        f"{_APDL_COMMENT}REAL,{number}",
+        f"{_APDL_COMMENT}E,SHAFT,HOUSING",
     ]
     return "\n".join(lines) + "\n"
 

@@ -23,8 +23,8 @@ from raceway.studies.rotor_files.lost import LINEAR, comments, cross_terms, tilt
 
 #: Numbers of a file: the property's, then its tables'; the next bearing's may begin behind them.
 NUMBERS = 13
-_LARGEST = 99_999_999 - NUMBERS  # of a field of 8 characters
-_COMMENT = "$ "
+_LARGEST_PROPERTY = 99_999_999 - NUMBERS  # of a field of 8 characters
+_NASTRAN_COMMENT = "$ "
 
 
 def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: int) -> str:
@@ -41,20 +41,20 @@ def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: in
     RacewayError
         A table over speed and frequency, which PBUSHT has no place for; a number that a field does not hold.
     """
-    if not 0 < number <= _LARGEST:
-        raise RacewayError(f"number {number}: Nastran numbers its properties from 1 to {_LARGEST}")
+    if not 0 < number <= _LARGEST_PROPERTY:
+        raise RacewayError(f"number {number}: Nastran numbers its properties from 1 to {_LARGEST_PROPERTY}")
     hertz = _frequency(table)
     stiffness, damping = _diagonals(table)
     tables = {("K", k): stiffness[:, k] for k in range(6)} | {("B", k): damping[:, k] for k in range(6)}
     numbers = {place: number + 1 + k if values.any() else 0 for k, (place, values) in enumerate(tables.items())}
-    lines = comments(head, _COMMENT)
+    lines = comments(head, _NASTRAN_COMMENT)
     lines += _element(number, node)
     lines += _large("PBUSH", [number, "K", *stiffness[0], None, "B", *damping[0]])
     lines += _property(number, numbers)
     for place, values in tables.items():
         if numbers[place]:
             pairs = np.stack([hertz, values], axis=-1).ravel()
-            lines += [f"{_COMMENT}{place[0]}{place[1] + 1} [{_UNITS[place[0]][place[1] // 3]}] over Hz"]
+            lines += [f"{_NASTRAN_COMMENT}{place[0]}{place[1] + 1} [{_UNITS[place[0]][place[1] // 3]}] over Hz"]
             lines += _large("TABLED1", [numbers[place], *[None] * 7, *pairs, "ENDT"])
     return "\n".join(lines) + "\n"
 
@@ -120,8 +120,8 @@ def _element(number: int, node: int) -> list[str]:
     if node:
         return [_small("CBUSH", [number, number, node, None, None, None, None, 0])]
     return [
-        *comments(["the element, to complete: GA on the shaft, GB on the housing or blank for ground"], _COMMENT),
-        _COMMENT + _small("CBUSH", [number, number, "GA", "GB", None, None, None, 0]),
+        *comments(["the element, to complete: GA on the shaft, GB on the housing or blank for ground"], _NASTRAN_COMMENT),
+        _NASTRAN_COMMENT + _small("CBUSH", [number, number, "GA", "GB", None, None, None, 0]),
     ]
 
 

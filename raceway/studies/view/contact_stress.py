@@ -57,7 +57,7 @@ def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Any]:
     races = [[side for side in sides if side.race == race] for race in dict.fromkeys(side.race for side in sides)]
     figure = new_figure(15.6, 5.6 * len(races))
     panels = figure.subplots(len(races), 3, squeeze=False, width_ratios=(1.0, 1.0, 0.75))
-    cuts = [quietly(pyvista, _section, pyvista, grid, pair) for pair in races]
+    cuts = [quietly(pyvista, _contact_section, pyvista, grid, pair) for pair in races]
     for column, name in enumerate(("von Mises stress", "largest shear stress")):
         top = max(float(values[column].max(initial=0.0)) for _, values in cuts)
         for row, (pair, (polygons, values)) in enumerate(zip(races, cuts, strict=True)):
@@ -71,7 +71,7 @@ def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Any]:
     return figure, grid
 
 
-def _section(pyvista: ModuleType, grid: Any, pair: list[BelowContact]) -> tuple[list[np.ndarray], np.ndarray]:
+def _contact_section(pyvista: ModuleType, grid: Any, pair: list[BelowContact]) -> tuple[list[np.ndarray], np.ndarray]:
     """Polygons (k, 2) of the deformed elements, along the rolling direction and into the ball [m], and two stresses (2, n) [Pa]."""
     ball = pair[0]
     kept = grid.extract_cells(np.isin(grid.cell_data["body"], [side.index for side in pair]))

@@ -8,13 +8,14 @@ import numpy as np
 
 from raceway.plugins.pictures import new_figure
 from raceway.studies.view.bearing import INNER, OUTER, Bearing, State
+from raceway.studies.view.scene import _INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-_MM, _INK = 1e3, "#20262c"
+_MM = 1e3
 _RACES = ("inner", "outer")
 
 

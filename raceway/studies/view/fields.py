@@ -120,7 +120,7 @@ def write_fields(result: Result, folder: Path) -> list[Path]:
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
     title += f"\n{contacts_left_out(result)}".rstrip()
-    image = quietly(pyvista, _section, pyvista, grid, float(result.model.azimuth[most]), title)
+    image = quietly(pyvista, _section_image, pyvista, grid, float(result.model.azimuth[most]), title)
     return [write_whole(vtu(grid), folder / "fields.vtu"), write_whole(_png(image), folder / "stress.png")]
 
 
@@ -150,7 +150,7 @@ def _below(values: np.ndarray, areas: np.ndarray, share: float) -> float:
     return float(values[order][np.searchsorted(summed, share * summed[-1])])
 
 
-def _section(pyvista: ModuleType, grid: Any, azimuth: float, title: str) -> np.ndarray:
+def _section_image(pyvista: ModuleType, grid: Any, azimuth: float, title: str) -> np.ndarray:
     """(rows, columns, 3) bytes: the plane of the axis and a ball, seen along the orbit."""
     across = np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
     outward = np.array([0.0, np.cos(azimuth), np.sin(azimuth)])
