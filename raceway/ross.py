@@ -24,10 +24,10 @@ from importlib import import_module
 from typing import Any
 
 _PUBLIC = {
-    "RollingBearing": "raceway.studies.ross.bearing",
-    "run_unbalance_response": "raceway.studies.ross.unbalance",
-    "UnbalanceResponse": "raceway.studies.ross.unbalance",
-    "run_time_response": "raceway.studies.ross.transient",
+    "RollingBearing": "raceway.studies.rotor.bearing",
+    "run_unbalance_response": "raceway.studies.rotor.responses",
+    "UnbalanceResponse": "raceway.studies.rotor.responses",
+    "run_time_response": "raceway.studies.rotor.responses",
 }
 __all__ = sorted(_PUBLIC)
 

@@ -463,10 +463,10 @@ def test_a_slip_on_the_command_line(case, seen, folder, tmp_path, monkeypatch):
 MISSING = {
     "run": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
     "plot": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
-    "mesh": ("raceway.studies.view.mesh_command.find_spec", "meshio", "mesh"),
+    "mesh": ("raceway.studies.view.mesh.find_spec", "meshio", "mesh"),
     "mesh --picture": (None, "pyvista", "view"),  # files come first
-    "view": ("raceway.studies.view.front.find_spec", "pyvista", "view"),
-    "view, matplotlib": ("raceway.studies.view.front.find_spec", "matplotlib", "view"),
+    "view": ("raceway.studies.view.view.find_spec", "pyvista", "view"),
+    "view, matplotlib": ("raceway.studies.view.view.find_spec", "matplotlib", "view"),
 }
 
 

@@ -33,9 +33,10 @@ from raceway.studies.sensitivities import picture as bars
 from raceway.studies.sweep import picture as store_picture
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import select
-from raceway.studies.view import contact_stress, contacts
-from raceway.studies.view.bearing import Bearing
-from raceway.studies.view.states import at_rest
+from raceway.studies.view import pictures as view_pictures
+from raceway.studies.view import stress
+from raceway.studies.view.bodies import Bearing
+from raceway.studies.view.view import at_rest
 from raceway.testing import b7206c, run
 from tests import test_compare
 from tests.elastic.test_below_contact import TINY
@@ -148,13 +149,13 @@ def of_a_record() -> list[Figure]:
 
 def of_contacts() -> list[Figure]:
     found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [contacts.contacts(Bearing.of(found), at_rest(found), "made up")]
+    return [view_pictures.contacts(Bearing.of(found), at_rest(found), "made up")]
 
 
 #: Module that makes figures -> how they come about here.
 def of_stresses() -> list[Figure]:
     result = run(scene_from_dict(TINY))
-    return [contact_stress.drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
+    return [stress.drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
 
 
 def of_the_catalogue() -> list[Figure]:
@@ -201,8 +202,8 @@ def of_fits_and_records() -> list[Figure]:
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision,
-    article: of_the_article, rig: of_a_rig, contacts: of_contacts,
-    contact_stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
+    article: of_the_article, rig: of_a_rig, view_pictures: of_contacts,
+    stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
     fits: of_fits_and_records,
     band_picture: of_a_band,
 }  # fmt: skip

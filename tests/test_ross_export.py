@@ -13,9 +13,8 @@ import pytest
 
 from raceway import RacewayError, SceneError
 from raceway.plugins.processes import Serial
-from raceway.studies.ross.coefficients import Coefficients, coefficients
-from raceway.studies.ross.file import NAMES, ross_file
-from raceway.studies.ross.reading import smoothed, through_points
+from raceway.studies.rotor.coefficients import Coefficients, coefficients
+from raceway.studies.rotor.ross_table import NAMES, ross_file, smoothed, through_points
 from raceway.studies.sweep import grid, prepare, sweep
 from raceway.studies.sweep.selection import select
 from raceway.testing import b7206c

@@ -13,9 +13,8 @@ import pytest
 
 import raceway as rw
 from raceway import RacewayError, SceneError
-from raceway.studies.ross.installed import ross
-from raceway.studies.ross.node_bearing import node_bearing
-from raceway.studies.ross.secant import secant
+from raceway.studies.rotor.node_bearing import node_bearing, secant
+from raceway.studies.rotor.ross_table import ross
 from raceway.studies.shaft.bearing import harmonic_load
 from validation.command_line import EXAMPLES
 
@@ -124,7 +123,7 @@ def test_bad_input_is_refused(given, words):
 
 def test_what_is_missing_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
-    monkeypatch.delitem(sys.modules, "raceway.studies.ross.bearing", raising=False)
+    monkeypatch.delitem(sys.modules, "raceway.studies.rotor.bearing", raising=False)
     import raceway.ross
 
     with pytest.raises(RacewayError, match=r"RollingBearing needs ROSS: pip install '.\[ross\]'"):
@@ -141,7 +140,7 @@ def test_an_old_ross_is_refused(monkeypatch):
 
 def test_an_unbalance_turns_with_the_shaft():
     """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
-    names = [f"raceway.studies.ross.{name}" for name in ("bearing", "unbalance")]
+    names = [f"raceway.studies.rotor.{name}" for name in ("bearing", "responses")]
     with mock.patch.dict(sys.modules, {"ross": types.SimpleNamespace(__version__="3.0", BearingElement=object)}):
         for name in names:
             sys.modules.pop(name, None)

@@ -12,11 +12,10 @@ from raceway import scene_from_dict
 from raceway.core.mesh.ring_shape import ring_shape
 from raceway.plugins.formats import Vtu
 from raceway.plugins.pictures import ball_loads
-from raceway.studies.view import surfaces
-from raceway.studies.view.bearing import Bearing
-from raceway.studies.view.contacts import contacts
-from raceway.studies.view.labels import LETTERS, ball_labels
-from raceway.studies.view.states import at_peak, at_rest
+from raceway.studies.view.bodies import Bearing, contact_patch
+from raceway.studies.view.bodies import ball as solid_ball
+from raceway.studies.view.pictures import LETTERS, ball_labels, contacts
+from raceway.studies.view.view import at_peak, at_rest
 from raceway.testing import b7206c, run
 from tests.test_commands import COARSE
 from validation.command_line import EXAMPLES, MINIMAL, invoke, python
@@ -49,13 +48,11 @@ def test_rings_and_balls_have_their_volume(result):
         # 120 chords a turn: (2 pi / 120)^2 / 6 = 0.05 % of an area; normals of chords add as much.
         assert volume(part.surface) == pytest.approx(exact, rel=2e-3)
     # 24 x 36 facets of a ball: 1 - cos of half a facet, about 1 %.
-    assert volume(surfaces.ball(9.525)) == pytest.approx(np.pi / 6.0 * 9.525**3, rel=2e-2)
+    assert volume(solid_ball(9.525)) == pytest.approx(np.pi / 6.0 * 9.525**3, rel=2e-2)
 
 
 def test_a_contact_ellipse_has_its_axes_and_peak():
-    patch = surfaces.contact_patch(
-        np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0
-    )
+    patch = contact_patch(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0)
     reach = np.abs(patch.points).max(axis=0)
     # Laid on a ball of 5 mm: 1 mm across its tangent plane becomes 5 sin(atan(1/5)) = 0.98 mm, drawn 0.4 % above it.
     assert reach[0] == pytest.approx(0.98 * 1.004, rel=1e-3) and reach[2] == pytest.approx(0.1, rel=6e-3)

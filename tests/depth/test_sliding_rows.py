@@ -10,7 +10,7 @@ import raceway as rw
 from raceway import ConvergenceError
 from raceway.cli.run_parts import _mounted
 from raceway.core.ring.kernels.layout import SHIFT
-from raceway.studies.ross.node_bearing import node_bearing
+from raceway.studies.rotor.node_bearing import node_bearing
 from raceway.testing import b7206c
 from validation.reference.mounted import approach, axial, row
 

@@ -110,8 +110,7 @@ def test_cells_near_a_place_have_a_node_there():
 def test_the_picture_and_the_file_of_the_elements_near_the_contacts(result, tmp_path):
     import pyvista
 
-    from raceway.studies.view.contact_stress import write_contact_stress
-    from raceway.studies.view.fields import Fields
+    from raceway.studies.view.stress import Fields, write_contact_stress
 
     vtu, png = write_contact_stress(result, tmp_path)
     assert (vtu.name, png.name) == ("contact.vtu", "stress_contact.png")

@@ -5,7 +5,7 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.scene.file import read_toml
-from raceway.studies.view.fields import Fields, contacts_left_out, write_fields
+from raceway.studies.view.stress import Fields, contacts_left_out, write_fields
 from raceway.testing import run
 from validation.command_line import EXAMPLES
 

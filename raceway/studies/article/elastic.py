@@ -409,7 +409,7 @@ def _numbers(result: ReadTables) -> Tables:
 
 def _section(result: Result, folder: Path) -> Tables:
     """The section below the most loaded contact of each race, where a picture can be made; why not, elsewhere."""
-    from raceway.studies.view.contact_stress import write_contact_stress
+    from raceway.studies.view.stress import write_contact_stress
 
     try:
         return {"pictures": [file.name for file in write_contact_stress(result, folder)]}

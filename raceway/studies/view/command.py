@@ -60,7 +60,7 @@ def view(given: ViewOptions) -> int:
     folder = writable(given.out or RESULTS / slug(loaded.title))
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.studies.view.front import view as study
+        from raceway.studies.view.view import view as study
 
         found = study(loaded, folder, page=given.page, progress=progress)
     content = found.to_dict()

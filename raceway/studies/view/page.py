@@ -17,9 +17,8 @@ import numpy as np
 
 from raceway.out.page import Page, data_uri
 from raceway.storage.tables import Tables
-from raceway.studies.view.bearing import Bearing, Part, State
-from raceway.studies.view.scene import LOADS, PRESSURES
-from raceway.studies.view.surfaces import Surface, ball, joined
+from raceway.studies.view.bodies import Bearing, Part, State, Surface, ball, joined
+from raceway.studies.view.pictures import LOADS, PRESSURES
 
 #: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
 _MOST, _TOGETHER = 65535, 100

@@ -11,9 +11,8 @@ import numpy as np
 
 from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
-from raceway.studies.ross.installed import generation, ross
-from raceway.studies.ross.node_bearing import NodeBearing, node_bearing
-from raceway.studies.ross.reading import through_points
+from raceway.studies.rotor.node_bearing import NodeBearing, node_bearing
+from raceway.studies.rotor.ross_table import generation, ross, through_points
 
 _ross = ross("raceway.ross.RollingBearing")
 _Element: Any = _ross.BearingElement

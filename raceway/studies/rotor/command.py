@@ -2,21 +2,114 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
+import numpy as np
+from rich.console import Group, RenderableType
 
 from raceway.cli.console import warn
 from raceway.cli.frame import PATH, attempt, common, record, show
 from raceway.errors import SceneError
+from raceway.out.table import rows_table, written
+from raceway.out.wrapping import Words
 from raceway.storage.files import writable
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.sweep.store_command import at_option, store_argument
 
 if TYPE_CHECKING:
-    from raceway.studies.ross.table import RossTable
-    from raceway.studies.rotor_files.file import CoefficientFile
+    from raceway.studies.rotor.files import CoefficientFile
+    from raceway.studies.rotor.ross_table import RossTable
+
+
+#: Cross terms of an isotropic bearing, and changes along an axis, below this part of the largest of their kind are rounding.
+_ROUNDING = 1e-9
+_SHOWN = "{:.5g}"
+
+
+def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
+    """One row a point of a table over one axis, the ends of a table over two, by name and unit; sentences on what does not vary."""
+    axes = {name: 30.0 / np.pi * np.array(content[name]) for name in ("speed", "frequency") if content[name] is not None}
+    columns = {name: np.array(values) for name, values in content["coefficients"].items()}
+    largest = {letter: max(float(np.max(np.abs(v))) for n, v in columns.items() if n[0] == letter) for letter in "kc"}
+    shown = {name: v for name, v in columns.items() if np.max(np.abs(v)) > _ROUNDING * largest[name[0]]}
+    groups = _alike(shown)
+    constant = [
+        f"{_joined(names)} = {_text(name, values.flat[0])} {_unit(name)} at all points"
+        for name, names, values in groups
+        if np.ptp(values) <= _ROUNDING * largest[name[0]]
+    ]
+    varying = [(name, names, values) for name, names, values in groups if np.ptp(values) > _ROUNDING * largest[name[0]]]
+    rows = []
+    shape = tuple(len(values) for values in axes.values())
+    for place in np.ndindex(shape):
+        if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
+            continue
+        row = {f"{name}\nr/min": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
+        for name, names, values in varying:
+            row[f"{_joined(names)}\n{_unit(name)}"] = _text(name, float(values[place]))
+        rows.append(row)
+    zero = [name for name in columns if name not in shown]
+    return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
+
+
+def _alike(columns: dict[str, np.ndarray]) -> list[tuple[str, list[str], np.ndarray]]:
+    """First name, all names and values of columns that have the same text everywhere."""
+    found: list[tuple[str, list[str], np.ndarray]] = []
+    for name, values in columns.items():
+        texts = [_text(name, float(v)) for v in values.flat]
+        for other, names, known in found:
+            if other[0] == name[0] and texts == [_text(other, float(v)) for v in known.flat]:
+                names.append(name)
+                break
+        else:
+            found.append((name, [name], values))
+    return found
+
+
+def _joined(names: list[str]) -> str:
+    """kyy = kzz; what all names end with stands once."""
+    return " = ".join(name[:3] for name in names) + names[0][3:].replace("_", " ")
+
+
+def _unit(name: str) -> str:
+    return "N/µm" if name[0] == "k" else "N s/m"
+
+
+def _text(name: str, value: float) -> str:
+    return _SHOWN.format(value * (1e-6 if name[0] == "k" else 1.0))
+
+
+#: Characters of a line, and of the blanks between two columns.
+_WIDTH, _BLANKS = 80, 3
+
+
+def export_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """The points, what is the same at all of them, what was written, what their reader has to know."""
+    rows, constant = point_rows(content)
+    parts: list[RenderableType] = [
+        Words(f"{content['tag']}, coefficients for {', '.join(content['programs'])}", "bold"),
+        *(rows_table(part) for part in _fitting(rows)),
+        *map(Words, constant),
+    ]
+    return Group(*parts, *(Words(f"note: {note}") for note in content["notes"]), *written(files))
+
+
+def _fitting(rows: list[dict[str, str]]) -> list[list[dict[str, str]]]:
+    """The rows as tables that fit the width, each with the axes."""
+    axes = [name for name in rows[0] if name.endswith("r/min")]
+    width = {
+        name: max(len(word) for word in (*name.split("\n"), *(row[name] for row in rows))) + _BLANKS for name in rows[0]
+    }
+    room = _WIDTH - sum(width[name] for name in axes)
+    parts: list[list[str]] = [[]]
+    for name in (name for name in rows[0] if name not in axes):
+        if parts[-1] and sum(width[one] for one in parts[-1]) + width[name] > room:
+            parts.append([])
+        parts[-1].append(name)
+    return [[{name: row[name] for name in (*axes, *part)} for row in rows] for part in parts]
 
 
 class ExportOptions(NamedTuple):
@@ -89,10 +182,8 @@ def export(given: ExportOptions) -> int:
       raceway export raceway-out/from-rest --from tangent \\
           --nastran bearing.bdf --ansys bearing.inp --table bearing.csv
     """
-    from raceway.studies.ross.file import check_name, installed_generation
-    from raceway.studies.ross.front import export_ross
-    from raceway.studies.ross.screen import export_screen
-    from raceway.studies.rotor_files.front import export_coefficients, kind_of
+    from raceway.studies.rotor.export import export_coefficients, export_ross, kind_of
+    from raceway.studies.rotor.ross_table import check_name, installed_generation
 
     others = [(kind_of(kind, path), path) for kind, path in given.others()]
     if given.ross is None and not others:

@@ -23,7 +23,7 @@ from raceway.framework.doors import member
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
-from raceway.studies.ross.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
+from raceway.studies.rotor.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"

@@ -1,0 +1,309 @@
+"""The bearing as a picture, drawn by pyvista without a display."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from raceway.errors import RacewayError, extra
+from raceway.plugins.pictures import new_figure
+from raceway.plugins.system_libraries import refuse_pictures
+from raceway.storage.tables import Tables
+from raceway.studies.view.bodies import INNER, OUTER, Bearing, Part, State
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+
+
+#: Height of the letters, and the mean width of one [pixels].
+LETTERS, _LETTER = 26, 14.5
+#: Between a label and what it must not touch [pixels].
+_GAP = 9.0
+
+
+def ball_labels(
+    bearing: Bearing, state: State, top: float, seen: Callable[[np.ndarray], np.ndarray]
+) -> list[tuple[str, tuple[float, float]]]:
+    """Texts and their lower left corners [pixels].
+
+    Parameters
+    ----------
+    top : the load whose arrow is longest [N]
+    seen : points (n, 3) [mm] -> (n, 2) [pixels]
+    """
+    texts = [f"{k}: {load:.3g} N" for k, load in enumerate(state.load[: len(state.azimuth)])]
+    half = np.array([[0.5 * _LETTER * len(text), 0.5 * LETTERS] for text in texts])
+    tails, heads = (seen(points) for points in bearing.arrow_ends(state, top))
+    along = heads - tails
+    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    # As far beyond the tip as the arrow would go on through the label.
+    through = ((half + 1.2 * _GAP) / np.maximum(np.abs(along), 1e-9)).min(axis=1, keepdims=True)
+    middle = heads + along * through
+    share = np.linspace(0.0, 1.0, 25)[:, None, None]
+    arrows = ((1.0 - share) * tails + share * heads).reshape(-1, 2)
+    return [(texts[k], (float(middle[k, 0] - half[k, 0]), float(middle[k, 1] - half[k, 1])))
+            for k in _chosen(middle, half, arrows, bearing.shape.ball_count)]  # fmt: skip
+
+
+def _chosen(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: int) -> list[int]:
+    """Every nth ball of each row, n as small as leaves room; those that have room where no n does."""
+    touching = (np.abs(middle[:, None] - middle) < half[:, None] + half + _GAP).all(axis=2)
+    np.fill_diagonal(touching, False)
+    free = ~(np.abs(middle[:, None] - arrows) < half[:, None] + _GAP).all(axis=2).any(axis=1)
+
+    def clear(balls: Sequence[int]) -> bool:
+        return bool(free[balls].all()) and not touching[np.ix_(balls, balls)].any()
+
+    for every in range(1, per_row + 1):
+        balls = [k for k in range(len(middle)) if k % per_row % every == 0]
+        if clear(balls):
+            return balls
+    kept: list[int] = []
+    for k in range(len(middle)):
+        if clear([*kept, k]):
+            kept.append(k)
+    return kept
+
+
+T = TypeVar("T")
+LOADS, PRESSURES = "viridis", "inferno"
+_INK = "#20262c"
+_BAR: Tables = {
+    "color": _INK,
+    "title_font_size": 28,
+    "label_font_size": 26,
+    "n_labels": 5,
+    "fmt": "%.0f",
+    "vertical": True,
+}
+
+
+def pyvista_of(otherwise: str) -> ModuleType:
+    """The package.
+
+    Raises
+    ------
+    RacewayError
+        It or its system libraries are missing; names what installs them.
+    """
+    try:
+        import pyvista
+    except ImportError:
+        raise RacewayError(f"this picture needs pyvista: {extra('view')}{otherwise}") from None
+    refuse_pictures(otherwise)
+    return pyvista
+
+
+def quietly(pyvista: ModuleType, draw: Callable[..., T], *given: object) -> T:
+    """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
+
+    Raises
+    ------
+    RacewayError
+        VTK cannot draw here.
+    """
+    try:
+        with pyvista.vtk_verbosity("off"):
+            return draw(*given)
+    except (RuntimeError, OSError) as error:
+        raise RacewayError(f"the picture cannot be drawn: {error}") from None
+
+
+def new_plotter(pyvista: ModuleType, size: tuple[int, int]) -> Any:
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
+    plotter.background_color = "white"
+    return plotter
+
+
+def add_parts(pyvista: ModuleType, plotter: Any, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
+    """Put parts into a scene; colours of loads and pressures reach from 0 to the given ends [N, MPa]."""
+    for part in parts:
+        mesh = pyvista.PolyData.from_regular_faces(part.surface.points, part.surface.triangles)
+        mesh.point_data["Normals"] = part.surface.normals
+        mesh.point_data.active_normals_name = "Normals"
+        # Loads are equal all over a part: as a field, so that all parts share one colour bar.
+        look: Tables = {
+            "smooth_shading": True,
+            "split_sharp_edges": False,
+            "opacity": part.opacity,
+            "show_scalar_bar": False,
+        }
+        if part.colour is not None:
+            ambient = 0.65 if "cut face" in part.name else 0.25
+            plotter.add_mesh(mesh, color=part.colour, ambient=ambient, diffuse=1.0 - ambient, specular=0.1, **look)
+        elif part.scale == "pressure":
+            mesh.point_data["pressure"] = part.surface.values
+            plotter.add_mesh(mesh, scalars="pressure", cmap=PRESSURES, clim=(0.0, top_pressure), lighting=False, **look)
+        else:
+            mesh.point_data["load"] = np.full(len(part.surface.points), part.load)
+            plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top_load), ambient=0.3, **look)
+
+
+def screen_points(plotter: Any) -> Callable[[np.ndarray], np.ndarray]:
+    """Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner."""
+    width, height = plotter.window_size
+    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+    project = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+
+    def seen(points: np.ndarray) -> np.ndarray:
+        at = np.column_stack([points, np.ones(len(points))]) @ project.T
+        return np.asarray(0.5 * (at[:, :2] / at[:, 3:] + 1.0) * [width, height])
+
+    return seen
+
+
+def colour_bar(pyvista: ModuleType, plotter: Any, title: str, colours: str, top: float, place: tuple[float, float]) -> None:
+    """A colour bar of its own, from 0 to ``top``."""
+    table = pyvista.LookupTable(colours, scalar_range=(0.0, top))
+    hidden = pyvista.PolyData(np.zeros((1, 3)))
+    hidden.point_data["bar"] = np.zeros(1)
+    actor = plotter.add_mesh(hidden, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
+    small = plotter.window_size[0] / 1600.0  # letters are given in pixels
+    sizes = {name: max(int(_BAR[name] * small), 12) for name in ("title_font_size", "label_font_size")}
+    bar = {**_BAR, **sizes, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
+    plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
+
+
+def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int] = (1600, 1200)) -> np.ndarray:
+    """The bearing cut open, seen from the gap: (rows, columns, 3) bytes."""
+    pyvista = pyvista_of("")
+    z = len(state.azimuth)
+    top = max(float(state.load[:z].max()), 1e-12)
+
+    def draw() -> np.ndarray:
+        plotter = new_plotter(pyvista, size)
+        patches = bearing.patches(state)
+        peak = max((float(part.surface.values.max()) for part in patches if part.surface.values is not None), default=1.0)
+        parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
+        add_parts(pyvista, plotter, parts, top, peak)
+        # VTK draws square brackets as round ones.
+        colour_bar(pyvista, plotter, "ball load, N", LOADS, top, (0.045, 0.54))
+        colour_bar(pyvista, plotter, "pressure, MPa", PRESSURES, peak, (0.045, 0.06))
+        plotter.add_text(heading, position="upper_edge", font_size=13, color=_INK)
+        plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=_INK, viewport=(0.85, 0.0, 1.0, 0.2))
+        plotter.enable_anti_aliasing("ssaa")
+        plotter.camera_position = [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+        plotter.reset_camera()
+        plotter.camera.zoom(1.08)
+        for text, place in ball_labels(bearing, state, top, screen_points(plotter)):
+            plotter.add_text(text, position=place, font_size=LETTERS // 2, color=_INK)
+        image = np.asarray(plotter.screenshot(return_img=True))
+        plotter.close()
+        return image
+
+    return np.asarray(quietly(pyvista, draw))
+
+
+_MM = 1e3
+_RACES = ("inner", "outer")
+
+
+def contacts(bearing: Bearing, state: State, heading: str) -> Figure:
+    """Section and ellipses of the ball with the largest load of both races."""
+    z = len(state.azimuth)
+    ball = int(np.argmax(state.load)) % z
+    figure = new_figure(12.8, 6.2)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.25))
+    _section(figure.add_subplot(grid[:, 0]), bearing, state, ball)
+    top = 1e-6 * float(max(state.peak[ball], state.peak[z + ball]))
+    reach = 1.15 * _MM * float(max(state.half[ball, 0], state.half[z + ball, 0], 1e-9))
+    panels = [figure.add_subplot(grid[lane, 1]) for lane in range(2)]
+    shown = [_ellipse(panel, state, k * z + ball, _RACES[k], top, reach) for k, panel in enumerate(panels)]
+    figure.colorbar(shown[0], ax=panels, label="pressure [MPa], Hertz", shrink=0.9)
+    figure.suptitle(f"{heading}\nmost loaded ball: {ball} at {np.degrees(state.azimuth[ball]) % 360.0:.4g} deg", fontsize=13)
+    return figure
+
+
+def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
+    z = len(state.azimuth)
+    side, place = bearing.shape.rows[ball // bearing.shape.ball_count]
+    for inner, colour in ((True, INNER), (False, OUTER)):
+        race, seat = bearing.lines(inner, side, place)
+        axes.fill(*np.concatenate([race, seat[::-1]]).T, facecolor=colour, edgecolor=_INK, linewidth=0.8, alpha=0.75)
+        _mesh(axes, bearing, inner, side, place)
+    radius, middle = 0.5 * bearing.diameter, np.array([_MM * place, 0.5 * _MM * bearing.shape.pitch_diameter])
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    axes.fill(
+        middle[0] + radius * np.cos(turn),
+        middle[1] + radius * np.sin(turn),
+        facecolor="#e8ebee",
+        edgecolor=_INK,
+        linewidth=0.8,
+    )
+    arrow = {"arrowstyle": "-|>", "color": "#c8501e", "linewidth": 1.8}
+    for i, sign, word in ((ball, -1.0, "inner"), (z + ball, 1.0, "outer")):
+        angle, load = state.angle[i], state.load[i]
+        if not load > 0.0:
+            axes.text(
+                middle[0], middle[1] + sign * 0.6 * radius, f"{word}: no contact", ha="center", va="center", fontsize=10
+            )
+            continue
+        towards = middle + sign * radius * np.array([side * np.sin(angle), np.cos(angle)])
+        axes.annotate("", (towards[0], towards[1]), (middle[0], middle[1]), arrowprops=arrow)
+        words = f"{word}\n{load:.4g} N\n{np.degrees(angle):.2f}°"
+        away = -sign * side  # from the arrow
+        across, up = middle + radius * np.array([0.12 * away, 0.45 * sign])
+        axes.text(across, up, words, ha="left" if away > 0.0 else "right", va="center", fontsize=10)
+    axes.axhline(middle[1], color="#8a949e", linewidth=0.6, linestyle=(0, (6, 3, 1, 3)))
+    axes.set_aspect("equal")
+    axes.set_xlabel("along the axis, x [mm]")
+    axes.set_ylabel("radius [mm]")
+    axes.set_title("section, rings as they stand unloaded", fontsize=11)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) -> None:
+    """The mesh that a condensed ring was computed on."""
+    compute = getattr(bearing.result.model.bearing, "ring_section", None)
+    if compute is None:
+        return
+    from matplotlib.collections import PolyCollection
+
+    profile = compute(bearing.result.model, inner)
+    corners = _MM * (profile.points[:, ::-1] * [side, 1.0] + [place, 0.0])
+    axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=_INK, linewidth=0.25, alpha=0.7))
+
+
+def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> ScalarMappable:
+    """One ellipse on a mesh of its own radii and angles, so that its edge is smooth."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    norm = Normalize(0.0, max(top, 1e-9))
+    scale = ScalarMappable(norm, "inferno")
+    a, b = _MM * state.half[i]
+    words = "no contact"
+    if state.load[i] > 0.0:
+        part, turn = np.meshgrid(np.sin(np.linspace(0.0, 0.5 * np.pi, 61)), np.linspace(0.0, 2.0 * np.pi, 241))
+        pressure = 1e-6 * state.peak[i] * np.sqrt(1.0 - part**2)
+        place = a * part * np.cos(turn), b * part * np.sin(turn)
+        axes.pcolormesh(*place, pressure, cmap=scale.cmap, norm=norm, shading="gouraud", rasterized=True)
+        words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
+    axes.set_aspect("equal")
+    axes.set_xlim(-reach, reach)
+    axes.set_ylim(-0.35 * reach, 0.35 * reach)
+    axes.set_facecolor("#f4f5f7")
+    axes.set_xlabel("across the groove [mm]")
+    axes.set_ylabel("rolling [mm]")
+    axes.set_title(f"{race} race: {words}", fontsize=11)
+    return scale
+
+
+def png(image: np.ndarray) -> bytes:
+    """An image (rows, columns, 3) of bytes as a PNG file: zlib's stream of unfiltered rows."""
+    import struct
+    import zlib
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    height, width = image.shape[:2]
+    rows = b"".join(b"\0" + row.tobytes() for row in np.ascontiguousarray(image[:, :, :3]))
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 6)) + chunk(b"IEND", b"")
