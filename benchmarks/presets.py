@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from raceway.studies.infer.infer import STIFFNESS_90, infer_printed
-from raceway.studies.infer.inferred import Inferred
-from raceway.studies.infer.practices import CONFORMITY, POISSON, YOUNG
-from raceway.studies.infer.printed import printed_by, sizes_of
+from raceway.studies.catalogue.inferred import STIFFNESS_90, Inferred, infer_printed
+from raceway.studies.catalogue.printed import printed_by, sizes_of
+from raceway.studies.catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
 FOLDER = Path(__file__).resolve().parents[1] / "raceway" / "data" / "series"
 SERIES = ("70", "72", "79")

@@ -11,6 +11,7 @@ import pytest
 
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
+from raceway.points.attractor import FAILED, Instead
 from raceway.scene.file import read_toml
 from raceway.studies.article import runs
 from raceway.studies.article import study as driver
@@ -25,7 +26,6 @@ from raceway.studies.article.design import (
 )
 from raceway.studies.article.figures import Picture, drawings
 from raceway.studies.article.page import page, write
-from raceway.studies.follow.instead import FAILED, Instead
 from tests.test_commands import SMALL
 from validation.article_study import curves, row, study
 from validation.command_line import EXAMPLES, invoke

@@ -12,7 +12,7 @@ from raceway import SceneError, run, scene_from_dict
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
 from raceway.scene.growth import grooves
-from raceway.studies.infer.printed import printed_by
+from raceway.studies.catalogue.printed import printed_by
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.

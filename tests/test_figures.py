@@ -17,16 +17,16 @@ import raceway
 from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.plugins import pictures
+from raceway.points import follow_picture as followed
+from raceway.points import law_picture
+from raceway.points.law import law
 from raceway.studies.article import figures as article
 from raceway.studies.band import picture as band_picture
-from raceway.studies.catalogue import drawing
+from raceway.studies.catalogue import section as drawing
 from raceway.studies.compare import picture as comparison
 from raceway.studies.fit import picture as fits
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.synchronous import synchronous
-from raceway.studies.follow import picture as followed
-from raceway.studies.law import picture as law_picture
-from raceway.studies.law.front import law
 from raceway.studies.precision import picture as precision
 from raceway.studies.rig import page as rig
 from raceway.studies.sensitivities import picture as bars

@@ -15,8 +15,8 @@ from raceway.core.periodic.direct import directly
 from raceway.core.periodic.doubling import doubled
 from raceway.core.periodic.sampling import displacements
 from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
-from raceway.studies.follow.instead import QUASI, REPEATS, WANDERS, judged
-from raceway.studies.follow.study import FollowInterrupt
+from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
+from raceway.points.continuation import FollowInterrupt
 from validation.command_line import invoke
 from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
 from validation.oscillators import Oscillator, Pressed, natural_frequency

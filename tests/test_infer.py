@@ -12,12 +12,17 @@ import raceway as rw
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.studies.infer.grooves import pair_stiffness
-from raceway.studies.infer.infer import STIFFNESS_90, infer_printed
-from raceway.studies.infer.practices import CONFORMITY, LIMITS
-from raceway.studies.infer.printed import Printed, Rating, parse_table, printed_by, sizes_of
-from raceway.studies.infer.ratings import dynamic_rating, static_factor, static_rating, static_rating_of_grooves
-from raceway.studies.infer.tables import infer_table
+from raceway.studies.catalogue.infer import infer_table
+from raceway.studies.catalogue.inferred import STIFFNESS_90, infer_printed
+from raceway.studies.catalogue.printed import Printed, Rating, parse_table, printed_by, sizes_of
+from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS
+from raceway.studies.catalogue.ratings import (
+    dynamic_rating,
+    pair_stiffness,
+    static_factor,
+    static_rating,
+    static_rating_of_grooves,
+)
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -75,7 +80,7 @@ def test_the_closed_form_of_a_pair_is_what_a_run_gives():
 
 
 def test_the_load_factor_is_that_of_the_core():
-    from raceway.studies.infer.grooves import groove, load_factor
+    from raceway.studies.catalogue.ratings import groove, load_factor
 
     modulus = contact_modulus(208e9, 0.3, 208e9, 0.3)
     shape = BallBearing(D, PITCH, Z, ANGLE, 0.522, 0.53)
@@ -283,7 +288,7 @@ def test_the_catalogue_lists_shows_and_draws(tmp_path):
 
 
 def test_the_section_is_in_proportion():
-    from raceway.studies.catalogue.drawing import _outline
+    from raceway.studies.catalogue.section import _outline
 
     bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
     inner, outer = (_outline(bearing, race) for race in (True, False))

@@ -11,8 +11,8 @@ from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.direct import directly, highest_order
 from raceway.core.periodic.sampling import displacements
 from raceway.core.ring.system import System
-from raceway.studies.follow.front import parameter_of
-from raceway.studies.follow.row import line
+from raceway.points.branch import line
+from raceway.points.follow import parameter_of
 from raceway.testing import default_registry
 from validation.reference.harmonic_balance import harmonic_balance
 from validation.reference.ring import Ring

@@ -1,14 +1,13 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
 many        what they share: the engine (items in, rows out, kept and resumed), points, axes, row store, pages
-compare, follow, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
+compare, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
 rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 band        the range of an answer over the tolerances of its scene
 sensitivities   derivatives of an answer by every number of its scene
 fit         numbers of a scene from measured data, with what these do not determine
 limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
-infer, catalogue    balls and grooves from printed numbers; the bearings that were made so, with their commands
-law         one contact of a bearing with any installed contact law, beside Hertz'
+catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
 command     ``raceway study``
 shaft       the rotor that ``rig`` and ``measured`` set the bearing in

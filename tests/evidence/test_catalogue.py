@@ -11,9 +11,9 @@ import numpy as np
 
 import raceway as rw
 from raceway.core.jit import working_process_time
-from raceway.studies.infer.infer import STIFFNESS_90
-from raceway.studies.infer.practices import stiffnesses
-from raceway.studies.infer.printed import printed_by
+from raceway.studies.catalogue.inferred import STIFFNESS_90
+from raceway.studies.catalogue.printed import printed_by
+from raceway.studies.catalogue.rating_conventions import stiffnesses
 from validation.command_line import invoke
 
 NSK = "NSK, super-precision bearings, series 70, 72, 79"

@@ -20,11 +20,11 @@ from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
+from raceway.points.attractor import FAILED, Instead, from_rest, instead_of
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Curves, Design, Setting, article_tables
-from raceway.studies.follow.instead import FAILED, Instead, from_rest, instead_of
 from raceway.studies.many.engine import Item, local, work_through
 from raceway.studies.many.row_store import RowStore, program_key
 

@@ -1,7 +1,9 @@
-"""The catalogue of bearings: listed, searched, one of them in numbers and as a section.
+"""The catalogue of bearings, and balls and grooves inferred from what a maker prints.
 
-front      ``raceway.catalogue``;  command: ``raceway catalogue``
-entry      what is told of one bearing
-drawing    its section, in proportion
-screen     lists and one bearing on the screen
+catalogue            ``raceway.catalogue``: bearings listed, searched, one in full;  section: its picture, in proportion
+printed              what makers print, and tables of it
+ratings              load ratings of ISO 281 and ISO 76; Hertz contacts of many grooves; axial stiffness of a preloaded pair
+rating_conventions   how makers rate: by the standards' tables, or by their own grooves; candidates of ball count and diameter
+inferred             from printed numbers to balls and grooves, each number with scatter and reason
+infer                ``raceway.infer``, and tables of many bearings
 """

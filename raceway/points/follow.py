@@ -10,16 +10,16 @@ from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import ShowProgress, telling
+from raceway.points.branch import Followed
+from raceway.points.continuation import FollowInterrupt, Rule
+from raceway.points.continuation import follow as study
+from raceway.points.parameter import Parameter
 from raceway.scene.changes import parse_value, with_value
 from raceway.scene.continuous import key_of
 from raceway.scene.given import Change, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
-from raceway.studies.follow.parameter import Parameter
-from raceway.studies.follow.result import Followed
-from raceway.studies.follow.study import FollowInterrupt, Rule
-from raceway.studies.follow.study import follow as study
 from raceway.studies.many.points import numbers_at
 
 POINTS, AIM = 1000, 1e-3

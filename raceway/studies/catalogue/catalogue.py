@@ -1,16 +1,50 @@
-"""What is told of one bearing of the catalogue."""
+"""The catalogue of bearings, for Python: ``raceway.catalogue``."""
 
 from __future__ import annotations
 
 import attrs
 
+from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import ball_pass
-from raceway.scene.catalogue import Preset, geometry_of
+from raceway.scene.catalogue import Preset, found_by, geometry_of, no_preset
 from raceway.scene.materials import materials
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
+
+
+@door
+def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
+    """Bearings of the catalogue, which ``preset`` of a scene's [bearing] takes by name.
+
+    Parameters
+    ----------
+    pattern : as in a shell (``"70*C"``), or a part of the name; in any case
+
+    Returns
+    -------
+    tuple of Preset
+        Each with ``name``, ``title``, ``table`` (the [bearing] table), ``facts`` (value, source, scatter) and ``stiffness_error``
+
+    Raises
+    ------
+    SceneError
+        None has such a name; the nearest five.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> [one.name for one in rw.catalogue("7014*")]
+    ['7014C', '7014A5', '7014A']
+    >>> rw.catalogue("7014C")[0].table["ball_count"]
+    20
+    """
+    found = tuple(found_by(pattern))
+    if not found:
+        raise SceneError.at("pattern", pattern, no_preset(pattern))
+    return found
 
 
 def scene_of(one: Preset) -> Scene:

@@ -4,21 +4,173 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.errors import SceneError
+from raceway.bodies.model import build_model
+from raceway.core.ring.increment import Increment
+from raceway.core.ring.kernels.impact import single_contact
+from raceway.core.ring.surrogate import compiled
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.result import damping_origin
+from raceway.pipeline.settle import settle
+from raceway.planning.plan import make_plan
 from raceway.scene.given import Change, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
-from raceway.studies.law.contact import Contact, contact_of
-from raceway.studies.law.cycle import Cycle, cycle
+
+if TYPE_CHECKING:
+    from raceway.core.ring.system import System
+    from raceway.scene.scene import Scene
+
+RACES = ("inner", "outer")
+
+
+@attrs.frozen(eq=False)
+class Contact:
+    """One ball-race contact.
+
+    Attributes
+    ----------
+    race : "inner" or "outer";  ball : its number, from 1
+    load : normal force in the equilibrium [N]
+    approach : there [m]: minus the gap between the undeformed surfaces
+    reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
+    hertz_factor : K of Hertz' force K delta^1.5 [N/m^1.5]
+    system : a mass against the contact alone, whose x is approach + reach
+    """
+
+    race: str
+    ball: int
+    load: float
+    approach: float
+    reach: float
+    hertz_factor: float
+    system: System
+
+    def at(
+        self, approach: float, rate: float = 0.0, step: Increment | None = None
+    ) -> tuple[float, float, float, np.ndarray]:
+        """Force [N], its derivatives by approach [N/m] and by the approach's rate [N s/m], and the law's memory (2, m).
+
+        Parameters
+        ----------
+        approach, rate : [m, m/s]
+        step : since the memory was committed; None: at rest, without a history
+        """
+        q, v = np.zeros(5), np.zeros(5)
+        q[0], v[0] = approach + self.reach, rate
+        now = self.system.evaluate(q, v, ball=np.zeros((1, 2)), step=step or Increment())
+        return float(now.force[0]), float(now.stiffness[0, 0]), float(now.damping[0, 0]) + 0.0, now.memory  # no -0
+
+    def curves(self, approach: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """(3, m, n) force, stiffness and damping over rates (m,) [m/s] and approaches (n,) [m], each without a history."""
+        found = [[self.at(float(one), float(rate))[:3] for one in approach] for rate in rates]
+        return np.moveaxis(np.array(found), -1, 0)
+
+    def hertz(self, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and stiffness (n,) by Hertz' law over approaches (n,) [m]."""
+        deep = np.maximum(approach, 0.0)
+        return self.hertz_factor * deep**1.5, 1.5 * self.hertz_factor * np.sqrt(deep)
+
+
+def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
+    """A contact of a scene with rigid bodies, in its equilibrium.
+
+    Parameters
+    ----------
+    race : "inner" or "outer"
+    ball : its number, from 1 over all rows; None: the most loaded one
+
+    Raises
+    ------
+    SceneError
+        Another race, a ball that is not there, bodies that are not rigid.
+    RacewayError
+        A contact that carries nothing.
+    ConvergenceError
+        No equilibrium.
+    """
+    if race not in RACES:
+        raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
+    if scene.bodies.name != "rigid":
+        rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
+        raise SceneError.at("bodies.kind", scene.bodies.name, rule)
+    model = build_model(scene, make_plan(scene))
+    still = settle(model)
+    ring = compiled(model.system)
+    assert ring is not None, "rings of rigid bodies are compiled"
+    count = ring.ball_count
+    loads = still.contact_force.reshape(2, count)[RACES.index(race)]
+    number = int(np.argmax(loads)) + 1 if ball is None else ball
+    if not 1 <= number <= count:
+        raise SceneError.at("ball", ball, f"must be from 1 to {count}")
+    index = RACES.index(race) * count + number - 1
+    load = float(still.contact_force[index])
+    if load <= 0.0:
+        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads)) + 1}"
+        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
+    ellipse = model.inner if race == "inner" else model.outer
+    factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
+    reach = 0.0 if ring.reach is None else float(ring.reach[index])
+    approach = -float(still.gap[index]) - reach
+    return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))
+
+
+#: Samples a period, and periods of a law with memory, of which the last is taken: by then it has forgotten how the motion began.
+SAMPLES, PERIODS = 720, 4
+#: Of a mean of so many samples, over the largest force.
+_ROUNDING = 1e-13
+
+
+@attrs.frozen(eq=False)
+class Cycle:
+    """One period of the approach.
+
+    Attributes
+    ----------
+    frequency : [Hz];  amplitude : x [m]
+    approach, rate, force : (n,) over one period [m, m/s, N]
+    stiffness : K [N/m];  damping : C [N s/m];  energy : lost [J];  loss_factor : w C / K; None without K
+    opens : whether the contact opens on the way
+    """
+
+    frequency: float
+    amplitude: float
+    approach: np.ndarray
+    rate: np.ndarray
+    force: np.ndarray
+    stiffness: float
+    damping: float
+    energy: float
+    loss_factor: float | None
+    opens: bool
+
+
+def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
+    """A contact moved about its equilibrium with an amplitude [m] and a frequency [Hz]."""
+    w = 2.0 * np.pi * frequency
+    phase = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
+    approach, rate = contact.approach + amplitude * np.cos(phase), -w * amplitude * np.sin(phase)
+    remembers = contact.system.law_state.size > 0
+    step = Increment(0.0, 0.0, np.zeros_like(contact.system.law_state))  # no time has passed before the first sample
+    force = np.empty(SAMPLES)
+    for _ in range(PERIODS if remembers else 1):
+        for k in range(SAMPLES):
+            force[k], _, _, memory = contact.at(float(approach[k]), float(rate[k]), step)
+            step = attrs.evolve(step, dt=1.0 / (frequency * SAMPLES), memory=memory)
+    in_phase, ahead = 2.0 * float(np.mean(force * np.cos(phase))), -2.0 * float(np.mean(force * np.sin(phase)))
+    ahead = ahead if abs(ahead) > _ROUNDING * float(np.max(force)) else 0.0
+    return Cycle(
+        frequency, amplitude, approach, rate, force, in_phase / amplitude, ahead / (w * amplitude), np.pi * ahead * amplitude,
+        ahead / in_phase if in_phase > 0.0 else None, bool((force <= 0.0).any()),
+    )  # fmt: skip
+
 
 #: The bearing of the article under its load, where no scene is given.
 BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
@@ -88,7 +240,7 @@ class LawCurves(Shown):
             matplotlib is missing, or a folder that cannot be written.
         """
         from raceway.plugins.pictures import save_figure
-        from raceway.studies.law.picture import draw
+        from raceway.points.law_picture import draw
 
         return save_figure(draw(self), Path(path))
 

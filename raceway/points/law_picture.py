@@ -9,7 +9,7 @@ from raceway.plugins.pictures import new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from raceway.studies.law.front import LawCurves
+    from raceway.points.law import LawCurves
 
 _OWN, _HERTZ, _MOVING = "#0b5fa5", "#555f6b", "#c8501e"
 

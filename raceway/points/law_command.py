@@ -69,7 +69,7 @@ def law(given: LawOptions) -> int:
         writable(place.parent)
     tell_faults(registry_with(given.plugins))
     with show_progress():
-        from raceway.studies.law.front import law as curves
+        from raceway.points.law import law as curves
 
         found = curves(
             given.name, given.scene, *given.changes, race=given.race, ball=given.ball, amplitude=given.amplitude,
