@@ -24,7 +24,7 @@ from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.studies.fit.fit import fit
 from raceway.studies.fit.identify import identify, identify_recording
-from raceway.studies.fit.inversion import coefficients
+from raceway.studies.fit.rig import coefficients
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise

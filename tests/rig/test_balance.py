@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.fit.inversion import coefficients, invert, standard_errors, with_moment, with_tilt_of
+from raceway.studies.fit.rig import coefficients, invert, standard_errors, with_moment, with_tilt_of
 from raceway.studies.shaft.bearing import bearing, find_root, whirling_load
 from raceway.studies.shaft.rotor import rotor, shaft
 from raceway.testing import default_registry

@@ -128,13 +128,7 @@ def _limit(scene: Scene, path: str, value: float, step: float) -> float:
 
 
 def with_free(scene: Scene, free: Sequence[Free], values: np.ndarray) -> Scene:
-    """The scene with values of its free keys.
-
-    Raises
-    ------
-    SceneError
-        A value that a key's rule refuses.
-    """
+    """The scene with values of its free keys; ``SceneError`` for one that a key's rule refuses."""
     for key, value in zip(free, values, strict=True):
         try:
             scene = with_number(scene, key.name, float(value))

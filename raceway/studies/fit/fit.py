@@ -296,13 +296,7 @@ def fit(
 
 
 def refuse_few(data: int, free: int, source: str) -> None:
-    """Fewer data than free numbers.
-
-    Raises
-    ------
-    SceneError
-        With both counts.
-    """
+    """``SceneError`` for fewer data than free numbers."""
     if data < free:
         numbers = "1 measured number" if data == 1 else f"{data} measured numbers"
         message = f"{numbers} for {free} free ones: free fewer keys, or measure at more loads or speeds"

@@ -22,15 +22,15 @@ from raceway.plugins.pictures import given_axes, save_figure
 from raceway.scene.given import as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
-from raceway.scene.scene import Scene
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fit import interval
-from raceway.studies.fit.inversion import (
+from raceway.studies.fit.rig import (
     changed_rotors,
     invert,
     largest_change,
+    refuse_no_load,
     sensitivities,
     standard_errors,
     tilted,
@@ -340,19 +340,10 @@ def identify(
     --------
     >>> import numpy as np, raceway as rw
     >>> angle = 2.0 * np.pi * 200.0 * (time := np.arange(0.0, 0.1, 5e-5))
-    >>> signals = {
-    ...     "time_s": time,
-    ...     "y_um": 15.0 * np.cos(angle),
-    ...     "z_um": 15.0 * np.sin(angle),
-    ...     "speed_rpm": 12000.0 + 0.0 * time,
-    ... }
-    >>> rig = {
-    ...     "bearing": {"preset": "B7206C"},
-    ...     "load": {"axial": 1000.0},
-    ...     "rig": {},  # a shaft of 426 mm with a disc, see ``raceway schema``
-    ...     "integrator": {"kind": "quasi_static"},
-    ... }
-    >>> bearing = rw.identify(signals, rig)
+    >>> orbit = {"time_s": time, "y_um": 15.0 * np.cos(angle), "z_um": 15.0 * np.sin(angle), "speed_rpm": 12000.0 + 0.0 * time}
+    >>> rig = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "integrator": {"kind": "quasi_static"}}
+    >>> rig["rig"] = {}  # a shaft of 426 mm with a disc, see ``raceway schema``
+    >>> bearing = rw.identify(orbit, rig)
     >>> round(1e-6 * bearing.equivalent_stiffness)  # K [N/um]
     84
     """
@@ -375,19 +366,6 @@ def identify(
     if folder is not None:
         answer.save(folder)
     return answer
-
-
-def refuse_no_load(scene: Scene) -> None:
-    """A bearing without axial load has no stiffness to compare with.
-
-    Raises
-    ------
-    SceneError
-        Naming the key.
-    """
-    if scene.load.axial <= 0.0:
-        message = "must be the axial load of the measurement, greater than 0: add --set load.axial=..."
-        raise SceneError.at("load.axial", scene.load.axial, message)
 
 
 def identify_recording(

@@ -64,13 +64,7 @@ class Spectra:
 
 
 def spectra_of(signals: Signals) -> Spectra:
-    """Spectra in the excited band.
-
-    Raises
-    ------
-    SceneError
-        A record without force and displacement along one axis, with uneven intervals, or without a force that changes.
-    """
+    """Spectra in the excited band; force and displacement along one axis, even intervals and a force that changes are needed."""
     columns, source = signals.columns, signals.source
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
     pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
@@ -102,11 +96,6 @@ def free_parts(names: Sequence[str], spectra: Spectra, mass: float | None) -> li
     """Free numbers of the linear model, by words K, C and mass; in two directions K stands for its four parts, or they by name.
 
     A mass that is None is free, too.
-
-    Raises
-    ------
-    SceneError
-        A word that the model does not have.
     """
     words = {word: [word] for word in _UNITS}
     if len(spectra.axes) == 2:
@@ -232,13 +221,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
 
 
 def fit_spectra(spectra: Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear, np.ndarray]:
-    """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N].
-
-    Raises
-    ------
-    ConvergenceError
-        The search does not converge.
-    """
+    """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
     while hum := tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
         tones = (*problem.tones, hum)
@@ -332,13 +315,6 @@ def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted
     Parameters
     ----------
     mass : where it is not free [kg]; None: it is free, named or not
-
-    Raises
-    ------
-    SceneError
-        The fault of the record or the names.
-    ConvergenceError
-        The search does not converge.
     """
     if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")

@@ -52,13 +52,7 @@ def faults_at(source: str) -> Iterator[None]:
 
 
 def headers_of(data: Any, name: str) -> list[str]:
-    """Column headers of data, without the numbers of a file.
-
-    Raises
-    ------
-    SceneError
-        A file that cannot be read, or data of another form; ``name`` stands for data that are no file.
-    """
+    """Column headers of data, without the numbers of a file."""
     if not isinstance(data, str | Path):
         return list(_arrays(data, name))
     with _reading(Path(data)):

@@ -71,13 +71,7 @@ class Measurements:
         return {name: np.full(self.count, float(np.median(np.abs(numbers))) or 1.0) for name, numbers in self.values.items()}
 
     def scenes(self, scene: Scene) -> list[Scene]:
-        """The scene of each row.
-
-        Raises
-        ------
-        SceneError
-            A number that a key of the scene cannot have.
-        """
+        """The scene of each row."""
         scenes = [scene] * self.count
         for row in range(self.count):
             for path, numbers in self.keys.items():
@@ -125,13 +119,7 @@ def measurements_in(table: NumberTable, source: str, scene: Scene, columns: Mapp
 
 
 def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> list[tuple[str, str, float]]:
-    """Kind ("key", "value", "error" or "ignore"), name and factor of each column.
-
-    Raises
-    ------
-    ValueError
-        A header that is not understood, a unit that is missing or wrong, or headers without a measured quantity.
-    """
+    """Kind ("key", "value", "error" or "ignore"), name and factor of each column."""
     if unknown := next((text for text in meant if text not in header), None):
         raise ValueError(f"no column '{unknown}' for --map; there are {', '.join(map(repr, header))}")
     keys = {key.path: key for key in continuous_keys(scene)}
@@ -312,13 +300,7 @@ def _across(displacement: np.ndarray) -> dict[str, float]:
 
 
 def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
-    """Free keys of a scene from a table.
-
-    Raises
-    ------
-    SceneError, ConvergenceError
-        The fault of table, keys or scene; no answer, or no convergence of the search.
-    """
+    """Free keys of a scene from a table."""
     free = free_keys(scene, names)
     refuse_few(measured.count * len(measured.values), len(free), measured.source)
     problem = TableResiduals.of(measured, scene, free)

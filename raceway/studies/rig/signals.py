@@ -25,7 +25,7 @@ import numpy as np
 
 from raceway.scene.rig import Rig, Signals
 from raceway.studies.fit.identify import identify_recording
-from raceway.studies.fit.inversion import changed_rotors, invert, with_moment, with_tilt_of
+from raceway.studies.fit.rig import changed_rotors, invert, with_moment, with_tilt_of
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording
 from raceway.studies.fit.synchronous import slow_roll
