@@ -20,7 +20,7 @@ from raceway.core.signatures import Outer
 from raceway.core.stepping.protocol import State
 from raceway.core.stepping.record import Schedule
 from raceway.integrators.newmark import Newmark
-from raceway.studies.stability.systems import BASE
+from raceway.studies.stability.catalogue import BASE
 from raceway.testing import Registry, model_of, settle, settled, simulate
 from validation import orders
 from validation.scenes import rotating

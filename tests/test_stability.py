@@ -17,15 +17,10 @@ from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.settle import settle
-from raceway.studies.stability import elastic, own_force, scenes
-from raceway.studies.stability import study as study_module
-from raceway.studies.stability.case import AS_EXPECTED, FAILED, Case, Rows
-from raceway.studies.stability.catalogue import catalogue
-from raceway.studies.stability.extremes import SCENES
-from raceway.studies.stability.own_force import axial_displacement
-from raceway.studies.stability.stored import axial_force
-from raceway.studies.stability.study import measured, rows_of, stability
-from raceway.studies.stability.systems import BASE, laws_with, model_at, transient, with_law
+from raceway.studies.stability import scenes, systems
+from raceway.studies.stability.catalogue import BASE, SCENES, catalogue, laws_with, transient, with_law
+from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Rows, measured, rows_of, stability
+from raceway.studies.stability.systems import axial_displacement, axial_force, model_at
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
@@ -156,7 +151,7 @@ def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
     """Deliberate fault: rings 10 % stiffer than those of the condensed bodies that they are held against."""
     wanted = {"law": "hertz", "bodies": "elastic, resultants"}
     assert {row.verdict for row in rows_named("elastic bodies: axial load 1 N", **wanted)} == {AS_EXPECTED}
-    monkeypatch.setattr(elastic, "COARSE", {**elastic.COARSE, "bearing.rings": {"young": 233.2e9}})
+    monkeypatch.setattr(scenes, "COARSE", {**scenes.COARSE, "bearing.rings": {"young": 233.2e9}})
     found = verdicts(rows_named("elastic bodies: axial load 1 N", **wanted))
     # The seat carries the load all the same.
     assert found == {"axial displacement": FAILED, "radial stiffness": FAILED, "axial force on the outer seat": AS_EXPECTED}
@@ -173,8 +168,8 @@ def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatc
 
 def test_friction_is_judged_where_it_acts():
     """Equilibria know none: with it they are what they are without it, which no row of theirs could fail."""
-    assert any(one.measure == "elastic:rubbing" and one.arguments["changes"]["contact.friction"] == 1.0 for one in CASES)
-    still = ("elastic:points_at_rest", "elastic:calibrated_at_rest")
+    assert any(one.measure == "scenes:rubbing" and one.arguments["changes"]["contact.friction"] == 1.0 for one in CASES)
+    still = ("scenes:points_at_rest", "elastic:calibrated_at_rest")
     assert not any("friction" in one.name for one in CASES if one.measure in still)
 
 
@@ -261,7 +256,7 @@ def test_expectations_of_any_law_follow_from_its_own_force(name, law):
 def small_motions(**contact):
     changes = {"contact.kind": "hunt_crossley", **{f"contact.{key}": value for key, value in contact.items()}}
     arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes}
-    return rows_of(Case("c", "limits:small_motions", {}, arguments), registry_with([DAMPED]))
+    return rows_of(Case("c", "motions:small_motions", {}, arguments), registry_with([DAMPED]))
 
 
 def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
@@ -281,7 +276,7 @@ def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_forc
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
     # Deliberate fault: surfaces that touch.
-    monkeypatch.setattr(own_force, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
+    monkeypatch.setattr(systems, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
     assert abs(axial_displacement(model) / found - 1.0) > 0.1
 
 
@@ -332,7 +327,7 @@ def test_a_scene_of_the_user_is_put_through_the_cases_that_suit_any(tmp_path):
 
 def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_path, monkeypatch):
     cases = (case("answer", value="near"), attrs.evolve(case("answer", value="far"), name="long", quick=False))
-    monkeypatch.setattr(study_module, "catalogue", lambda *_: cases)
+    monkeypatch.setattr("raceway.studies.stability.catalogue.catalogue", lambda *_: cases)
     words = ("stability", "--processes", 0, "--out", tmp_path)
     quick = invoke(*words)
     assert quick.exit_code == 0 and "left out: 1 cases" in quick.stdout

@@ -20,7 +20,7 @@ import attrs
 import numpy as np
 
 from raceway.scene.schema import scene_schema
-from raceway.studies.stability.extremes import TINY
+from raceway.studies.stability.catalogue import TINY
 
 Tables = dict[str, Any]
 _EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -1,6 +1,7 @@
 """``python -m benchmarks.mutants [WORD...]``: try the faults whose file or effect holds one of the words, all without words.
 
-Two at a time, each in a copy of its own.  Exit code 1 when a fault survives, or when its tests fail without it.
+Two at a time, each in a copy of its own.  Exit code 1 when a fault survives, or when its tests fail without it.  ``--check`` only
+compares the table with the sources.
 """
 
 from __future__ import annotations
@@ -22,16 +23,21 @@ def main(words: list[str]) -> int:
         "words", nargs="*", metavar="WORD", help="try the faults whose file or effect holds it; all without words"
     )
     parser.add_argument("--list", action="store_true", help="only show the faults")
+    parser.add_argument("--check", action="store_true", help="only show the faults that no longer fit the sources")
     parser.add_argument("--quick", action="store_true", help=f"with the tests that `make test` runs: {QUICK}")
     parser.add_argument("--table", type=Path, default=TABLE, help="a file of other faults: benchmarks/mutants/stranger.toml")
-    asked = parser.parse_args(words)
-    faults = chosen(asked.words, asked.table)
-    if asked.list:
+    options = parser.parse_args(words)
+    faults = chosen(options.words, options.table)
+    if options.check:
+        misplaced = [why for fault in faults if (why := fault.misplaced())]
+        print("\n".join([*misplaced, f"{len(faults) - len(misplaced)} of {len(faults)} fit the sources"]))
+        return 1 if misplaced else 0
+    if options.list:
         for fault in faults:
             print(f"{fault.file}: {fault.does} ({', '.join(fault.tests)})")
         return 0
     with ThreadPoolExecutor() as pool:
-        parts = list(pool.map(lambda part: tried(part, asked.quick), (faults[::2], faults[1::2])))
+        parts = list(pool.map(lambda part: tried(part, options.quick), (faults[::2], faults[1::2])))
     survived = [verdict for part in parts for verdict in part if not verdict.caught]
     for verdict in survived:
         _show(verdict)

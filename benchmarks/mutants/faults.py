@@ -41,6 +41,26 @@ class Fault:
             raise ValueError(f"{self.file}: `{self.was}` occurs {source.count(self.was)} times, must be once")
         return source.replace(self.was, self.becomes)
 
+    def misplaced(self) -> str:
+        """Why it does not fit the sources, and where its text stands now; empty where it fits."""
+        path = ROOT / self.file
+        try:
+            self.put(path.read_text(encoding="utf-8") if path.is_file() else "")
+        except ValueError as why:
+            files = [
+                path for path in sorted((ROOT / "raceway").rglob("*.py")) if self.was in path.read_text(encoding="utf-8")
+            ]
+            return f"{why}; it stands in {', '.join(str(path.relative_to(ROOT)) for path in files) or 'no file'}"
+        missing = [test for test in self.tests if not _exists(test)]
+        return f"{self.file}: there is no {', '.join(missing)}" if missing else ""
+
+
+def _exists(test: str) -> bool:
+    """Whether there is a file, and a function in it, of a name that pytest takes."""
+    name, _, node = test.partition("::")
+    path = ROOT / name
+    return path.is_file() and (not node or f"def {node.partition('[')[0]}(" in path.read_text(encoding="utf-8"))
+
 
 def read_faults(path: Path = TABLE) -> list[Fault]:
     """All faults, in the order of the table."""

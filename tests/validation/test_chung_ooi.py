@@ -14,7 +14,7 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.schemes.drivers import integrate
 from raceway.framework.registry import default_registry
 from raceway.studies.many.reference import reference_cases
-from raceway.studies.verify.impacts import impact_of, measure, transient_integrators
+from raceway.studies.verify.cases import impact_of, measure, transient_integrators
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]

@@ -1,17 +1,213 @@
-"""The catalogue of stiff and extreme cases.  What a case measures is in the modules that it names, data in ``extremes``."""
+"""The catalogue of stiff and extreme cases: extreme scenes, penalties, surface points, elastic bodies, refusals and warnings.
+
+What a case measures is in the module that its ``measure`` names.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
+import attrs
+
 from raceway.errors import SceneError
 from raceway.framework.registry import Registry
-from raceway.storage.tables import ReadTables
-from raceway.studies.stability import extremes as data
-from raceway.studies.stability.case import Case
-from raceway.studies.stability.extremes import Changes, force
-from raceway.studies.stability.systems import BASE, laws_with, transient, with_law
+from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.stability.study import Case
+
+Changes = Tables
+
+#: The article's bearing, load and force; every case that names no other scene changes this one.
+BASE: Changes = {
+    "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
+    "bearing": {"preset": "B7206C"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0}, "contact": {"damping": 0.001},
+    "excitation": {
+        "kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5, "reference_speed_rpm": 10980.0,
+    },
+    "integrator": {"kind": "newmark", "turns": 12},
+}  # fmt: skip
+#: Nothing that loses energy.
+UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
+
+
+def force(newton: float) -> Changes:
+    """A rotating force that is the same at every speed."""
+    return {"excitation.amplitude": "constant", "excitation.force": newton}
+
+
+#: Geometry without the dimensions that give the inner ring a mass of its own.
+_BARE = {"bearing.bore": None, "bearing.outer_diameter": None, "bearing.width": None, "bearing.preset": None}
+_B7206C = {
+    "bearing.ball_diameter": 9.525e-3, "bearing.pitch_diameter": 46e-3, "bearing.ball_count": 12,
+    "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0,
+}  # fmt: skip
+RUBBER, CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
+NEARLY_INCOMPRESSIBLE: Changes = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
+_RUBBER_BALLS: Changes = {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0}
+STATIC: Changes = {"kinematics.ball_inertia": False}
+#: The whole force from the first step on: while a force grows, energy is not balanced.
+SUDDEN: Changes = {"integrator.start": "static"}
+
+#: name, what changes in the base, whether the closed form of an axial load holds, and how the motion is judged:
+#: "orbit" by the steady orbit, "slow" by the series of equilibria, "finer" by finer steps and the balance of energy where no
+#: orbit is steady or friction remembers, "" for the equilibrium alone.
+SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
+    ("base", {}, True, "orbit"),
+    ("axial load 1 N", {"load.axial": 1.0, **force(0.1), **STATIC}, False, "orbit"),
+    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **force(50.0), **STATIC, **SUDDEN}, False, "finer"),
+    ("axial load 100 kN", {"load.axial": 1e5, **force(400.0)}, True, "orbit"),
+    ("speed 1 r/min", {"excitation.speed_rpm": 1.0, **force(400.0), "integrator.turns": 3}, True, "slow"),
+    ("speed 200 000 r/min", {"excitation.speed_rpm": 2e5, **force(100.0)}, False, "orbit"),
+    ("radial load = axial", {"load.radial": [1000.0, 0.0], **force(100.0)}, False, "orbit"),
+    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0], **force(100.0)}, False, "orbit"),
+    ("radial load 20 x axial", {"load.radial": [20000.0, 0.0], **force(300.0)}, False, "orbit"),
+    ("radial load 50 x axial", {"load.radial": [50000.0, 0.0], **force(300.0)}, False, "orbit"),
+    ("lift-off: rotating 3000 N at 1000 N axial", force(3000.0), True, "orbit"),
+    ("3 balls", {"bearing.ball_count": 3, **force(100.0)}, True, "orbit"),
+    (
+        "60 balls",
+        {"bearing.ball_diameter": 4e-3, "bearing.pitch_diameter": 80e-3, "bearing.ball_count": 60, **_BARE,
+         "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0},
+        True, "orbit",
+    ),
+    ("conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501}, False, "orbit"),
+    ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}, True, "orbit"),
+    (
+        "loose: clearance 50 um, rattling",
+        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 50e-6, "load.axial": 20.0, **force(200.0), **STATIC},
+        False, "finer",
+    ),
+    (
+        "clearance 20 um",
+        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 20e-6, **force(100.0)},
+        True, "orbit",
+    ),
+    ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **force(100.0)}, False, "orbit"),
+    ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **force(100.0)}, False, "orbit"),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, True, "orbit"),
+    ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}, True, "orbit"),
+    ("friction 0.3", {"contact.friction": 0.3, **force(100.0)}, True, "finer"),
+    ("friction 1.0", {"contact.friction": 1.0, **force(100.0)}, True, "finer"),
+    ("gyroscopic moments, 40 000 r/min", {"kinematics.gyroscopic": "outer_race", "excitation.speed_rpm": 4e4, **force(100.0)}, False, "orbit"),
+    ("orbiting balls", {"kinematics.orbiting": True}, True, "orbit"),
+    ("rotor of 1 g", {**_BARE, **_B7206C, "rotor.mass": 1e-3}, True, "orbit"),
+    ("rotor of 10 t", {"rotor.mass": 1e4}, True, "orbit"),
+    ("tilt free", {"supports.tilt": "free", **force(100.0)}, False, "orbit"),
+    ("tilt free, radial load = axial", {"supports.tilt": "free", "load.radial": [1000.0, 0.0], **force(50.0)}, False, "orbit"),
+    ("no damping", dict(UNDAMPED), True, "orbit"),
+)  # fmt: skip
+
+#: Those that are run with elastic rings and balls, too.
+CONDENSED = (
+    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "conformity 0.501",
+    "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
+    "ceramic balls in steel rings", "friction 0.3", "tilt free",
+)  # fmt: skip
+#: Those that are run unless all is asked for.
+QUICK = (
+    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "clearance 20 um", "tilt free",
+    "lift-off: rotating 3000 N at 1000 N axial",
+)  # fmt: skip
+PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
+
+POINTS: Changes = {
+    "bodies.kind": "condensed", "contact.discretisation": "nodal", "mesh": {"kind": "structured", "nodes_per_semi_axis": 2}, **STATIC,
+}  # fmt: skip
+#: Scenes at rest whose contacts lie inside the grooves.
+STILL: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0]}),
+    ("3 balls", {"bearing.ball_count": 3}),
+    ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
+)
+#: Scenes at rest that a user must be told something about.
+WARNED: tuple[tuple[str, Changes, str, str], ...] = (
+    ("axial load 100 kN", {"load.axial": 1e5}, "groove's edge", "contacts are cut off by the shoulder"),
+    (
+        "conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501},
+        "groove's edge", "the ellipse is longer than the groove",
+    ),
+    ("rubber balls in ceramic rings", _RUBBER_BALLS, "groove's edge", "the balls fill the grooves"),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
+)  # fmt: skip
+
+#: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
+TINY: Tables = {
+    "title": "three balls on few elements",
+    "bearing": {"preset": "B7206C", "ball_count": 3},
+    "bodies": {"kind": "elastic", "formulation": "one_point"},
+    "mesh": {
+        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0,
+        "patch": 0.5, "ball_load": 300.0,
+    },
+    "load": {"axial": 250.0},
+    "rotor": {"mass": 0.5},
+    "contact": {"kind": "hertz", "discretisation": "nodal"},
+}  # fmt: skip
+ELASTIC_POINTS: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("axial load 100 kN", {"load.axial": 1e5}),
+    ("rubber balls in ceramic rings", _RUBBER_BALLS),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE),
+)
+#: 2688 elements for the base scene's twelve balls.
+COARSE: Changes = {
+    "bodies": {"kind": "elastic", "formulation": "incompatible"},
+    "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 24}, **STATIC,
+}  # fmt: skip
+RESULTANTS: tuple[tuple[str, Changes], ...] = (
+    ("base", {}),
+    ("axial load 1 N", {"load.axial": 1.0}),
+    ("3 balls", {"bearing.ball_count": 3, "load.axial": 250.0}),
+    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
+)
+#: 15 000 r/min, a force that acts at once.
+EXCITED: Changes = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **force(60.0)}
+
+#: name, changes, words of the message, why there is no answer.
+REFUSALS: tuple[tuple[str, Changes, str, str], ...] = (
+    ("no load", {"load.axial": 0.0}, "nothing loads the bearing", "every motion is free"),
+    (
+        "two balls on the line of the load",
+        {"bearing.ball_count": 2, "bearing.preset": "B7206C", "supports.tilt": "free", "excitation": None},
+        "singular", "the ring turns freely about the line of its two balls",
+    ),
+    (
+        "explicit step above the limit", {"integrator.kind": "central_difference", "integrator.steps_per_turn": 12},
+        "above the stable limit", "it is refused before it blows up",
+    ),
+    ("unilateral law on rigid bodies", {"contact.kind": "unilateral"}, "supports 'nodal'", "it is no function of one approach"),
+    (
+        "steady orbit with friction", {"integrator.kind": "periodic", "contact.friction": 0.3},
+        "depends on how the motion began", "sticking has a memory",
+    ),
+    ("orbiting balls at rest", {"kinematics.orbiting": True, "kinematics.spin_speed_rpm": 0.0}, "needs a spin speed", "nothing turns"),
+    ("a record of 19 GiB", {"integrator.turns": 10_000_000}, "would take", "it is refused before it fills the memory"),
+    (
+        "penalty stiffer than elastic bodies allow", {"bodies.kind": "condensed", "contact.kind": "penalty", "load.axial": 1e5},
+        "is stiffer than elastic bodies allow", "what finite elements take off a contact's compliance would leave none",
+    ),
+    ("Poisson's ratio 0.5", {"bearing.rings": {"poisson": 0.5}}, "poisson", "the moduli are infinite"),
+    ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "nothing has mass", "no acceleration is defined"),
+)  # fmt: skip
+#: name, changes, words of the warning, what it is about.
+WARNINGS: tuple[tuple[str, Changes, str, str], ...] = (
+    (
+        "axial load that unseats the bearing", {"load.axial": -1000.0, **STATIC, "excitation": None},
+        "the bearing unseats", "grooves without an end would hold the ring on the other side",
+    ),
+    (
+        "contact ellipse beyond the groove's edge", {"load.axial": 1e5, "excitation": None},
+        "beyond the groove's edge", "the ellipse is cut off there in reality",
+    ),
+)  # fmt: skip
 
 #: Axial load, rotating force [N] and tilt of orbits from small to lift-off, and whether they are quick ones.
 _ORBITS = (
@@ -23,12 +219,34 @@ _ORBITS = (
 _UNDAMPED = ((0.1, 0.03), (0.02, 1.5))
 #: integrator, options, step over the contact's period, whether it may chatter: the law decides.
 _CHATTER: tuple[tuple[str, Changes, float, bool], ...] = (
-    ("newmark", {}, 1.0, True),
-    ("newmark", {}, 0.05, False),
-    ("generalized_alpha", {"rho_infinity": 0.5}, 1.0, False),
-    ("generalized_alpha", {"rho_infinity": 0.0}, 1.0, False),
-    ("central_difference", {}, 0.05, False),
-)
+    ("newmark", {}, 1.0, True), ("newmark", {}, 0.05, False), ("generalized_alpha", {"rho_infinity": 0.5}, 1.0, False),
+    ("generalized_alpha", {"rho_infinity": 0.0}, 1.0, False), ("central_difference", {}, 0.05, False),
+)  # fmt: skip
+_AT_REST = "scenes:condensed_at_rest"
+
+
+def transient(registry: Registry) -> list[str]:
+    """Names of the integrators that march through time with inertia."""
+    entries = [entry for entry in registry.all() if entry.kind == "integrator"]
+    return [entry.name for entry in entries if entry.plugin.inertial and not entry.plugin.steady]
+
+
+def laws_with(registry: Registry, *discretisations: str) -> list[str]:
+    """Names of the laws that know these discretisations."""
+    laws = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    return [law.name for law in laws if set(discretisations) <= set(law.plugin.discretisations)]
+
+
+def with_law(name: str, registry: Registry) -> Tables:
+    """The changes that give a scene a law: a law that needs options has those of its first example."""
+    plugin = registry.find("contact_law", name).plugin
+    try:
+        plugin()
+    except (TypeError, ValueError):
+        first = plugin.examples()[0]
+        fields = [field for field in attrs.fields(plugin) if getattr(first, field.name) != field.default]
+        return {"contact.kind": name, **{f"contact.{field.name}": getattr(first, field.name) for field in fields}}
+    return {"contact.kind": name}
 
 
 def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Case, ...]:
@@ -51,40 +269,36 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
     if tables is not None:
         return tuple(cases)
     parts = (_contacts(base, registry), _scenes(base, registry), _points(base, registry), _elastic(base, registry))
-    return (*cases, *(case for part in parts for case in part), *_told(base), *_elements())
+    return (*cases, *(case for part in parts for case in part), *_messages(base), *_elements())
 
 
 def _any_scene(base: Changes, registry: Registry, own: bool) -> Iterator[Case]:
     """Steps around the limit, orbits, undamped steps, penalties; ``own``: of a user's scene, whose orbit is its own."""
     laws = laws_with(registry, "resultant")
     for name in transient(registry):
-        yield Case(
-            "steps around the limit, linear", "limits:linear", {"integrator": name}, {"tables": base, "integrator": name}
-        )
+        by_name: Changes = {"tables": base, "integrator": name}
+        yield Case("steps around the limit, linear", "motions:linear", {"integrator": name}, by_name)
         for law in laws:
-            setting, with_it = {"integrator": name, "law": law}, with_law(law, registry)
-            given = {"tables": base, "integrator": name, "changes": with_it}
+            setting, changes = {"integrator": name, "law": law}, with_law(law, registry)
+            arguments = {**by_name, "changes": changes}
             for tilt in ("locked", "free"):
-                yield Case(
-                    "steps around the limit, small motions of the bearing", "limits:small_motions", {**setting, "tilt": tilt},
-                    {**given, "changes": {**with_it, "supports.tilt": tilt}},
-                )  # fmt: skip
-            orbit = "orbit at the safe limit", "limits:orbit_at_the_safe_limit"
+                tilted = {**arguments, "changes": {**changes, "supports.tilt": tilt}}
+                title = "steps around the limit, small motions of the bearing"
+                yield Case(title, "motions:small_motions", {**setting, "tilt": tilt}, tilted)
+            orbit = "orbit at the safe limit", "motions:orbit_at_the_safe_limit"
             if own:
-                yield Case(*orbit, setting, given)
+                yield Case(*orbit, setting, arguments)
             for axial, newton, tilt, quick in () if own else _ORBITS:
-                changes = {**with_it, "load.axial": axial, **force(newton), "supports.tilt": tilt}
+                orbiting = {**changes, "load.axial": axial, **force(newton), "supports.tilt": tilt}
                 shown = {**setting, "axial": axial, "force": newton, "tilt": tilt}
-                yield Case(*orbit, shown, {**given, "changes": changes}, quick)
+                yield Case(*orbit, shown, {**arguments, "changes": orbiting}, quick)
             for steps in (100_000,) if own else (100_000, 1_000_000):
                 for factor, amplitude in _UNDAMPED:
-                    more = {"steps": steps, "factor": factor, "amplitude": amplitude}
-                    yield Case("undamped steps", "energy:many_steps", setting, {**given, **more}, steps == 100_000)
-    for factor in data.PENALTIES if "penalty" in laws else ():
-        arguments = {
-            "tables": base, "changes": {"contact.kind": "penalty"}, "penalty_factor": factor,
-            "judge": "" if "excitation" not in base else "any" if own else "orbit",
-        }  # fmt: skip
+                    undamped = {**arguments, "steps": steps, "factor": factor, "amplitude": amplitude}
+                    yield Case("undamped steps", "motions:many_steps", setting, undamped, steps == 100_000)
+    judge = "" if "excitation" not in base else "any" if own else "orbit"
+    for factor in PENALTIES if "penalty" in laws else ():
+        arguments = {"tables": base, "changes": {"contact.kind": "penalty"}, "penalty_factor": factor, "judge": judge}
         shown = {"law": "penalty", "penalty / default": factor}
         yield Case("penalty", "scenes:extreme", shown, arguments, own or factor in (1e-3, 1e3))
 
@@ -93,65 +307,64 @@ def _contacts(base: Changes, registry: Registry) -> Iterator[Case]:
     """Impacts, deep penetrations, equilibria from afar, chatter."""
     names = transient(registry)
     for law in laws_with(registry, "resultant"):
-        given: Changes = {"tables": base, "changes": with_law(law, registry)}
+        arguments: Changes = {"tables": base, "changes": with_law(law, registry)}
         for name in names:
-            moved, setting = {**given, "integrator": name}, {"integrator": name, "law": law}
+            moved, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
             for speed in (0.01, 1.0, 10.0):
-                yield Case("impact", "energy:impact", setting, {**moved, "speed": speed, "steps": 100})
+                yield Case("impact", "motions:impact", setting, {**moved, "speed": speed, "steps": 100})
             for depth in (1e-4, 5e-4):
-                yield Case("deep initial penetration", "energy:deep_penetration", setting, {**moved, "depth": depth})
+                yield Case("deep initial penetration", "motions:deep_penetration", setting, {**moved, "depth": depth})
         guesses = [1e-3, 5e-3, 5e-2, -1e-3, -5e-3]
-        yield Case("equilibrium from afar", "energy:settled_from_afar", {"law": law}, {**given, "guesses": guesses})
+        yield Case("equilibrium from afar", "motions:settled_from_afar", {"law": law}, {**arguments, "guesses": guesses})
         for name, options, step, chatters in _CHATTER:
             if name in names:
-                more = {"integrator": name, "options": options, "step": step, "chatters": chatters}
-                yield Case("chatter", "energy:chatter", {"integrator": name, "law": law}, {**given, **more})
+                falling = {**arguments, "integrator": name, "options": options, "step": step, "chatters": chatters}
+                yield Case("chatter", "motions:chatter", {"integrator": name, "law": law}, falling)
 
 
 def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
-    for name, changes, closed, judge in data.SCENES:
-        quick = name in data.QUICK
+    for name, changes, closed, judge in SCENES:
         if closed:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {}, {"tables": base, "changes": changes})
         for law in laws_with(registry, "resultant"):
-            with_it = {**changes, **with_law(law, registry)}
-            given: Changes = {"tables": base, "judge": judge}
-            yield Case(name, "scenes:extreme", {"law": law}, {**given, "changes": with_it, "closed_form": closed}, quick)
-            if name in data.CONDENSED:
-                more = {"changes": {**with_it, "bodies.kind": "condensed"}, "may_be_too_stiff": True}
-                yield Case(name, "scenes:extreme", {"law": law, "bodies": "condensed"}, {**given, **more}, False)
+            lawful = {**changes, **with_law(law, registry)}
+            arguments: Changes = {"tables": base, "judge": judge, "changes": lawful}
+            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in QUICK)
+            if name in CONDENSED:
+                arguments |= {"changes": {**lawful, "bodies.kind": "condensed"}, "may_be_too_stiff": True}
+                yield Case(name, "scenes:extreme", {"law": law, "bodies": "condensed"}, arguments, False)
 
 
 def _points(base: Changes, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
+    turn: Changes = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
     for law in laws_with(registry, "nodal"):
-        setting = {"law": law, "bodies": "condensed, points"}
 
         def case(
-            name: str, measure: str, changes: Changes, setting: Changes = setting, law: str = law, quick: bool = False, **more: Any
-        ) -> Case:  # fmt: skip
-            given = {"tables": base, "changes": {**data.POINTS, **changes, "contact.kind": law}, **more}
-            return Case(f"surface points: {name}", measure, setting, given, quick)
+            name: str, measure: str, changes: Changes, shown: Changes | None = None, law: str = law, **more: Any
+        ) -> Case:
+            setting = {"law": law, "bodies": "condensed, points", **(shown or {})}
+            arguments = {"tables": base, "changes": {**POINTS, **changes, "contact.kind": law}, **more}
+            return Case(f"surface points: {name}", measure, setting, arguments, measure == _AT_REST and name == "base")
 
-        for name, changes in data.STILL:
-            yield case(name, "surface:condensed_at_rest", changes, quick=name == "base")
-        for name, changes, words, reason in data.WARNED:
+        for name, changes in STILL:
+            yield case(name, _AT_REST, changes)
+        for name, changes, words, reason in WARNED:
             yield case(name, "scenes:warning", {**changes, "excitation": None}, words=words, reason=reason)
         for name in transient(registry):
-            shown = {**setting, "integrator": name}
-            turn: Changes = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
+            shown = {"integrator": name}
             if registry.find("integrator", name).plugin.implicit:
-                yield case("a turn", "surface:turn", turn, shown, integrator=name)
+                yield case("a turn", "scenes:turn", turn, shown, integrator=name)
             else:
-                told: dict[str, Any] = {"words": "through too many steps", "reason": "a step takes a tenth of a second"}
-                yield case("a turn", "scenes:refusal", {**turn, "integrator.kind": name}, shown, **told)
+                words, reason = "through too many steps", "a step takes a tenth of a second"
+                yield case("a turn", "scenes:refusal", {**turn, "integrator.kind": name}, shown, words=words, reason=reason)
 
 
 def _elastic(base: Changes, registry: Registry) -> Iterator[Case]:
-    """Whole contacts and pressures at points, with every law that both can have."""
+    """One force a contact and pressures at points, with every law that both can have."""
 
     def case(
-        name: str, measure: str, changes: Changes, bodies: str = "points", tables: Changes = data.TINY, law: str = "", **more: Any
+        name: str, measure: str, changes: Changes, bodies: str = "points", tables: Changes = TINY, law: str = "", **more: Any
     ) -> Case:  # fmt: skip
         setting = ({"law": law} if law else {}) | {"bodies": f"elastic, {bodies}"}
         setting |= {"integrator": more["integrator"]} if "integrator" in more else {}
@@ -159,41 +372,36 @@ def _elastic(base: Changes, registry: Registry) -> Iterator[Case]:
         return Case(f"elastic bodies: {name}", measure, setting, {"tables": tables, "changes": changes, **more}, False)
 
     for law in laws_with(registry, "nodal", "resultant"):
-        for name, changes in data.RESULTANTS if law == "hertz" else data.RESULTANTS[:1]:
-            still = {**changes, "excitation": None}
-            yield case(name, "elastic:calibrated_at_rest", still, "resultants", base, law)
-        for name, changes in data.ELASTIC_POINTS if law == "hertz" else data.ELASTIC_POINTS[:1]:
-            yield case(name, "elastic:points_at_rest", changes, law=law)
-        words, reason = (
-            "the displacement depend on the mesh",
-            "an element is wider than a contact: the displacement is a third too small",
-        )
+        for name, changes in RESULTANTS if law == "hertz" else RESULTANTS[:1]:
+            yield case(name, "scenes:calibrated_at_rest", {**changes, "excitation": None}, "resultants", base, law)
+        for name, changes in ELASTIC_POINTS if law == "hertz" else ELASTIC_POINTS[:1]:
+            yield case(name, "scenes:points_at_rest", changes, law=law)
+        words = "the displacement depend on the mesh"
+        reason = "an element is wider than a contact: the displacement is a third too small"
         yield case("base", "scenes:warning", {}, law=law, words=words, reason=reason)
-    words, reason = (
-        "is stiffer than the mesh below it",
-        "what the mesh gives way under a contact is more than Hertz's compliance",
-    )
-    heavy = {**data.COARSE, "load.axial": 1e5, "excitation": None}
+    words = "is stiffer than the mesh below it"
+    reason = "what the mesh gives way under a contact is more than Hertz's compliance"
+    heavy = {**COARSE, "load.axial": 1e5, "excitation": None}
     yield case("axial load 100 kN", "scenes:refusal", heavy, "resultants", base, words=words, reason=reason)
-    yield case("friction 1.0, a force acts at once", "elastic:rubbing", {**data.EXCITED, "contact.friction": 1.0})
+    yield case("friction 1.0, a force acts at once", "scenes:rubbing", {**EXCITED, "contact.friction": 1.0})
     for name in transient(registry):
-        yield case("a force acts at once", "elastic:motion", data.EXCITED, integrator=name)
+        yield case("a force acts at once", "scenes:sudden_force", EXCITED, integrator=name)
 
 
-def _told(base: Changes) -> Iterator[Case]:
-    """Scenes that are refused, or that a user must be told something about."""
-    for measure, told in (("refusal", data.REFUSALS), ("warning", data.WARNINGS)):
-        for name, changes, words, reason in told:
-            given = {"tables": base, "changes": changes, "words": words, "reason": reason}
-            yield Case(name, f"scenes:{measure}", {}, given)
+def _messages(base: Changes) -> Iterator[Case]:
+    """Scenes that are refused, or that users are warned about."""
+    for measure, messages in (("refusal", REFUSALS), ("warning", WARNINGS)):
+        for name, changes, words, reason in messages:
+            arguments = {"tables": base, "changes": changes, "words": words, "reason": reason}
+            yield Case(name, f"scenes:{measure}", {}, arguments)
 
 
 def _elements() -> Iterator[Case]:
     for aspect in (1, 20, 200):
         yield Case("slender elements, explicit steps", "elements:slender_steps", {}, {"aspect": aspect}, aspect == 200)
         for poisson, young in ((0.29, 212e9), (0.4999, 1e7)):
-            given = {"aspect": aspect, "poisson": poisson, "young": young}
-            yield Case("slender elements, tension", "elements:slender_bar", {}, given, aspect == 200)
+            arguments = {"aspect": aspect, "poisson": poisson, "young": young}
+            yield Case("slender elements, tension", "elements:slender_bar", {}, arguments, aspect == 200)
     yield Case("nearly incompressible cantilever", "elements:locking")
     yield Case("rubber on ceramic, elements", "elements:soft_on_hard")
     yield Case("elements without a volume", "elements:bad_elements")

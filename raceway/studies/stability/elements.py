@@ -11,7 +11,7 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.core.linear.statics import solve_static
 from raceway.framework.registry import Registry
-from raceway.studies.stability.case import Rows
+from raceway.studies.stability.study import Rows
 
 _YOUNG, _POISSON, _DENSITY = 212e9, 0.29, 7810.0
 _STEPS = 400

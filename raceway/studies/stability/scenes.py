@@ -1,26 +1,43 @@
-"""Extreme scenes, run as a user would run them with every law and integrator: balances, closed forms, the steady orbit."""
+"""Extreme scenes, run as a user would run them with every law and integrator: balances, closed forms, the steady orbit.
+
+Contacts at surface points of condensed bodies are compared with the calibrated law on the same bodies; an equilibrium takes a second
+and a step a tenth of one, so there are few steps.  Of bodies whose every node is a degree of freedom coarse meshes know the
+displacement with one calibrated force a contact: it is compared with condensed bodies.  With pressures at points they do not (the
+result says so): there the seat's force and the slope of the stored energy are compared with the load.  Equilibria know no friction;
+motions do.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import make_basis
+from raceway.core.elastic.start import at_rest
 from raceway.core.ring.surrogate import surrogate
+from raceway.core.schemes.drivers import integrate
+from raceway.core.stepping.energy import drift
+from raceway.core.stepping.record import Motion, Schedule
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.closed_form import series_factor
 from raceway.storage.tables import Tables
-from raceway.studies.stability.case import FAILED, Measured, Rows, short
-from raceway.studies.stability.own_force import axial_displacement, stiffer_than_hertz
-from raceway.studies.stability.stored import axial_force
-from raceway.studies.stability.systems import model_at, scene_at, transient
+from raceway.studies.stability.catalogue import COARSE, STATIC, transient
+from raceway.studies.stability.study import FAILED, Measured, Rows, short
+from raceway.studies.stability.systems import (
+    axial_displacement,
+    axial_force,
+    method_of,
+    model_at,
+    scene_at,
+    stiffer_than_hertz,
+)
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -30,7 +47,7 @@ if TYPE_CHECKING:
 #: Of the balls' loads, which push across the axis, too, and far more than along it where a film has flattened the contact angle.
 _SLOPE = 1e-5
 _SLOPE_WHY = "a difference over 1e-3 of the penetration, to 1e-8 of which elastic balls are placed: 1e-5 of the balls' loads"
-#: What |Z| of a motion is held against; "any": a user's scene, which ``periodic`` may be unable to take; "finer": no orbit is
+#: What |Z| of a motion is compared with; "any": a user's scene, which ``periodic`` may be unable to take; "finer": no orbit is
 #: steady, or friction remembers how the motion began, so that the same motion in finer steps is the truth.
 _JUDGES: dict[str, Tables] = {
     "orbit": {"integrator.kind": "periodic"},
@@ -45,6 +62,20 @@ _FINER_WHY = "360 steps a turn cost 1e-5 as a rule, a few 1e-3 where balls rattl
 #: Largest relative error of |Z|, and the drift that a completed motion may show: 360 steps a turn and light contacts.
 _Z_ERROR, _DRIFT = 0.01, 0.05
 _DRIFT_WHY = "steps of a turn / 360 balance energy to 1e-4 as a rule; impacts that few steps resolve cost more"
+_CALIBRATED: Tables = {"contact.kind": "hertz", "contact.discretisation": "resultant"}
+_COARSE = "two points along a semi-axis are off by percents; converged ones differ by 1 %"
+#: Steps of implicit methods, each of a time in which an explicit one takes ``_EXPLICIT`` at 0.9 of its limit.
+_IMPLICIT, _EXPLICIT = 20, 20
+#: Step [s] and steps of a motion with friction: a third of a period of the ring on its contacts.
+_RUBBING = 1e-5, 15
+#: How much larger the second of two loads is between which stored energies are compared.
+_MORE = 0.02
+#: Tolerance of implicit steps, and drift of the energy.
+_TOLERANCE, _UNBALANCED = 1e-6, 1e-3
+
+
+def _run(tables: Tables, changes: Tables, registry: Registry) -> Result:
+    return run(scene_at(tables, changes, registry), registry)
 
 
 def extreme(
@@ -62,9 +93,9 @@ def extreme(
     words, why = "|Z| [N/m], predicted by the steady motion", _STEADY_WHY
     if judge == "finer":
         words, why = "|Z| [N/m], predicted by 1440 steps a turn", _FINER_WHY
-    known, note = None, ""
+    near, note = None, ""
     try:
-        known = _stiffness(run(scene_at(tables, {**changes, **_JUDGES[judge]}, registry), registry))
+        near = abs(_stiffness(_run(tables, {**changes, **_JUDGES[judge]}, registry)))
     except RacewayError as error:
         if judge != "any" or not isinstance(error, SceneError):
             rows.lost(f"refused, unexpectedly: {short(error)}", {"integrator": _JUDGES[judge]["integrator.kind"]})
@@ -75,31 +106,30 @@ def extreme(
 
         @cache
         def result(more: Tables = more) -> Result:
-            return run(scene_at(tables, more, registry), registry)
+            return _run(tables, more, registry)
 
-        def motion(found: Callable[[], Result] = result) -> Measured:
-            return abs(_stiffness(found())), found().stability["energy_drift"]
+        def motion(result: Callable[[], Result] = result) -> Measured:
+            return abs(_stiffness(result())), result().stability["energy_drift"]
 
-        def balance(found: Callable[[], Result] = result) -> Measured:
-            drift = found().stability["energy_drift"]
+        def balance(result: Callable[[], Result] = result) -> Measured:
+            unbalanced = result().stability["energy_drift"]
             # No number fails the row: a motion whose energy nobody balances is not shown to be right.
-            return (float("nan") if drift is None else drift), drift
+            return (float("nan") if unbalanced is None else unbalanced), unbalanced
 
-        if known is not None:
-            row = rows.check(words, motion, why, near=abs(known), within=_Z_ERROR, at=setting)
+        if near is not None:
+            row = rows.check(words, motion, why, near=near, within=_Z_ERROR, at=setting)
             if row.verdict == FAILED and row.observed is not None:
                 stated = max((value for value in result().error.values() if isinstance(value, float)), default=float("nan"))
                 rows.written[-1] = attrs.evolve(row, note=f"the result itself states an error of {stated:.2g}")
         # Results tell no balance of energy for a law that loses some by itself.
-        if known is None or (judge == "finer" and not scene_at(tables, more, registry).contact.law.dissipative):
+        if near is None or (judge == "finer" and not scene_at(tables, more, registry).contact.law.dissipative):
             quantity = "completed; energy not balanced by the work"
             rows.check(quantity, balance, _DRIFT_WHY, at_most=_DRIFT, at=setting, note=note)
 
 
 def _stiffness(result: Result) -> complex:
-    found = result.identification
-    assert found is not None
-    return found.dynamic_stiffness
+    assert result.identification is not None
+    return result.identification.dynamic_stiffness
 
 
 def _at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables, closed_form: bool) -> None:
@@ -114,9 +144,9 @@ def _at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables, cl
         return model, settle(model)
 
     def axial() -> float:
-        model, found = settled()
-        load = found.contact_force[: model.system.ball_count]
-        return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(found.angle_inner)), 0.0)))
+        model, equilibrium = settled()
+        load = equilibrium.contact_force[: model.system.ball_count]
+        return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(equilibrium.angle_inner)), 0.0)))
 
     load = scene.load.axial
     if scene.bodies.name == "rigid":
@@ -132,8 +162,8 @@ def _at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables, cl
     if closed_form:
         model = model_at(tables, {**quiet, "kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}, registry)
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
-        own, words = axial_displacement(model), "axial displacement [m]"
-        rows.check(words, lambda: float(settle(model).displacement[0]), why, near=own, within=1e-6)
+        near, words = axial_displacement(model), "axial displacement [m]"
+        rows.check(words, lambda: float(settle(model).displacement[0]), why, near=near, within=1e-6)
 
 
 def _too_stiff(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> bool:
@@ -143,9 +173,8 @@ def _too_stiff(rows: Rows, registry: Registry, tables: Tables, changes: Tables) 
     except SceneError as error:
         if _TOO_STIFF not in str(error):
             raise
-        stiff = {**changes, "bodies.kind": "rigid"}
-        load = make_basis(scene_at(tables, stiff, registry)).ball_load
-        allowed = stiffer_than_hertz(model_at(tables, stiff, registry), load)
+        rigid = model_at(tables, {**changes, "bodies.kind": "rigid"}, registry)
+        allowed = stiffer_than_hertz(rigid, make_basis(rigid.scene).ball_load)
         why = "the law's own slope at the ball's load, or five times it, is above Hertz's; elastic bodies leave that no room"
         row = rows.refused(_TOO_STIFF, why, partial(_raise, error))
         if not allowed:
@@ -163,11 +192,9 @@ def hertz_factor(rows: Rows, registry: Registry, tables: Tables, changes: Tables
     scene = scene_at(tables, changes, registry)
     basis = make_basis(scene)
     softness = float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0))
-    near, why = (
-        series_factor(scene) ** (-2.0 / 3.0),
-        "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)",
-    )
-    rows.check("approach of both races over load^(2/3) [m/N^(2/3)]", softness, why, near=near, within=0.05)
+    near, words = series_factor(scene) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
+    why = "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)"
+    rows.check(words, softness, why, near=near, within=0.05)
 
 
 def _default_penalty(tables: Tables, changes: Tables, registry: Registry) -> float:
@@ -179,9 +206,113 @@ def _default_penalty(tables: Tables, changes: Tables, registry: Registry) -> flo
 
 def refusal(rows: Rows, registry: Registry, tables: Tables, changes: Tables, words: str, reason: str) -> None:
     """A scene that has no answer: the message says why."""
-    rows.refused(words, reason, lambda: run(scene_at(tables, changes, registry)))
+    rows.refused(words, reason, lambda: _run(tables, changes, registry))
 
 
 def warning(rows: Rows, registry: Registry, tables: Tables, changes: Tables, words: str, reason: str) -> None:
     """A scene that has an answer, and something that a user must be told about it."""
-    rows.warned(words, reason, run(scene_at(tables, changes, registry)).warnings)
+    rows.warned(words, reason, _run(tables, changes, registry).warnings)
+
+
+def condensed_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+    """The axial displacement, and the balls' axial forces against the load."""
+    changes = {**changes, "excitation": None}
+    like = {key: value for key, value in changes.items() if key != "mesh"} | _CALIBRATED
+    results = [_run(tables, each, registry) for each in (changes, like)]
+    balls = results[0].to_dict()["equilibrium"]["balls"]
+    pressed = [ball for ball in balls if ball["contact_angle_inner_deg"] is not None]
+    axial = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in pressed)
+    x, near = (float(result.equilibrium.displacement[0]) for result in results)
+    rows.check("axial displacement [m], predicted by Hertz on these bodies", x, _COARSE, near=near, within=0.06)
+    why = "a ball's angle is that of its centre, the resultant of its pressures leans by a degree from it"
+    rows.check("sum of the balls' axial forces [N]", axial, why, near=results[0].model.scene.load.axial, within=0.02)
+
+
+def turn(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+    """The dynamic stiffness of one turn."""
+    like = {
+        key: value for key, value in changes.items() if key != "mesh" and not key.startswith("integrator.")
+    } | _CALIBRATED
+    steady, stepped = {**like, "integrator.kind": "periodic"}, {**changes, "integrator.kind": integrator}
+    near, stiffness = (abs(_stiffness(_run(tables, each, registry))) for each in (steady, stepped))
+    rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, near=near, within=0.05)
+
+
+def calibrated_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+    """Axial displacement and radial stiffness against condensed bodies; what the seat carries against the load."""
+    condensed = _run(tables, {**STATIC, **changes, "bodies.kind": "condensed"}, registry).equilibrium
+    result = _run(tables, {**COARSE, **changes}, registry)
+    why = "elements of 3.2 mm, two through a wall, bend too little: 1 % as a rule; twice that"
+    near, value = float(condensed.displacement[0]), float(result.equilibrium.displacement[0])
+    rows.check("axial displacement [m], predicted by condensed bodies", value, why, near=near, within=0.02)
+    near, value = float(condensed.stiffness[1, 1]), float(result.equilibrium.stiffness[1, 1])
+    rows.check("radial stiffness [N/m], predicted by condensed bodies", value, why, near=near, within=0.02)
+    _on_the_seat(rows, result)
+
+
+def _on_the_seat(rows: Rows, result: Result) -> None:
+    seat, load = -float(result.to_dict()["model"]["reaction_n"]["x"]), result.model.scene.load.axial
+    why = "an equilibrium of all nodes is solved to 1e-7 of its forces"
+    rows.check("axial force on the outer seat [N]", seat, why, near=load, within=1e-5)
+
+
+def points_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+    """What the outer seat carries, and the stored energy over the axial way between two loads, against the load."""
+
+    def settled(axial: float) -> tuple[float, float, Result]:
+        result = _run(tables, {**changes, "load.axial": axial}, registry)
+        stored = result.to_dict()["model"]["energies_j"]
+        return float(result.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], result
+
+    load = scene_at(tables, changes, registry).load.axial
+    x, stored, result = settled(load)
+    _on_the_seat(rows, result)
+
+    def slope() -> float:
+        further, more, _ = settled((1.0 + _MORE) * load)
+        return (more - stored) / (further - x)
+
+    why = "points are looked up anew on the race's facets after 0.02 of a facet's half width, as on another mesh"
+    words = "change of the stored energy over the axial way [N]"
+    rows.check(words, slope, why, near=(1.0 + 0.5 * _MORE) * load, within=0.02)
+
+
+def _loaded_at_rest(tables: Tables, changes: Tables, registry: Registry) -> tuple[Any, Motion, Equilibrium]:
+    """Elastic bodies at rest, as a force meets them."""
+    model = model_at(tables, changes, registry)
+    equilibrium, system = settle(model), cast("Any", model.system)
+    return system, at_rest(system, equilibrium.displacement, equilibrium.ball, False), equilibrium
+
+
+def sudden_force(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+    """A force that acts at once: a balance of energies; a step above the stable limit is refused."""
+    ring, start, equilibrium = _loaded_at_rest(tables, changes, registry)
+    limit, method = float(ring.critical_time_step(equilibrium.stiffness)), method_of(integrator, registry, _TOLERANCE)
+    step, steps = 0.9 * limit, _IMPLICIT * _EXPLICIT
+    if method.implicit:
+        step, steps = _EXPLICIT * step, _IMPLICIT
+
+    def balance() -> tuple[float, float]:
+        worst = drift(integrate(method, ring, start, Schedule(step, steps, 1)).energies) or 0.0
+        return worst, worst
+
+    why = "steps of nanoseconds follow all but the waves of single elements, which carry little"
+    setting = {"steps": steps, "step/limit": step / limit}
+    rows.check("energy not balanced by the work", balance, why, at_most=_UNBALANCED, at=setting)
+    if not method.implicit:
+        far = partial(integrate, method, ring, start, Schedule(1.02 * limit, 10, 1))
+        rows.refused("above the stable limit", "it is refused before it blows up", far, {"steps": 1, "step/limit": 1.02})
+
+
+def rubbing(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+    """A force that meets contacts with friction at rest: the balance of energies, and that friction takes part."""
+    ring, start, _ = _loaded_at_rest(tables, changes, registry)
+    step, steps = _RUBBING
+    setting = {"integrator": "newmark", "steps": steps, "step_s": step}
+    energies = integrate(method_of("newmark", registry, _TOLERANCE), ring, start, Schedule(step, steps, 1)).energies
+    worst = drift(energies) or 0.0
+    why = "a period of the ring takes forty of these steps; waves of single elements carry little"
+    rows.check("energy not balanced by the work", (worst, worst), why, at_most=_UNBALANCED, at=setting)
+    share = float(energies["friction"][-1] / (energies["external"][-1] - energies["external"][0]))
+    why = "the rims of contacts slip at any force; rounding is 1e-12, and without friction it is nothing"
+    rows.check("energy that friction took over the work", (share, worst), why, at_least=1e-6, at=setting)

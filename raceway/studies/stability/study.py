@@ -1,12 +1,16 @@
-"""``raceway stability``: stiff and extreme cases, each with an expectation, over all laws and transient integrators."""
+"""``raceway stability``: stiff and extreme cases, each with an expectation, over all laws and transient integrators.
+
+A case writes rows: a number beside its limit, or a message that must come.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,18 +20,136 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.engine import Item, local, processor_time, work_through
 from raceway.studies.many.row_store import RowStore, program_key
-from raceway.studies.stability.case import FAILED, Case, Row, Rows, short
-from raceway.studies.stability.catalogue import catalogue
 
 if TYPE_CHECKING:
     from raceway.pipeline.simulate import OnProgress
 
+
+AS_EXPECTED, FAILED = "as expected", "failed"
 PROCESSES = 2
 #: A case that takes longer has hung [s].  The longest takes 20 s, and compiling for the first time on busy cores some minutes.
 PATIENCE_S = 900.0
+#: Of a message in a table [characters].
+_LONGEST = 200
+#: A value, or a value and the drift of the energy.
+Measured = float | tuple[float, float | None]
+
+
+@attrs.frozen
+class Case:
+    """One place of the catalogue; small enough to be sent to another process.
+
+    Attributes
+    ----------
+    name : what its rows are called by
+    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, registry, **arguments)``
+    setting : law, integrator, what else was varied;  arguments : plain values
+    quick : whether it belongs to what is run unless all is asked for
+    """
+
+    name: str
+    measure: str
+    setting: Tables = attrs.field(factory=dict)
+    arguments: Tables = attrs.field(factory=dict)
+    quick: bool = True
+
+
+@attrs.frozen
+class Row:
+    """One line of the report.
+
+    Attributes
+    ----------
+    setting : integrator, law, step, what else was varied
+    quantity : what ``predicted`` and ``observed`` are, with the unit
+    expected : the expectation in words, its bound in it
+    energy_drift : change of the energy over the motion's energy; None where it is not balanced
+    reason : why the bound is what it is
+    note : why the row failed, or what one should know
+    """
+
+    case: str
+    setting: Tables
+    quantity: str
+    expected: str
+    predicted: float | None
+    observed: float | None
+    energy_drift: float | None
+    verdict: str
+    reason: str
+    note: str = ""
+
+
+@attrs.frozen
+class Rows:
+    """What a case writes: its name, the setting of all its rows, the rows so far."""
+
+    case: str
+    setting: Tables = attrs.field(factory=dict)
+    written: list[Row] = attrs.field(factory=list)
+
+    def check(
+        self, quantity: str, value: Measured | Callable[[], Measured], why: str, *, near: float | None = None, within: float = 0.0,
+        at_most: float | None = None, at_least: float | None = None, at: Tables | None = None, note: str = "",
+    ) -> Row:  # fmt: skip
+        """A number against ``near``, relatively ``within``, or a bound; an error of a function, or no number, fails.
+
+        Parameters
+        ----------
+        why : the reason of the limit;  at : setting of this row alone
+        """
+        least, most = at_least, at_most
+        if near is not None:
+            words, least, most = f"equal within {within:.2g}", near - within * abs(near), near + within * abs(near)
+        else:
+            words = f"at least {at_least:.3g}" if at_most is None else f"at most {at_most:.3g}"
+        observed = drift = None
+        try:
+            measured = value() if callable(value) else value
+            observed, drift = measured if isinstance(measured, tuple) else (measured, None)
+            if not all(math.isfinite(each) for each in (observed, drift or 0.0)):
+                note, observed, drift = f"not a number: {observed}, energy {drift}", None, None
+        except RacewayError as error:
+            note = f"refused, unexpectedly: {short(error)}"
+        good = observed is not None and (least is None or observed >= least) and (most is None or observed <= most)
+        return self._write(good, why, note, at, quantity, words, near, observed, drift)
+
+    def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> Row:
+        """What must be refused, with a message that holds ``words``."""
+        good, note = False, "it was computed instead"
+        try:
+            work()
+        except RacewayError as error:
+            good, note = words in str(error), short(error)
+        return self._write(good, why, note, at, "message", f"refused: '{words}'")
+
+    def warned(self, words: str, why: str, warnings: Iterable[str]) -> Row:
+        """A warning that holds ``words``."""
+        text = next((text for text in warnings if words in text), None)
+        return self._write(text is not None, why, text or "no such warning", None, "warning", f"warned: '{words}'")
+
+    def lost(self, why: str, at: Tables | None = None) -> Row:
+        """A case, or a part of it, that ended without an answer."""
+        return self._write(False, "", why, at, "answer", "an answer or a refusal")
+
+    def _write(
+        self, good: bool, why: str, note: str, at: Tables | None, quantity: str, words: str, near: float | None = None,
+        value: float | None = None, drift: float | None = None,
+    ) -> Row:  # fmt: skip
+        setting, number = {**self.setting, **(at or {})}, None if value is None else float(value)
+        verdict = AS_EXPECTED if good else FAILED
+        self.written.append(Row(self.case, setting, quantity, words, near, number, drift, verdict, why, note))
+        return self.written[-1]
+
+
+def short(error: BaseException) -> str:
+    """The first line of a message, not too long for a table."""
+    text = (str(error).splitlines() or [type(error).__name__])[0]
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
 @attrs.frozen
@@ -69,21 +191,17 @@ class Stability:
         RacewayError
             A folder or disk that cannot be written.
         """
-        from raceway.studies.stability.picture import write
-
-        return write(self.to_dict(), folder)
+        content = self.to_dict()
+        text = json.dumps(content, indent=1, allow_nan=False) + "\n"
+        page = write_whole(_page(content).encode(), folder / "stability.md")
+        return [write_whole(text.encode(), folder / "stability.json"), page]
 
 
 def stability(
-    tables: ReadTables | None = None,
-    only: str | None = None,
-    every: bool = False,
-    processes: int = PROCESSES,
-    store: Path | None = None,
-    registry: Registry | None = None,
-    plugins: Sequence[Path] = (),
+    tables: ReadTables | None = None, only: str | None = None, every: bool = False, processes: int = PROCESSES,
+    store: Path | None = None, registry: Registry | None = None, plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
-) -> Stability:
+) -> Stability:  # fmt: skip
     """Run the catalogue.
 
     Parameters
@@ -100,29 +218,26 @@ def stability(
     SceneError
         A name that no case has, or a scene that cannot be put through the catalogue.
     """
+    from raceway.studies.stability.catalogue import catalogue
+
     begun, cpu = time.monotonic(), processor_time()
     registry = registry or default_registry()
-    known = catalogue(registry, tables)
-    cases = [case for case in known if (case.quick or every if only is None else only in case.name)]
-    if not cases:
-        names = list(dict.fromkeys(case.name for case in known))
+    cases = catalogue(registry, tables)
+    selected = [case for case in cases if (case.quick or every if only is None else only in case.name)]
+    if not selected:
+        names = list(dict.fromkeys(case.name for case in cases))
         raise SceneError.at("--only", only, f"no case is called so{nearest(only or '', names)}; cases: {'; '.join(names)}")
-    kept = RowStore(store)
-    rows, reused = measured(cases, processes, registry, plugins, kept, on_progress)
+    rows_stored = RowStore(store)
+    rows, reused = measured(selected, processes, registry, plugins, rows_stored, on_progress)
     title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
-    taken = time.monotonic() - begun, processor_time() - cpu
-    return Stability(title, tuple(rows), len(cases), len(known) - len(cases), reused, *taken, processes, kept.fault)
+    seconds, left_out = (time.monotonic() - begun, processor_time() - cpu), len(cases) - len(selected)
+    return Stability(title, tuple(rows), len(selected), left_out, reused, *seconds, processes, rows_stored.fault)
 
 
 def measured(
-    cases: Sequence[Case],
-    processes: int,
-    registry: Registry,
-    plugins: Sequence[Path] = (),
-    store: RowStore | None = None,
-    on_progress: OnProgress | None = None,
-    patience: float = PATIENCE_S,
-) -> tuple[list[Row], int]:
+    cases: Sequence[Case], processes: int, registry: Registry, plugins: Sequence[Path] = (), store: RowStore | None = None,
+    on_progress: OnProgress | None = None, patience: float = PATIENCE_S,
+) -> tuple[list[Row], int]:  # fmt: skip
     """Rows of all cases, and how many cases were kept from before; none can stop the others by hanging or dying.
 
     Parameters
@@ -131,18 +246,14 @@ def measured(
     patience : time after which a case of another process is given up [s]
     """
     program = program_key(registry)
-    items = [Item(_key(case, program), case.name, case) for case in cases]
+    keys = (json.dumps([attrs.asdict(case), program], sort_keys=True, default=str) for case in cases)
+    items = [Item(hashlib.sha256(k.encode()).hexdigest()[:24], case.name, case) for k, case in zip(keys, cases, strict=True)]
     executor = local(registry, processes, **({"patience": patience} if processes else {}))
     done, reused = work_through(
         _plain, items, store or RowStore(None), executor, registry, plugins, on_progress,
         lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.given.setting).lost(reason))]},
     )  # fmt: skip
     return [Row(**row) for each in done for row in each["rows"]], reused
-
-
-def _key(case: Case, program: str) -> str:
-    text = json.dumps([attrs.asdict(case), program], sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
 def _plain(case: Case, registry: Registry) -> Tables:
@@ -153,9 +264,38 @@ def rows_of(case: Case, registry: Registry) -> list[Row]:
     """The rows of a case; whatever its code raises becomes a failed row."""
     rows, (module, _, function) = Rows(case.name, case.setting), case.measure.partition(":")
     try:
-        place = module if "." in module else f"raceway.studies.stability.{module}"
-        getattr(import_module(place), function)(rows, registry, **case.arguments)
+        path = module if "." in module else f"raceway.studies.stability.{module}"
+        getattr(import_module(path), function)(rows, registry, **case.arguments)
     except Exception as why:  # a traceback is what no case may end in: it is the finding
         last = traceback.extract_tb(why.__traceback__)[-1]
         rows.lost(f"{type(why).__name__} in {Path(last.filename).name}, line {last.lineno}: {short(why)}")
     return rows.written
+
+
+def _page(content: Tables) -> str:
+    """The study as Markdown: what failed first, then a table for each case."""
+    rows = content["rows"]
+    bad = [row for row in rows if row["verdict"] == FAILED]
+    counts = (
+        f"{len(rows) - len(bad)} of {len(rows)} rows as expected, {content['cases']} cases, {content['seconds']:.0f} s on "
+        f"{content['processes']} processes ({content['reused']} cases kept from before); {content['left_out']} cases not asked for."
+    )
+    lines = [f"# {content['title']}", "", counts, *(["", "## Failed", "", *_table(bad)] if bad else [])]
+    for name in dict.fromkeys(row["case"] for row in rows):
+        lines += ["", f"## {name}", "", *_table(row for row in rows if row["case"] == name)]
+    return "\n".join(lines) + "\n"
+
+
+def _table(rows: Iterable[Tables]) -> list[str]:
+    lines = ["| setting | quantity | expected | predicted | observed | energy drift | verdict | why |", "|---" * 8 + "|"]
+    for row in rows:
+        setting = ", ".join(f"{key} {_number(value)}" for key, value in row["setting"].items()) or "-"
+        numbers = [_number(row[name]) for name in ("predicted", "observed", "energy_drift")]
+        why = "; ".join(text for text in (row["reason"], row["note"]) if text)
+        cells = [setting, row["quantity"], row["expected"], *numbers, row["verdict"], why]
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return lines
+
+
+def _number(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)

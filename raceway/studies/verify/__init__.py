@@ -1,8 +1,5 @@
 """Reference cases: published numbers, closed forms, and this program by two ways.
 
-study     every case;  command: ``raceway verify``
-bearings  bearings, through scenes
-impacts   impacts of spheres
-article   peak pressures of the article
-screen    the table
+study   every case and its verdict;  command: ``raceway verify``
+cases   how each is computed: bearings, impacts of spheres, peak pressures of the article
 """

@@ -12,26 +12,26 @@ from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
 from raceway.storage.tables import Tables
 from raceway.studies.many.reference import BASES, Case, Number, reference_cases
-from raceway.studies.verify.article import article_pressures
-from raceway.studies.verify.bearings import ellipse_table, masta, nsk_pair, race_ellipse, rig_force
-from raceway.studies.verify.impacts import impact_of_spheres
+from raceway.studies.verify.cases import (
+    article_pressures,
+    ellipse_table,
+    impact_of_spheres,
+    masta,
+    nsk_pair,
+    race_ellipse,
+    rig_force,
+)
 
 OnProgress = Callable[[str, int, int], None]
 
 #: How each case is computed.
 COMPUTED: dict[str, Callable[[Case, Registry], Iterator[Number]]] = {
-    "masta-dgbb-1": masta,
-    "masta-dgbb-3": masta,
-    "masta-dgbb-5": masta,
-    "harris-mindel-1973-hertz-inner": race_ellipse,
-    "harris-table-6.1": ellipse_table,
-    "nsk-7206C-stiffness": nsk_pair,
-    "nsk-7206A-stiffness": nsk_pair,
-    "chung-ooi-1-glass": impact_of_spheres,
-    "chung-ooi-3-alumina": impact_of_spheres,
-    "seed-unbalance": rig_force,
-    "seed-static-pressures": article_pressures,
-}
+    "masta-dgbb-1": masta, "masta-dgbb-3": masta, "masta-dgbb-5": masta,
+    "harris-mindel-1973-hertz-inner": race_ellipse, "harris-table-6.1": ellipse_table,
+    "nsk-7206C-stiffness": nsk_pair, "nsk-7206A-stiffness": nsk_pair,
+    "chung-ooi-1-glass": impact_of_spheres, "chung-ooi-3-alumina": impact_of_spheres,
+    "seed-unbalance": rig_force, "seed-static-pressures": article_pressures,
+}  # fmt: skip
 
 
 @attrs.frozen
@@ -80,11 +80,8 @@ class Verification:
     @property
     def worst(self) -> tuple[Row, ...]:
         """Of each case the row that comes closest to its tolerance, or misses it by most."""
-        found: dict[str, Row] = {}
-        for row in self.rows:
-            if row.case not in found or _strain(row) > _strain(found[row.case]):
-                found[row.case] = row
-        return tuple(found.values())
+        cases = dict.fromkeys(row.case for row in self.rows)
+        return tuple(max((row for row in self.rows if row.case == case), key=_strain) for case in cases)
 
     def to_dict(self) -> Tables:
         return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
@@ -111,41 +108,28 @@ def verify(
         A case that does not exist (with the nearest name) or that is there for information only.
     """
     registry = registry or default_registry()
-    cases = chosen_cases(only)
-    rows: list[Row] = []
-    for done, case in enumerate(cases):
-        if on_progress is not None:
-            on_progress(case.id, done, len(cases))
+    cases, rows, tell = _cases(only), list[Row](), on_progress or (lambda *_: None)
+    for number, case in enumerate(cases):
+        tell(case.id, number, len(cases))
         rows += compute(case, registry)
-    if on_progress is not None:
-        on_progress("", len(cases), len(cases))
+    tell("", len(cases), len(cases))
     return Verification(tuple(rows))
 
 
-def chosen_cases(only: str | Iterable[str] | None) -> list[Case]:
-    """The cases to compute, in the file's order.
-
-    Raises
-    ------
-    SceneError
-        See ``verify``.
-    """
-    known = {name: case for name, case in reference_cases().items() if case.checked}
-    if only is None:
-        return list(known.values())
-    names = [only] if isinstance(only, str) else list(only)
-    faults = [_refusal(name, known) for name in names if name not in known]
+def _cases(only: str | Iterable[str] | None) -> list[Case]:
+    """The cases to compute, in the file's order."""
+    every = reference_cases()
+    checked = {name: case for name, case in every.items() if case.checked}
+    names = list(checked) if only is None else [only] if isinstance(only, str) else list(only)
+    faults = []
+    for name in names:
+        if name not in checked:
+            why = f"no such case{nearest(str(name), checked)}; known"
+            why = f"is not computed: {every[name].role}; computed are" if name in every else why
+            faults.append(Mistake("only", name, f"{why}: {', '.join(checked)}"))
     if faults:
         raise SceneError(faults)
-    return [case for name, case in known.items() if name in names]
-
-
-def _refusal(name: str, known: dict[str, Case]) -> Mistake:
-    other = reference_cases().get(name)
-    if other is not None:
-        return Mistake("only", name, f"is not computed: {other.role}; computed are: {', '.join(known)}")
-    hint = nearest(str(name), known)
-    return Mistake("only", name, f"no such case{hint}; known: {', '.join(known)}")
+    return [case for name, case in checked.items() if name in names]
 
 
 def compute(case: Case, registry: Registry) -> list[Row]:
@@ -165,6 +149,5 @@ def _row(case: Case, number: Number) -> Row:
         computed, note = None, f"computed {computed}: not a finite number"
     error = None if computed is None else abs(computed - number.reference) / abs(number.reference)
     ok = error is not None and error <= number.tolerance
-    return Row(
-        case.id, number.quantity, number.reference, computed, error, number.tolerance, ok, case.source, case.basis, note
-    )
+    numbers = (number.quantity, number.reference, computed, error, number.tolerance, ok)
+    return Row(case.id, *numbers, case.source, case.basis, note)

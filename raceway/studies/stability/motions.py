@@ -1,27 +1,44 @@
-"""Conserved quantities: energy over a million steps, impacts, deep penetrations; and chatter, which conserves too well."""
+"""Motions at their edges: steps around the stable limit, orbits at it, and energy over a million steps, in impacts, deep
+penetrations and chatter, which conserves too well.
+"""
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from functools import partial
+from math import ceil, pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.ring.orbit import at_time, steady_orbit
+from raceway.core.ring.start import from_orbit
+from raceway.core.ring.surrogate import surrogate
 from raceway.core.schemes.drivers import integrate
 from raceway.core.stepping.record import Record, Schedule
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
+from raceway.pipeline.settle import settle
+from raceway.planning.recording import SAFETY
 from raceway.storage.tables import Tables
-from raceway.studies.stability.case import Rows
-from raceway.studies.stability.systems import UNDAMPED, Still, mass_at, method_of, still
+from raceway.studies.stability.catalogue import UNDAMPED
+from raceway.studies.stability.study import Rows
+from raceway.studies.stability.systems import (
+    Still,
+    energy_of_contacts,
+    inverted,
+    mass_at,
+    method_of,
+    model_at,
+    still,
+)
 
 if TYPE_CHECKING:
     from raceway.core.ring.system import System
-    from raceway.framework.contracts import ContactLaw
+    from raceway.core.stepping.record import Motion
+
 
 _BLOCKS = 20
 #: Heights of the fall that chatter is looked for at, over the approach at rest.
@@ -30,6 +47,15 @@ _HEIGHTS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)
 _AT_REST = 1e-3
 #: Every so many steps are recorded: no divisor of a million's blocks that a period could meet.
 _STRIDE = 10
+#: Parts of the predicted limit.
+FACTORS = (0.5, 0.9, 0.98, 1.02, 1.1)
+_STEPS, _TURNS = 400, 50
+#: Perturbation over the axial approach: small enough to be linear, far above the tolerance of implicit steps (1e-9).
+_SMALL = 1e-6
+#: Growth of a bounded motion, and of one that grows.
+_BOUNDED, _GROWING = 20.0, 1e3
+_SWINGS = "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up"
+_GROWS = "1.49 a step at 1.02 of the limit; a nonlinear contact stops the growth where it opens"
 
 
 def many_steps(
@@ -60,17 +86,17 @@ def many_steps(
     rows.check(words, value, why, at_most=bound, at={"steps": steps, "step/limit": factor}, note=note)
 
 
-def _trend(found: Still, record: Record) -> tuple[float, float]:
+def _trend(at: Still, record: Record) -> tuple[float, float]:
     """Slope of the block means over the whole run, and the largest departure of one, over the motion's energy."""
-    balance = energy_balance(found.system, record)
+    balance = energy_balance(at.system, record)
     energy = balance.kinetic + balance.stored
-    rest = found.displaced(np.zeros(5))
-    at_rest = attrs.evolve(
+    motionless = at.displaced(np.zeros(5))
+    resting = attrs.evolve(
         record, **{name: getattr(record, name)[:2] for name in ("time", "velocity", "force")},
-        displacement=np.tile(rest.q, (2, 1)), gap=np.tile(found.equilibrium.gap, (2, 1)),
-        contact_force=np.tile(found.equilibrium.contact_force, (2, 1)), ball=np.tile(rest.ball, (2, 1, 1)),
+        displacement=np.tile(motionless.q, (2, 1)), gap=np.tile(at.equilibrium.gap, (2, 1)),
+        contact_force=np.tile(at.equilibrium.contact_force, (2, 1)), ball=np.tile(motionless.ball, (2, 1, 1)),
     )  # fmt: skip
-    size = energy[0] - energy_balance(found.system, at_rest).stored[0]
+    size = energy[0] - energy_balance(at.system, resting).stored[0]
     blocks = energy.reshape(_BLOCKS, -1)
     # Whole swings do not fit a block: a window that fades out keeps their remainder out of the mean.
     window = np.hanning(blocks.shape[1])
@@ -91,25 +117,23 @@ def impact(
     """
     at = still(tables, changes, registry)
     law, params, mass = at.system.law, at.system.law_params[:1], 2.0
-    depth = _depth(law, params, 0.5 * mass * speed**2)
-    system = impact_system(mass, law, params)
-    force = _force(system, depth)
-    rebound = speed
+    pair, memory = np.ascontiguousarray(np.repeat(params, 2, axis=0)), np.zeros((2, 0))
+    depth = inverted(lambda d: float(energy_of_contacts(law, pair, memory, np.full(2, -d))[0]), 0.5 * mass * speed**2, 1.0)
+    system, method = impact_system(mass, law, params), method_of(integrator, registry)
+    force, rebound = _force(system, depth), speed
     if at.dissipative:
         force, rebound = _solved_impact(system, mass, speed, depth)
     dt = pi * depth / speed / steps
-    record = integrate(
-        method_of(integrator, registry), system, mass_at(-0.4 * dt * speed, speed), Schedule(dt, 2 * steps, 1)
-    )
-    left = -float(record.velocity[-1, 0])
-    energy = (left / rebound) ** 2 - 1.0
-    setting, method = {"speed [m/s]": speed, "steps a contact": steps}, method_of(integrator, registry)
+    record = integrate(method, system, mass_at(-0.4 * dt * speed, speed), Schedule(dt, 2 * steps, 1))
+    departure = -float(record.velocity[-1, 0])
+    energy = (departure / rebound) ** 2 - 1.0
+    setting = {"speed [m/s]": speed, "steps a contact": steps}
     why = "one step lies up to a hundredth of the contact's time from the peak"
     rows.check("greatest force [N]", (float(record.contact_force.max()), energy), why, near=force, within=0.02, at=setting)
     within, why = 0.01, "the energy swings by the square of the phase a step; what is left of it when the contact opens"
     if method.dissipative:
         within, why = 0.1, "a dissipative method takes part of an impact that few steps resolve"
-    rows.check("speed of the rebound [m/s]", (left, energy), why, near=rebound, within=within, at=setting)
+    rows.check("speed of the rebound [m/s]", (departure, energy), why, near=rebound, within=within, at=setting)
 
 
 def _force(system: System, approach: float, rate: float = 0.0) -> float:
@@ -136,27 +160,14 @@ def _solved_impact(system: System, mass: float, speed: float, depth: float) -> t
     return largest, -float(solution.y[1, -1]) * speed
 
 
-def _depth(law: ContactLaw, params: np.ndarray, energy: float) -> float:
-    """Approach at which a contact has stored an energy [m], by bisection."""
-    low, high = 0.0, 1.0
-    two, stored = np.ascontiguousarray(np.repeat(params, 2, axis=0)), np.empty(2)
-    memory = np.zeros((2, 0))
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        stored_energy(law, two, memory, memory.copy(), np.full(2, -middle), np.empty((6, 2)), stored)
-        low, high = (middle, high) if stored[0] < energy else (low, middle)
-    return high
-
-
 def deep_penetration(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables, depth: float) -> None:
     """The ring let go far inside the balls: it flies out, and no energy is made; by a law that loses none, none is lost."""
     at = still(tables, UNDAMPED | changes, registry)
     start = at.displaced(np.array([depth, 0.3 * depth, 0.0, 0.0, 0.0]))
-    there = at.system.evaluate(start.q, ball=start.ball)
-    step = 0.05 * at.system.damped_time_step(there.stiffness, there.damping)
-    balance = energy_balance(
-        at.system, integrate(method_of(integrator, registry), at.system, start, Schedule(step, 1000, 10))
-    )
+    first = at.system.evaluate(start.q, ball=start.ball)
+    step = 0.05 * at.system.damped_time_step(first.stiffness, first.damping)
+    record = integrate(method_of(integrator, registry), at.system, start, Schedule(step, 1000, 10))
+    balance = energy_balance(at.system, record)
     drift, words = balance.drift, "largest change of energy over the motion's"
     if at.dissipative:
         energy = balance.kinetic + balance.stored - balance.work
@@ -169,11 +180,13 @@ def settled_from_afar(rows: Rows, registry: Registry, tables: Tables, changes: T
     """The equilibrium found from first guesses deep inside the balls and far outside them."""
     at = still(tables, changes, registry)
     x = float(at.equilibrium.displacement[0])
+    words, why = "axial displacement [m]", "one equilibrium, solved to a residual of 1e-11"
+
+    def axial(guess: float) -> float:
+        return float(at.system.settle(np.array([guess, 0.2 * guess, 0.0, 0.0, 0.0]))[0][0])
+
     for guess in guesses:
-        first = np.array([guess, 0.2 * guess, 0.0, 0.0, 0.0])
-        why, setting = "one equilibrium, solved to a residual of 1e-11", {"first guess [m]": guess}
-        words = "axial displacement [m]"
-        rows.check(words, lambda q=first: float(at.system.settle(q)[0][0]), why, near=x, within=1e-8, at=setting)  # type: ignore[misc]
+        rows.check(words, partial(axial, guess), why, near=x, within=1e-8, at={"first guess [m]": guess})
 
 
 def chatter(
@@ -197,14 +210,13 @@ def chatter(
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
     system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     dt = step * 2.0 * pi * sqrt(mass / k)
-    method: Any = method_of(integrator, registry)
-    method = attrs.evolve(method, **options)
-    found = []
+    plain: Any = method_of(integrator, registry)
+    method, falls = attrs.evolve(plain, **options), []
     for height in _HEIGHTS:
         start = mass_at(-height * q[0], 0.0, load / mass)
         late = integrate(method, system, start, Schedule(dt, 400, 1)).contact_force[-100:, 0]
-        found.append((_unrest(late, load), 100.0 * float((late <= 0.0).mean()), height))
-    worst, opened, height = max(found)
+        falls.append((_unrest(late, load), 100.0 * float((late <= 0.0).mean()), height))
+    worst, opened, height = max(falls)
     note = f"most after a fall from {height:g} times the approach at rest: open in {opened:.0f} % of these steps"
     words = "contact force less the load over the load, rms of steps 301 to 400, largest of eight falls"
     setting, bound, why = {**options, "step/period": step}, {"at_most": _AT_REST}, "at rest by then"
@@ -226,7 +238,7 @@ def _trapezoids(system: System, mass: float, load: float, gap: float, dt: float)
     from scipy.optimize import brentq
 
     damper = float(system.damping[0, 0])
-    x, rate, a, found = -gap, 0.0, load / mass, []
+    x, rate, a, forces = -gap, 0.0, load / mass, []
     for _ in range(400):
 
         def unbalanced(new: float, x: float = x, rate: float = rate, a: float = a) -> float:
@@ -240,5 +252,72 @@ def _trapezoids(system: System, mass: float, load: float, gap: float, dt: float)
             lowest = highest - 2.0 * (highest - lowest)
         new = float(brentq(unbalanced, lowest, highest, xtol=1e-12, rtol=1e-14)) if unbalanced(highest) > 0.0 else highest
         x, rate, a = x + dt * rate + 0.25 * dt**2 * (a + new), rate + 0.5 * dt * (a + new), new
-        found.append(_force(system, x, rate))
-    return np.array(found[-100:])
+        forces.append(_force(system, x, rate))
+    return np.array(forces[-100:])
+
+
+def linear(rows: Rows, registry: Registry, tables: Tables, integrator: str) -> None:
+    """An undamped oscillator, its contact out of reach."""
+    ring = surrogate(model_at(tables, {}, registry).system)
+    system = impact_system(2.0, ring.law, ring.law_params[:1], clearance=1.0, stiffness=2e8)
+    limit = system.critical_time_step(np.zeros((5, 5)))
+    _around_the_limit(rows, registry, integrator, system, mass_at(1e-6, 0.0, -1e2), np.zeros(5), limit)
+
+
+def small_motions(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+    """A bearing moved by a millionth of its approach from its equilibrium."""
+    at = still(tables, {**UNDAMPED, **changes}, registry)
+    start = at.displaced(at.direction(_SMALL))
+    _around_the_limit(rows, registry, integrator, at.system, start, at.equilibrium.displacement, at.limit)
+
+
+def _around_the_limit(
+    rows: Rows, registry: Registry, name: str, system: System, start: Motion, rest: np.ndarray, limit: float
+) -> None:
+    method = method_of(name, registry)
+    weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
+    size = float(np.abs((start.q - rest) * weight).max())
+
+    def growth(factor: float) -> float:
+        """Largest displacement over the first; of a motion that was stopped, where it was stopped."""
+        try:
+            moved = integrate(method, system, start, Schedule(factor * limit, _STEPS, 1)).displacement
+        except ConvergenceError as stop:  # grown until the balls find no place, or beyond a metre
+            moved = stop.state["q"]
+        return float(np.abs((moved - rest) * weight).max() / size)
+
+    words = f"largest over first displacement, {_STEPS} steps"
+    for factor in FACTORS:
+        if method.implicit or factor < 1.0:
+            rows.check(words, growth(factor), _SWINGS, at_most=_BOUNDED, at={"step/limit": factor})
+        else:
+            rows.check(words, growth(factor), _GROWS, at_least=_GROWING, at={"step/limit": factor})
+    if not method.implicit:
+        low, high = 0.5, 2.0
+        while high - low > 1e-3:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if growth(middle) < _BOUNDED else (low, middle)
+        why = "the limit is exact for linear motions; bisected to 1e-3"
+        rows.check("stable limit [s]", low * limit, why, near=limit, within=0.02)
+
+
+def orbit_at_the_safe_limit(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+    """A large orbit with the steps that a run takes by itself, at most ``SAFETY`` of its limit, is followed for 50 turns."""
+    model = model_at(tables, {**UNDAMPED, **changes, "integrator.kind": integrator}, registry)
+    scene, system = model.scene, surrogate(model.system)
+    if scene.excitation is None or scene.excitation.period_s is None:
+        return  # of a user's scene: without a period there is no orbit
+    period = scene.excitation.period_s
+    orbit = steady_orbit(system, period, settle(model).displacement, samples=129)
+    limit = min(system.damped_time_step(k, c) for k, c in zip(orbit.stiffness, orbit.damping, strict=True))
+    steps = ceil(period / (SAFETY * limit))
+    states = [system.evaluate(q, ball=ball) for q, ball in zip(orbit.displacement, orbit.ball, strict=True)]
+    opens = bool((np.array([now.contact_force for now in states]) <= 0.0).any())
+    schedule = Schedule(period / steps, steps, _TURNS)
+    record = integrate(scene.integrator.method, system, from_orbit(system, orbit, schedule.dt), schedule)
+    true = np.array([at_time(orbit.displacement, period, t) for t in record.time[-steps:]])
+    size = np.abs(orbit.displacement - orbit.displacement.mean(axis=0)).max(axis=0)[1:3].max()
+    away = float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size)
+    why = "an unstable motion leaves its orbit by many times its size; steps so long cost a stable one percents"
+    words = "distance from the orbit in turn 50 over its size"
+    rows.check(words, away, why, at_most=0.5, at={"contacts open": opens, "steps a turn": steps})
