@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import calculix
-from raceway.core.elastic.contacts.penalty import penalty_stiffness
+from raceway.elastic.contact import penalty_stiffness
 from raceway.errors import RacewayError, SceneError
 from validation.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
 

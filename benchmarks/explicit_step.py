@@ -18,16 +18,13 @@ from benchmarks.kernel import least
 from raceway import load_scene
 from raceway.bodies.basis import make_basis
 from raceway.bodies.meshing import mesh_scene
-from raceway.core.contact_laws.power import linear
-from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.elastic.bearing_data import BearingData
-from raceway.core.elastic.contacts.penalty import penalty_stiffness
-from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.schemes.explicit.stepped import central_difference
-from raceway.core.stepping.protocol import State
-from raceway.core.stepping.record import Schedule
-from raceway.core.stepping.recorder import Recorder
+from raceway.core.contact.laws import linear
+from raceway.core.record import Recorder, Schedule, State
 from raceway.core.threads import ThreadPool, usable_cores
+from raceway.core.time.stepped import central_difference
+from raceway.elastic.bearing import ElasticBearing, SteppedElastic
+from raceway.elastic.bearing_data import BearingData
+from raceway.elastic.contact import penalty_stiffness
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"

@@ -76,7 +76,7 @@ HARMS: dict[str, harm.Harm] = {
 
 def three_kernels() -> list[float]:
     """Force, slope and the rate's, of the three smallest laws."""
-    from raceway.core.contact_laws.power import linear, square, three_halves
+    from raceway.core.contact.laws import linear, square, three_halves
 
     found, none = [], np.zeros((1, 0))
     for law in (three_halves, square, linear):
@@ -153,7 +153,6 @@ def kernels(count: int = 150, seed: int = 17) -> dict[str, int]:
 
 def arrays(count: int = 50, seed: int = 19) -> dict[str, int]:
     """Outcomes with kept compliances of condensed bodies, whose kernels are whole."""
-    from raceway.core.condensed import structural  # noqa: F401  # what children run, imported once before they fork
     from raceway.pipeline.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
 
     return tried(run_of, (_CONDENSED,), "*.arrays", count, 2, seed)

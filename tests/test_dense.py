@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from raceway.core.linear.blocks import BlockMatrix
-from raceway.core.ring.dense import cholesky_solve, solve
+from raceway.core.ring.equilibrium import cholesky_solve, solve
+from raceway.elastic.linear_statics import BlockMatrix
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -11,9 +11,9 @@ import pytest
 
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.elastic.plan import allowed_bytes
-from raceway.core.elastic.solver import LinearSolver
-from raceway.core.elastic.start import from_orbit
 from raceway.core.ring.orbit import steady_orbit
+from raceway.elastic.iterative_solver import LinearSolver
+from raceway.elastic.ring import from_orbit
 from raceway.pipeline.run import Allowance
 from raceway.scene.unused import unused
 from raceway.testing import run, settle

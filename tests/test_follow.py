@@ -10,11 +10,9 @@ import pytest
 
 import raceway as rw
 from raceway import ConvergenceError, SceneError
-from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.direct import directly
-from raceway.core.periodic.doubling import doubled
-from raceway.core.periodic.sampling import displacements
-from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
+from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
+from raceway.core.periodic.refinement import displacements
+from raceway.core.periodic.search import directly
 from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
 from raceway.points.continuation import FollowInterrupt
 from validation.command_line import invoke

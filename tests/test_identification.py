@@ -7,8 +7,8 @@ import pytest
 
 import raceway as rw
 from raceway import run
-from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
 from raceway.testing import model_of, settle
 from validation.scenes import rotating
 

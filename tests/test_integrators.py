@@ -9,16 +9,13 @@ import numpy as np
 import pytest
 
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
-from raceway.core.ring.address import by_address
-from raceway.core.ring.increment import Increment
-from raceway.core.ring.start import at_rest
-from raceway.core.ring.stepped import SteppedBearing
-from raceway.core.schemes.compiled import outer_force
-from raceway.core.schemes.drivers import Drivers, integrate
-from raceway.core.schemes.one_step.scheme import OneStep
+from raceway.core.record import Schedule, State
+from raceway.core.ring.orbit import at_rest
+from raceway.core.ring.ring import Increment, SteppedBearing
+from raceway.core.ring.system import by_address
 from raceway.core.signatures import Outer
-from raceway.core.stepping.protocol import State
-from raceway.core.stepping.record import Schedule
+from raceway.core.time.compiled import outer_force
+from raceway.core.time.schemes import Drivers, OneStep, integrate
 from raceway.integrators.newmark import Newmark
 from raceway.studies.stability.catalogue import BASE
 from raceway.testing import Registry, model_of, settle, settled, simulate

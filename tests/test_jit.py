@@ -33,7 +33,7 @@ import numba, numpy as np
 before = numba.config.CACHE_DIR
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
-    from raceway.core.contact_laws.power import linear, square, three_halves
+    from raceway.core.contact.laws import linear, square, three_halves
     from raceway.core.jit import clock
     at_import = clock["compiled"] + clock["loaded"]
     force, slope, rate = np.empty(1), np.empty(1), np.empty(1)
@@ -351,7 +351,7 @@ def test_threads_that_use_a_kernel_first_at_the_same_time_compile_it_once():
 def test_a_kernel_is_handed_to_another_process_uncompiled():
     import pickle
 
-    from raceway.core.contact_laws.power import square
+    from raceway.core.contact.laws import square
 
     assert pickle.loads(pickle.dumps(square)) is square
     done = python("-c", f"import pickle; print(pickle.loads({pickle.dumps(square)!r}).signature.args[0])")

@@ -7,7 +7,7 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.statics import solve_static
+from raceway.elastic.linear_statics import solve_static
 from validation.natural_modes import natural_modes
 from validation.reference import annulus, elastic
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from raceway.core.periodic.floquet import Floquet, fate_of
-from raceway.core.ring.orbit import at_time, differentiation, steady_orbit
-from raceway.core.ring.start import from_orbit
+from raceway.core.ring.orbit import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import chosen_start
 from raceway.testing import b7206c, model_of, settle
 from validation.reference.ring import Ring

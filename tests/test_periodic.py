@@ -13,21 +13,24 @@ from scipy.linalg import expm
 
 from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.collocation import _newton, solve
-from raceway.core.periodic.direct import highest_order, mesh_of, problem_of
-from raceway.core.periodic.first_guess import guess, response
-from raceway.core.periodic.from_rest import from_rest
-from raceway.core.periodic.neighbour import Recorded, neighbour_of
-from raceway.core.periodic.problem import Problem
-from raceway.core.periodic.rates import stiff
-from raceway.core.periodic.sampling import motion_at, record
-from raceway.core.periodic.search import find
+from raceway.core.periodic.collocation import Problem, _newton, one_turn, solve, stiff
+from raceway.core.periodic.refinement import motion_at, record
+from raceway.core.periodic.search import (
+    Recorded,
+    find,
+    from_rest,
+    guess,
+    highest_order,
+    mesh_of,
+    neighbour_of,
+    problem_of,
+    response,
+)
 from raceway.core.periodic.steady import _equilibrium
-from raceway.core.periodic.symmetry import one_turn
-from raceway.core.ring.address import by_address
+from raceway.core.record import Motion, Schedule
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Schedule
+from raceway.core.ring.system import by_address
+from raceway.core.time.schemes import integrate
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.transient_error import steady_record
 from raceway.testing import model_of, settle

@@ -10,7 +10,8 @@ from rich.console import Console
 
 from raceway import ConvergenceError, run
 from raceway.cli.run_screen import run_screen
-from raceway.core.periodic import beginning, direct
+from raceway.core.periodic import search as direct
+from raceway.core.periodic import steady as beginning
 from raceway.core.ring.orbit import differentiation
 from validation.several import article, by_integration, heavy
 

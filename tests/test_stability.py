@@ -161,7 +161,7 @@ def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
 def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatch):
     name = "elastic bodies: rubber balls in ceramic rings"
     assert {row.verdict for row in rows_named(name)} == {AS_EXPECTED}
-    monkeypatch.setattr("raceway.core.elastic.contacts.contact.Contact.energy", lambda self: 0.0)
+    monkeypatch.setattr("raceway.elastic.contact.Contact.energy", lambda self: 0.0)
     found = verdicts(rows_named(name))
     assert found == {"axial force on the outer seat": AS_EXPECTED, "change of the stored energy over the axial way": FAILED}
 

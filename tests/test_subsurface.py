@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.contact.subsurface import axis_shear, axis_stresses, largest_shear
+from raceway.core.contact.hertz import axis_shear, axis_stresses, largest_shear
 from validation.reference.half_space import pressed_stress
 
 NU = 0.3

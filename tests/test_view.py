@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.plugins.formats import Vtu
 from raceway.plugins.pictures import ball_loads
 from raceway.studies.view.bodies import Bearing, contact_patch

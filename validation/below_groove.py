@@ -7,10 +7,9 @@ import time
 import attrs
 import numpy as np
 
-from raceway.core.contact.subsurface import largest_shear
-from raceway.core.elastic.contacts.contact_axis import ContactAxis
-from raceway.core.elastic.contacts.stress_profile import stress_profile
+from raceway.core.contact.hertz import largest_shear
 from raceway.core.hexahedron.operator import HexOperator
+from raceway.elastic.stress import ContactAxis, stress_profile
 from validation.groove import DENSITY, HERTZ, POISSON, RADIUS, YOUNG, guess, model
 from validation.quarter import unfolded
 

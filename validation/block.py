@@ -8,11 +8,10 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as solvers
 
-from raceway.core.elastic.contacts.friction import CoulombFriction
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.stepping.protocol import Observation, State
-from raceway.core.stepping.record import Motion
+from raceway.core.record import Motion, Observation, State
 from raceway.core.threads import ThreadPool
+from raceway.elastic.friction import CoulombFriction
 from validation.reference import elastic
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0

@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway import scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.signals.identification import stiffness
+from raceway.core.signals import stiffness
 from raceway.testing import model_of, run, settle
 from validation.scenes import rotating
 

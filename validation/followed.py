@@ -8,8 +8,8 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.branch import Branch, Point
-from raceway.core.periodic.direct import directly, highest_order
-from raceway.core.periodic.sampling import displacements
+from raceway.core.periodic.refinement import displacements
+from raceway.core.periodic.search import directly, highest_order
 from raceway.core.ring.system import System
 from raceway.points.branch import line
 from raceway.points.follow import parameter_of

@@ -3,7 +3,7 @@
 One compiled function for each of four cases (balls with or without mass; Newmark or central differences) with Hertz
 contacts, contact dampers and a rotating or swinging harmonic force written in: no function pointers, no arrays between
 contact law, bodies and integrator, one ball after the other in registers.  It does the same physics with the same
-tolerances, the same steps and the same starting state, and keeps the same record (``raceway.core.schemes.compiled``), so its
+tolerances, the same steps and the same starting state, and keeps the same record (``raceway.core.time.compiled``), so its
 displacement must equal the package's to rounding.
 """
 

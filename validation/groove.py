@@ -13,20 +13,14 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import contact_modulus, ellipse
-from raceway.core.contact_laws.power import linear
-from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.body import Body, Frame
-from raceway.core.elastic.contacts.facets import Facets
-from raceway.core.elastic.contacts.gap import groove
-from raceway.core.elastic.contacts.nodal import NodalContact, Pair
-from raceway.core.elastic.contacts.penalty import penalty_stiffness
-from raceway.core.elastic.contacts.recovery import peak_at_nodes, peak_at_points
-from raceway.core.elastic.contacts.surface import surface_points
-from raceway.core.elastic.statics import TOLERANCE, Settled
-from raceway.core.elastic.system import ElasticSystem
+from raceway.core.contact.laws import linear
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh.hex_mesh import HexMesh
-from raceway.core.mesh.spacing import growing
+from raceway.core.mesh.hex_mesh import HexMesh, growing
+from raceway.elastic.assembly import Assembly, Body, Frame
+from raceway.elastic.bearing import ElasticSystem
+from raceway.elastic.contact import NodalContact, Pair, groove, peak_at_nodes, peak_at_points, penalty_stiffness
+from raceway.elastic.newton import TOLERANCE, Settled
+from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0

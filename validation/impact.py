@@ -8,20 +8,15 @@ import attrs
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from raceway.core.contact_laws.power import linear
-from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.body import Body
-from raceway.core.elastic.contacts.facets import Facets
-from raceway.core.elastic.contacts.gap import plane
-from raceway.core.elastic.contacts.nodal import NodalContact, Pair
-from raceway.core.elastic.contacts.penalty import penalty_stiffness
-from raceway.core.elastic.contacts.surface import surface_points
-from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.elastic.system import ElasticSystem
+from raceway.core.contact.laws import linear
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.statics import solve_static
 from raceway.core.mesh.ball_mesh import ball_mesh
 from raceway.core.mesh.hex_mesh import FACES
+from raceway.elastic.assembly import Assembly, Body
+from raceway.elastic.bearing import ElasticSystem, SteppedElastic
+from raceway.elastic.contact import NodalContact, Pair, penalty_stiffness, plane
+from raceway.elastic.linear_statics import solve_static
+from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import half_line
 from validation.reference.elastic import grid
 

@@ -191,9 +191,9 @@ def integration() -> Rule:
 
 def history() -> Rule:
     from raceway import build_model, load_scene, make_plan
-    from raceway.core.ring.start import at_rest
-    from raceway.core.schemes.drivers import integrate
-    from raceway.core.stepping.record import Schedule
+    from raceway.core.record import Schedule
+    from raceway.core.ring.orbit import at_rest
+    from raceway.core.time.schemes import integrate
     from raceway.planning.recording import recorded_per_turn
     from raceway.testing import settle
 
@@ -223,7 +223,7 @@ def compliances() -> Rule:
     from raceway import load_scene
     from raceway.bodies.basis import make_basis
     from raceway.bodies.condensed.compliances import _BODIES, elastic_bodies
-    from raceway.core.condensed import structural
+    from raceway.core import structural
 
     scene = load_scene(SCENE, ("bodies.kind=condensed",))
     basis = make_basis(scene)
@@ -256,10 +256,9 @@ def mirror() -> Rule:
     from scipy.sparse import diags_array
 
     from raceway import load_scene
-    from raceway.core.condensed.structural import ring_section
-    from raceway.core.mesh.ring_shape import ring_shape
-    from raceway.core.revolution.body import Revolution
-    from raceway.core.revolution.factor import factorised
+    from raceway.core.mesh.ring_mesh import ring_shape
+    from raceway.core.revolution.body import Revolution, factorised
+    from raceway.core.structural import ring_section
 
     bearing = load_scene(SCENE).bearing
     profile = ring_section(ring_shape(bearing, inner=False), bearing.ball_diameter)
@@ -296,7 +295,7 @@ def stresses() -> Rule:
     scene = load_scene(SCENE, changes)
     model = build_model(scene, make_plan(scene))
     bodies = model.system.bodies
-    from raceway.core.ring.surrogate import surrogate
+    from raceway.core.ring.system import surrogate
 
     place, places, _ = surrogate(model.system).settle(model.guess)
     system, y = bodies.system, bodies.guess(place, places)
@@ -324,7 +323,7 @@ def stresses() -> Rule:
 
 _PROBE = """
 import contextlib, io, json, pathlib, resource, sys, tempfile, time
-from raceway.core.schemes.drivers import integrate
+from raceway.core.time.schemes import integrate
 from raceway.cli.main import main
 from raceway.framework.registry import default_registry
 registry = default_registry()
@@ -351,7 +350,7 @@ for entry in registry.all():
         except TypeError:
             pass  # needs options
 from raceway.core.ring.kernels import condensed, rigid_inertial, rigid_tangential, rigid_weightless
-import raceway.core.schemes.explicit.compiled, raceway.core.schemes.one_step.compiled, raceway.core.schemes.static.compiled
+import raceway.core.time.compiled, raceway.core.time.compiled, raceway.core.time.compiled
 from raceway.core.periodic import steady
 from raceway.core.hexahedron import operator
 import gmsh, matplotlib.figure, meshio, pyvista

@@ -8,8 +8,7 @@ import attrs
 import numpy as np
 
 from raceway import ConvergenceError
-from raceway.core.linear.rigid_motions import rigid_motions
-from raceway.core.linear.statics import DIRECT_UNKNOWNS, Preconditioner
+from raceway.elastic.linear_statics import DIRECT_UNKNOWNS, Preconditioner, rigid_motions
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix

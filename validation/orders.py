@@ -12,9 +12,9 @@ import attrs
 import numpy as np
 
 from raceway import scene_from_dict
+from raceway.core.record import Motion, Schedule
 from raceway.core.ring.system import System
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Schedule
+from raceway.core.time.schemes import integrate
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing import Model, model_of, settle, simulate
 from validation.reference.ring import Ring

@@ -15,11 +15,8 @@ from scipy.optimize import fsolve
 from scipy.special import beta
 
 from raceway import LAW, jit
-from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.symmetry import one_turn
-from raceway.core.ring.address import by_address
-from raceway.core.ring.system import System
+from raceway.core.periodic.collocation import Path, Problem, Solved, one_turn, solve
+from raceway.core.ring.system import System, by_address
 from raceway.testing.systems import along_x, contact_system
 
 

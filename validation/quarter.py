@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from raceway.core.mesh.ball_mesh import CUBE, ball_mesh
-from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary, nodes_of
-from raceway.core.mesh.spacing import growing
+from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary, growing, nodes_of
 
 
 def half_line(zone: float, length: float, fine: float, coarse: float, growth: float) -> np.ndarray:

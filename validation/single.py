@@ -10,10 +10,9 @@ import numpy as np
 from raceway import scene_from_dict
 from raceway.bodies.basis import make_basis
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
-from raceway.core.patches.contact import Contact, ContactState
-from raceway.core.patches.patch import Patch, Spacing
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
+from raceway.core.patches.pressure import Contact, ContactState
 
 
 @attrs.frozen(eq=False)

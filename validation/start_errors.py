@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.signals.identification import stiffness
+from raceway.core.signals import stiffness
 from raceway.testing import model_of, run, settle
 from validation.error_estimate import SMALL
 from validation.scenes import rotating

@@ -27,7 +27,7 @@ kernels = {
     f"{kernel.__module__}:{kernel.__name__}": len(kernel.signatures)
     for module in modules.values() for kernel in vars(module).values() if isinstance(kernel, Kernel)
 }
-from raceway.core.ring.surrogate import surrogate
+from raceway.core.ring.system import surrogate
 system, record = surrogate(result.model.system), None if result.simulation is None else result.simulation.whole
 shapes = {name: list(getattr(system, name).shape) for name in ("table", "law_params", "law_state", "scalars")}
 if record is not None:
@@ -136,7 +136,7 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     check_modules("elastic bodies", found["loaded"])
     assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
     assert "raceway.bodies.condensed.build" not in found["loaded"]
-    assert {"raceway.core.elastic.contacts.resultant", "raceway.core.contact.sphere"} <= set(found["loaded"])
+    assert {"raceway.elastic.resultant", "raceway.core.contact.hertz"} <= set(found["loaded"])
     assert set(found["kernels"].values()) <= {0, 1}
 
 

@@ -57,20 +57,20 @@ def test_a_text_that_does_not_occur_once_is_refused():
 
 def test_words_choose_among_the_faults(capsys):
     words = ["gyroscopic moment has", "ring/root.py"]
-    assert {fault.file for fault in chosen(words)} == {"raceway/bodies/basis.py", "raceway/core/ring/root.py"}
+    assert {fault.file for fault in chosen(words)} == {"raceway/bodies/basis.py", "raceway/core/ring/equilibrium.py"}
     assert main(["--list", "ring/root.py"]) == 0
-    assert "raceway/core/ring/root.py: " in capsys.readouterr().out
+    assert "raceway/core/ring/equilibrium.py: " in capsys.readouterr().out
 
 
 def test_a_fault_touches_what_imports_its_file_and_nothing_else():
-    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/ring/dense.py")}
+    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/ring/equilibrium.py")}
     assert {
-        "raceway/core/ring/dense.py",
-        "raceway/core/schemes/one_step/compiled.py",
-        "raceway/core/ring/start.py",
+        "raceway/core/ring/equilibrium.py",
+        "raceway/core/time/compiled.py",
+        "raceway/core/ring/orbit.py",
         "tests/test_dense.py",
     } <= found
-    assert not {"raceway/core/schemes/compiled.py", "raceway/core/hexahedron/one_point.py"} & found
+    assert not {"raceway/core/time/compiled.py", "raceway/core/hexahedron/stiffness.py"} & found
 
 
 def test_the_copy_has_what_configures_pytest():

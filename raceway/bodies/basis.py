@@ -10,8 +10,8 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
-from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.ring import Growth
+from raceway.core.ring.system import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import ContactPairs

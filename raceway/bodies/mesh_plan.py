@@ -12,7 +12,7 @@ from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.core.mesh.size import Prediction
+    from raceway.core.mesh.quality import Prediction
 
 
 def mesh_faults(scene: Scene) -> list[Mistake]:
@@ -58,7 +58,7 @@ def predicted_mesh(scene: Scene) -> Tables | None:
     found = None if scene.mesh is None else _prediction(scene)
     if found is None:
         return None
-    from raceway.core.mesh.size import body_bytes
+    from raceway.core.mesh.quality import body_bytes
 
     bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in found.bodies.items()]
     return {"bodies": bodies, "cells": found.cells, "bytes": found.memory_bytes}
@@ -69,7 +69,7 @@ def _prediction(scene: Scene) -> Prediction | None:
     mesher = scene_mesher(scene)
     if not hasattr(mesher, "predict"):
         return None
-    from raceway.core.mesh.size import Prediction, refuse_memory
+    from raceway.core.mesh.quality import Prediction, refuse_memory
 
     with blamed(f"mesher '{mesher.name}'", "predict()"):
         found = mesher.predict(scene.bearing)

@@ -14,12 +14,11 @@ from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_en
 from raceway.bodies.pressure import contact_ellipse
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.ring.friction import friction_energy
-from raceway.core.ring.orbit import Orbit
+from raceway.core.record import Motion, Record
+from raceway.core.ring.energy import friction_energy
+from raceway.core.ring.orbit import Orbit, at_rest, from_orbit, static_orbit
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.start import at_rest, from_orbit, static_orbit
-from raceway.core.ring.surrogate import compiled
-from raceway.core.stepping.record import Motion, Record
+from raceway.core.ring.system import compiled
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door

@@ -15,10 +15,9 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, growth_of
 from raceway.bodies.running import renew
-from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
-from raceway.core.ring.system import System
+from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
 from raceway.planning.recording import turns_of

@@ -7,7 +7,7 @@ import numpy as np
 from raceway.bodies.basis import Basis
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.surrogate import surrogate
+from raceway.core.ring.system import surrogate
 from raceway.framework.duties import traits_of
 from raceway.scene.scene import Scene
 

@@ -11,9 +11,8 @@ import numpy as np
 from raceway.bodies.basis import Basis, contact_pairs, law_params
 from raceway.bodies.grooves import contact_angles
 from raceway.core.contact.film import entraining_speed
-from raceway.core.ring.changing_speed import ChangingSpeed
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import System
+from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
 from raceway.framework.duties import law_report, reach_of, renews

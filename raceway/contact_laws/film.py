@@ -188,7 +188,7 @@ class Film:
         return (1.0 + slope) * thick
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact_laws.hertz import three_halves_or_linear
+        from raceway.core.contact.laws import three_halves_or_linear
 
         return three_halves_or_linear
 

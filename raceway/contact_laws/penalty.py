@@ -67,6 +67,6 @@ class Penalty:
         return np.asarray(factor)[:, np.newaxis]
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact_laws.penalty import square_or_linear
+        from raceway.core.contact.laws import square_or_linear
 
         return square_or_linear

@@ -39,6 +39,6 @@ class Unilateral:
         return np.column_stack([np.zeros_like(stiffness), stiffness])
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact_laws.penalty import square_or_linear
+        from raceway.core.contact.laws import square_or_linear
 
         return square_or_linear

@@ -3,20 +3,18 @@
 jit            the one decorator for compiled kernels
 signatures     types of the kernels that are passed as function pointers
 threads        threads that share work, and how many there are
-contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
-contact_laws, excitations   compiled kernels of the built-in plug-ins
+contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws
+excitations    compiled kernels of the built-in excitations
+record         duties of a system that is stepped from Python; schedule, start and record of a time integration
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
-schemes        one-step, explicit and static methods: compiled loops and loops in Python
-stepping       time integration of systems that are stepped from Python; records
+time           one-step, explicit and static methods: compiled loops and loops in Python
 periodic       steady motions by collocation and continuation, with their Floquet multipliers
 signals        dynamic stiffness from the spectral lines of a motion
 mesh           hexahedral meshes of rings and balls
 hexahedron     the eight-node hexahedron
-linear         static and free linear elasticity: multigrid, natural frequencies
 revolution     compliances of bodies of revolution, harmonic by harmonic
-condensed      structural compliances behind contact resultants
+structural     structural compliances behind contact resultants
 patches        pressures at surface points on condensed bodies
-elastic        bodies whose every node is a degree of freedom, in contact
 """
 
 import os

@@ -140,7 +140,7 @@ STATE = record(State, MATRIX, MATRIX, MATRIX, MATRIX)
 RECORDING = record(Recording, int64, MATRIX, CUBE, VECTOR)
 REST = record(Rest, VECTOR, MATRIX, MATRIX)
 
-#: loop(forces, linear, outer, coefficients (k,), steps, state, recording) -> steps done, see raceway.core.schemes.compiled
+#: loop(forces, linear, outer, coefficients (k,), steps, state, recording) -> steps done, see raceway.core.time.compiled
 LOOP = int64(FORCES, LINEAR, OUTER, VECTOR, STEPS, STATE, RECORDING)
 
 #: settle(forces, linear, tolerance, t, rest, response, report (2,)) -> status, see raceway.core.ring.equilibrium

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from raceway.core.jit import Kernel
     from raceway.core.mesh.hex_mesh import HexMesh
-    from raceway.core.schemes.drivers import Scheme
-    from raceway.core.signals.identification import Identification
-    from raceway.core.stepping.record import Record
+    from raceway.core.record import Record
+    from raceway.core.signals import Identification
+    from raceway.core.time.schemes import Scheme
     from raceway.errors import Mistake
     from raceway.framework.higher_types import (
         Balls,
@@ -192,7 +192,7 @@ class Integrator(attrs.AttrsInstance, Protocol):
        the error of its displacement over the amplitude, ``counts["floquet"]``, if there is one, goes to result.json,
        ``counts["orbits"]``, a list of all steady motions that were found, to its ``motion.orbits``, and a scene that has no
        such motion is refused with a ``SceneError``.
-    4. ``scheme``: ``OneStep``, ``Explicit`` or ``Static`` of ``raceway.core.schemes`` by their numbers, which run on every kind of
+    4. ``scheme``: ``OneStep``, ``Explicit`` or ``Static`` of ``raceway.core.time.schemes`` by their numbers, which run on every kind of
        bodies; or ``Drivers`` of the method's own.  ``compiled(system, start, schedule, on_chunk)`` takes the steps of a ring
        whose forces are compiled and returns a ``Record``; it calls ``on_chunk(done, total)`` now and then, whose exceptions
        pass through.  ``stepped(system, recorder)`` takes those of any ``SteppedSystem``, each handed to
@@ -247,7 +247,7 @@ class Mesher(attrs.AttrsInstance, Protocol):
     3. The same bearing gives the same mesh.
     4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
     5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
-       ``raceway.core.mesh.size.Prediction``; None: it cannot tell); what cannot be meshed raises ``MeshError`` here
+       ``raceway.core.mesh.quality.Prediction``; None: it cannot tell); what cannot be meshed raises ``MeshError`` here
        already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
     """
 

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import attrs
 
-from raceway.core.schemes.explicit.scheme import Explicit
+from raceway.core.time.schemes import Explicit
 
 
 @attrs.frozen

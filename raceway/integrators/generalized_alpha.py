@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import attrs
 
-from raceway.core.schemes.one_step.scheme import OneStep
+from raceway.core.time.schemes import OneStep
 from raceway.framework.options import between, inside, option
 
 

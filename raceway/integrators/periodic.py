@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.core.schemes.drivers import Drivers
+from raceway.core.time.schemes import Drivers
 from raceway.errors import ConvergenceError
 from raceway.framework.options import inside, one_of, option
 
 if TYPE_CHECKING:
+    from raceway.core.record import Motion, OnChunk, Record, Schedule
     from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion, OnChunk, Record, Schedule
 
 
 @attrs.frozen

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import attrs
 
-from raceway.core.schemes.static.scheme import Static
+from raceway.core.time.schemes import Static
 from raceway.framework.options import inside, option
 
 

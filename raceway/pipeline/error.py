@@ -33,8 +33,8 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.core.ring.ring import TOLERANCE
-from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.core.signals.identification import Identification
+from raceway.core.ring.system import compiled, surrogate
+from raceway.core.signals import Identification
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import settle

@@ -22,21 +22,13 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
-from raceway.core.periodic.arrays import Change
-from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.direct import problem_of
-from raceway.core.periodic.intervals import condense, imbalances
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.rates import renew, stiff
-from raceway.core.periodic.search import Found, find
-from raceway.core.periodic.steady import refuse
-from raceway.core.periodic.sweep import spread
-from raceway.core.periodic.told import first_line, orbits, unstable
-from raceway.core.ring.address import by_address
+from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
+from raceway.core.periodic.intervals import Change, condense, imbalances, spread
+from raceway.core.periodic.search import Found, find, problem_of
+from raceway.core.periodic.steady import first_line, orbits, refuse, unstable
+from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
-from raceway.core.stepping.record import Schedule
+from raceway.core.ring.system import System, by_address, surrogate
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.shown import race_words, tilt_words
 from raceway.pipeline.settle import race_of

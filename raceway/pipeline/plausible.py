@@ -27,12 +27,11 @@ from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid.build import add_moments
-from raceway.core.ring.address import by_address
+from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
 from raceway.core.ring.orbit import Orbit, orbit_near
-from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.core.signals.identification import Identification, stiffness
-from raceway.core.stepping.record import Record
+from raceway.core.ring.system import by_address, compiled, surrogate
+from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
@@ -282,8 +281,8 @@ def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equili
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
     table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.own - model.basis.growth.own
     if scene.kinematics.gyroscopic != "none":
-        from raceway.core.ring.kernels.condensed import condensed
-        from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
+        from raceway.core.ring.kernels.structural import condensed
+        from raceway.core.ring.kernels.tangential import rigid_tangential
 
         add_moments(scalars, scene, model.geometry)
         kernel = condensed(rigid_tangential) if before.condensed else rigid_tangential
@@ -344,8 +343,8 @@ def _secant(
         except RacewayError:  # balls lift off: from the linear response, on a mesh that follows the motion
             if not method.inertial:
                 raise
-            from raceway.core.periodic.direct import directly, problem_of
-            from raceway.core.periodic.told import first_line
+            from raceway.core.periodic.search import directly, problem_of
+            from raceway.core.periodic.steady import first_line
 
             q, system = there.displacement, surrogate(other.bearing.orbiting(other.system))
             problem = problem_of(system, found.speed, q)

@@ -18,8 +18,7 @@ from raceway.bodies.model import Model
 from raceway.bodies.mounting import held_table, preload_table
 from raceway.bodies.running import report_of
 from raceway.core.ring.ring import COORDINATES
-from raceway.core.signals.identification import Identification
-from raceway.core.signals.lines import Line
+from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
 from raceway.pipeline.plausible import NEGLIGIBLE

@@ -20,12 +20,11 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
+from raceway.core.record import drift, friction_lost, largest_share
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import GYROSCOPIC
-from raceway.core.ring.surrogate import compiled
-from raceway.core.signals.identification import Identification
-from raceway.core.signals.lines import Line, lines
-from raceway.core.stepping.energy import drift, friction_lost, largest_share
+from raceway.core.ring.system import compiled
+from raceway.core.signals import Identification, Line, lines
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry

@@ -25,9 +25,9 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model
 from raceway.bodies.mounting import lost_preload
 from raceway.bodies.running import report_of
+from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
-from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import traits_of
 from raceway.scene.growth import free_angle

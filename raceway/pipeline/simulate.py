@@ -11,11 +11,11 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.surrogate import compiled
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.ring.system import compiled
+from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
@@ -89,7 +89,7 @@ def _on_orbit(model: Model, equilibrium: Equilibrium, system: Ring, period: floa
     try:
         ring = compiled(system)
         if searches_orbits(model.scene) and ring is not None:
-            from raceway.core.periodic.beginning import beginning
+            from raceway.core.periodic.steady import beginning
 
             found = beginning(ring, period, q, watch)
             if found is not None and not found.told:

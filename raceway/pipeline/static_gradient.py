@@ -25,8 +25,7 @@ from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Evaluation
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.duties import renews, same_bodies
 from raceway.scene.continuous import Key, with_number

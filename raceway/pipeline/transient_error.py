@@ -43,8 +43,8 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
-from raceway.core.signals.identification import Identification, fourier_line, stiffness, without_drift
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.signals import Identification, fourier_line, stiffness, without_drift
 from raceway.errors import BeyondPlanError, ConvergenceError, SceneError, StabilityError
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import settle
@@ -175,7 +175,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
 
 def last_turn(whole: Record, period: float) -> Any:
     """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
-    from raceway.core.periodic.neighbour import Recorded
+    from raceway.core.periodic.search import Recorded
 
     steps, stride = whole.schedule.steps_per_turn, whole.schedule.stride
     n = steps // stride

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import attrs
 
-from raceway.core.schemes.drivers import missing_driver
+from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.duties import bodies, renews, traits_of
 from raceway.planning.recording import predicted_steps_per_turn, recorded_per_turn, turns_of

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from raceway.core.mesh.hex_mesh import HexMesh
-    from raceway.core.mesh.size import Prediction
+    from raceway.core.mesh.quality import Prediction
     from raceway.scene.bearing import Bearing
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
@@ -100,7 +100,7 @@ class Gmsh:
         Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
         three directions' occurs four times.
         """
-        from raceway.core.mesh.place import ball_names
+        from raceway.core.mesh.hex_mesh import ball_names
 
         found: dict[str, float] = {}
         prediction: Prediction | None = None
@@ -115,7 +115,7 @@ class Gmsh:
         return prediction
 
     def _refuse_large(self, found: dict[str, float], path: str) -> Prediction:
-        from raceway.core.mesh.size import Prediction, refuse_memory
+        from raceway.core.mesh.quality import Prediction, refuse_memory
 
         # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
         prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
@@ -181,7 +181,7 @@ class Gmsh:
 
     def _cells(self, gmsh: ModuleType, path: str, scale: float) -> float:
         """Predicted number of hexahedra of the open file."""
-        from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
+        from raceway.core.mesh.quality import Prediction, refuse_coarse, refuse_memory
 
         volumes = {tag: gmsh.model.occ.getMass(3, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
         box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)

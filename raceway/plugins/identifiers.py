@@ -12,8 +12,8 @@ from raceway.framework.options import between, option, worded
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.core.signals.identification import Identification
-    from raceway.core.stepping.record import Record
+    from raceway.core.record import Record
+    from raceway.core.signals import Identification
 
 
 def whole_turns(record: Record) -> Record:
@@ -41,7 +41,7 @@ class SineFit:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
         signals = np.hstack([record.force, record.displacement])
@@ -81,7 +81,7 @@ class Tangent:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals.identification import identification
+        from raceway.core.signals import identification
 
         system, excitation = model.system, model.excitation
         w = 2.0 * np.pi * excitation.frequency_hz
@@ -111,7 +111,7 @@ class Fft1x:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals.identification import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
 
         record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
         force = fourier_line(record.time, record.force, frequency)
@@ -186,7 +186,7 @@ class ImpedanceFit:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals.identification import fourier_line, identification, stiffness
+        from raceway.core.signals import fourier_line, identification, stiffness
 
         records = [whole_turns(record) for record in records]
         w = np.array([2.0 * pi / (r.schedule.dt * r.schedule.steps_per_turn) for r in records])

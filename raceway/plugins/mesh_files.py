@@ -50,7 +50,7 @@ def bodies(mesher: Mesher, bearing: Bearing, make: Callable[[str, str], HexMesh]
     MeshError
         A pair of rows, or what ``make`` raises.
     """
-    from raceway.core.mesh.place import azimuth, ball_names, placed
+    from raceway.core.mesh.hex_mesh import azimuth, ball_names, placed
 
     if len(bearing.rows) > 1:
         raise MeshError(f"mesh.kind = '{mesher.name}' makes one row; use 'structured' for a pair of rows")

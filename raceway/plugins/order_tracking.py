@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
+    from raceway.core.record import Record
     from raceway.core.ring.ring import Ring
-    from raceway.core.signals.identification import Identification
-    from raceway.core.stepping.record import Record
+    from raceway.core.signals import Identification
 
 
 @attrs.frozen
@@ -43,7 +43,7 @@ class OrderTracking:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals.identification import identification
+        from raceway.core.signals import identification
         from raceway.errors import ConvergenceError
 
         record = records[0]
@@ -123,7 +123,7 @@ def _steady(
     """
     import numpy as np
 
-    from raceway.core.signals.identification import steady_stiffness
+    from raceway.core.signals import steady_stiffness
 
     if system is None:
         return steady_stiffness(line[:5], line[5:], np.zeros(5, dtype=complex)), 0.0

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from raceway.core.mesh.hex_mesh import HexMesh
+    from raceway.core.mesh.quality import Prediction
     from raceway.core.mesh.ring_mesh import RingShape
-    from raceway.core.mesh.size import Prediction
     from raceway.scene.bearing import Bearing
 
 #: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
@@ -59,7 +59,7 @@ class Structured:
             Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
         """
         from raceway.core.mesh.ball_mesh import ball_mesh
-        from raceway.core.mesh.place import azimuth, ball_names, placed
+        from raceway.core.mesh.hex_mesh import azimuth, ball_names, placed
 
         self.predict(bearing)  # refuses what cannot work
         bodies: dict[str, HexMesh] = {}
@@ -82,9 +82,9 @@ class Structured:
             As ``mesh``.
         """
         from raceway.core.mesh.ball_mesh import ball_cells
-        from raceway.core.mesh.place import ball_names
-        from raceway.core.mesh.ring_shape import ring_shape
-        from raceway.core.mesh.size import Prediction, refuse_memory
+        from raceway.core.mesh.hex_mesh import ball_names
+        from raceway.core.mesh.quality import Prediction, refuse_memory
+        from raceway.core.mesh.ring_mesh import ring_shape
 
         self._refuse(bearing)
         bodies: dict[str, float] = {}
@@ -108,8 +108,8 @@ class Structured:
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 
     def _refuse(self, bearing: Bearing) -> None:
-        from raceway.core.mesh.ring_shape import ring_shape
-        from raceway.core.mesh.size import Prediction, refuse_coarse, refuse_memory
+        from raceway.core.mesh.quality import Prediction, refuse_coarse, refuse_memory
+        from raceway.core.mesh.ring_mesh import ring_shape
 
         if not bearing.equal_rows:
             raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")
@@ -146,7 +146,7 @@ class Structured:
         import numpy as np
 
         from raceway.core.mesh.ball_mesh import CUBE
-        from raceway.core.mesh.spacing import graded, growing
+        from raceway.core.mesh.hex_mesh import graded, growing
 
         # Both contacts of a ball share the cube's lines: the larger ellipse sets the zone, the smaller one the size.
         pairs = [self._semi_axes(bearing, inner) for inner in (True, False)]
@@ -173,7 +173,7 @@ class Structured:
         self, bearing: Bearing, shape: RingShape
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
-        from raceway.core.mesh.spacing import graded, growing
+        from raceway.core.mesh.hex_mesh import graded, growing
 
         major, minor = self._semi_axes(bearing, shape.inner)
         size, (low, high) = self.element_size, shape.edges
@@ -195,7 +195,7 @@ class Structured:
         """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""
         import numpy as np
 
-        from raceway.core.mesh.spacing import graded
+        from raceway.core.mesh.hex_mesh import graded
 
         wanted, count = self.azimuth_cells, bearing.ball_count
         pitch = 2.0 * pi / count
@@ -214,9 +214,8 @@ class Structured:
     def _ring(self, bearing: Bearing, inner: bool, side: float, place: float) -> HexMesh:
         import numpy as np
 
-        from raceway.core.mesh.place import azimuth
-        from raceway.core.mesh.ring_mesh import ring_mesh
-        from raceway.core.mesh.ring_shape import ring_shape
+        from raceway.core.mesh.hex_mesh import azimuth
+        from raceway.core.mesh.ring_mesh import ring_mesh, ring_shape
 
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)

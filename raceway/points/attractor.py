@@ -23,13 +23,13 @@ import numpy as np
 from raceway.bodies.model import build_model
 from raceway.core.periodic.branch import Point
 from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.direct import highest_order
 from raceway.core.periodic.floquet import transfer
-from raceway.core.periodic.sampling import states
+from raceway.core.periodic.refinement import states
+from raceway.core.periodic.search import highest_order
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.integrators.newmark import Newmark
 from raceway.pipeline.result import Result

@@ -9,14 +9,13 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from raceway.core.periodic.arrays import Change
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.sampling import displacements, states
-from raceway.core.periodic.sweep import contacts, forces, spread
+from raceway.core.periodic.intervals import Change, contacts, forces, spread
+from raceway.core.periodic.refinement import displacements, states
 from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
 from raceway.core.ring.orbit import States
-from raceway.core.signals.identification import stiffness
+from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import door
 from raceway.pipeline.result import write_json

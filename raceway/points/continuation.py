@@ -7,14 +7,10 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
-from raceway.core.periodic.branch import Branch, Point
-from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.direct import MOST, directly, highest_order, mesh_of
-from raceway.core.periodic.doubling import apart, doubled
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.sampling import motion_at
-from raceway.core.periodic.search import find
-from raceway.core.periodic.special import DOUBLING, located, special_points
+from raceway.core.periodic.branch import DOUBLING, Branch, Point, apart, doubled, located, special_points
+from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.refinement import motion_at
+from raceway.core.periodic.search import MOST, directly, find, highest_order, mesh_of
 from raceway.errors import ConvergenceError
 from raceway.points.attractor import instead
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Row, growth_of_swing, openness, resonance, row_of

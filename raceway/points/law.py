@@ -10,9 +10,9 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import build_model
-from raceway.core.ring.increment import Increment
 from raceway.core.ring.kernels.impact import single_contact
-from raceway.core.ring.surrogate import compiled
+from raceway.core.ring.ring import Increment
+from raceway.core.ring.system import compiled
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with

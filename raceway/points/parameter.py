@@ -15,15 +15,12 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Model, build_model
-from raceway.core.periodic.direct import problem_of
-from raceway.core.periodic.problem import Problem
+from raceway.core.periodic.collocation import Problem, Symmetry, one_turn
+from raceway.core.periodic.search import problem_of
 from raceway.core.periodic.steady import refuse
-from raceway.core.periodic.symmetry import Symmetry, one_turn
-from raceway.core.ring.address import by_address
+from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.surrogate import compiled
-from raceway.core.ring.system import System
-from raceway.core.stepping.record import Schedule
+from raceway.core.ring.system import System, by_address, compiled
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan

@@ -36,12 +36,12 @@ def ring_inertia(scene: Scene) -> tuple[float, float, float]:
 def _moments(b: Bearing, depth: float) -> tuple[float, float, float] | None:
     """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
     if b.inner_profile is not None:
-        from raceway.core.mesh.ring_shape import ring_shape
+        from raceway.core.mesh.ring_mesh import ring_shape
 
         return ring_shape(b, True).moments
     if b.bore is None or b.width is None:
         return None
-    from raceway.core.mesh.ring_section import RingSection
+    from raceway.core.mesh.ring_mesh import RingSection
 
     return RingSection.of(b, depth).moments
 
@@ -70,7 +70,7 @@ def _growth(b: Bearing, depth: float) -> float:
     """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
     young, poisson = b.rings.young, b.rings.poisson
     if b.width is not None:
-        from raceway.core.mesh.ring_section import RingSection
+        from raceway.core.mesh.ring_mesh import RingSection
 
         return RingSection.of(b, depth).growth(young, poisson)
     bore, land = 0.5 * (b.bore or 0.0), 0.5 * (b.pitch_diameter - b.ball_diameter) + depth

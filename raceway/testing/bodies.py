@@ -17,8 +17,8 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
 from raceway.bodies.model import Bearing, Model
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule
+from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.hookspecs import hookimpl

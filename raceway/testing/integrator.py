@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.system import System
-from raceway.core.schemes.drivers import Drivers, integrate
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.time.schemes import Drivers, integrate
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
 from raceway.testing.suite import Suite, check_class, duty, require
 from raceway.testing.systems import (

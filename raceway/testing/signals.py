@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.core.signals.identification import Identification
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
+from raceway.core.signals import Identification
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 

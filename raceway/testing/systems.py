@@ -18,14 +18,14 @@ import attrs
 import numpy as np
 from numba import float64, int64, void
 
-from raceway.core.contact_laws.power import three_halves
+from raceway.core.contact.laws import three_halves
 from raceway.core.excitations.harmonic import harmonic, no_force
 from raceway.core.jit import jit
+from raceway.core.record import Motion
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
 from raceway.core.ring.kernels.layout import COLUMNS, DIAMETER, REST_AXIAL, SCALARS, TILT_ARM
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
-from raceway.core.stepping.record import Motion
 from raceway.testing.suite import require
 
 #: A diameter that no ball here has: the gap at x = 0 [m].

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, make_plan, scene_from_dict
-from raceway.core.condensed import calibration
+from raceway.core import structural as calibration
 from raceway.core.revolution.body import seat_areas
 from raceway.testing import b7206c, run, settled
 from validation.command_line import EXAMPLES, invoke

@@ -7,17 +7,15 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from raceway import ConvergenceError
-from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
-from raceway.core.condensed.structural import RingCompliance
+from raceway.core.record import Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels import STORED
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
-from raceway.core.ring.orbit import steady_orbit
-from raceway.core.ring.start import from_orbit, static_orbit
+from raceway.core.ring.orbit import from_orbit, static_orbit, steady_orbit
 from raceway.core.ring.system import System
-from raceway.core.schemes.drivers import integrate
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.core.stepping.record import Schedule
+from raceway.core.structural import ElasticBodies, RingCompliance, elastic_system
+from raceway.core.time.schemes import integrate
 from raceway.testing import b7206c, model_of
 
 ANGLES = np.linspace(-0.7, 0.7, 13)

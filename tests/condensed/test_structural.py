@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.core.condensed.elastic_bodies import between_grooves
-from raceway.core.condensed.line_load import half_space, nodal_weights
-from raceway.core.condensed.modes import first_frequency
-from raceway.core.condensed.structural import reach, ring_compliance
-from raceway.core.contact.sphere import ball_compliance
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.contact.hertz import ball_compliance
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.structural import between_grooves, first_frequency, half_space, nodal_weights, reach, ring_compliance
 from raceway.testing import b7206c
 
 YOUNG, POISSON = 212e9, 0.29

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.schemes.drivers import Drivers
+from raceway.core.time.schemes import Drivers
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark

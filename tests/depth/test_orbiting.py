@@ -8,7 +8,7 @@ import pytest
 
 from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
-from raceway.core.signals.lines import phasors
+from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
 from raceway.pipeline.settle import ball_pass, ball_pass_table
 from raceway.testing import b7206c, model_of, settle, settled, simulate

@@ -10,12 +10,12 @@ from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.cli.run_screen import run_screen
-from raceway.core.ring.friction import friction_energy
+from raceway.core.record import Schedule
+from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
-from raceway.core.ring.start import at_rest
-from raceway.core.ring.stepped import SteppedBearing
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.ring.orbit import at_rest
+from raceway.core.ring.ring import SteppedBearing
+from raceway.core.time.schemes import integrate
 from raceway.plugins.excitations import Bidirectional, RunUp
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing import b7206c

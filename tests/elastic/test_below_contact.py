@@ -8,8 +8,7 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
-from raceway.core.elastic.contacts.contact_axis import contact_axes
-from raceway.core.elastic.contacts.stress_profile import cells_near
+from raceway.elastic.stress import cells_near, contact_axes
 from raceway.testing import run
 from tests.test_elastic_scene import TINY
 from validation.below_groove import below

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from raceway.core.elastic.cage import NAMES, Cage, cage_rows, cage_stiffness
-from raceway.core.elastic.low_rank import LowRankContacts
+from raceway.elastic.assembly import NAMES, Cage, cage_rows, cage_stiffness
+from raceway.elastic.iterative_solver import LowRankContacts
 from tests.superelements.bearings import built
 
 #: Nodes, of which the last one is held, and contacts.

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from raceway.core.elastic.contacts.facets import Facets
-from raceway.core.elastic.contacts.gap import forces_and_tangents, gaps, groove, plane
-from raceway.core.elastic.contacts.surface import surface_points
+from raceway.elastic.contact import forces_and_tangents, gaps, groove, plane
+from raceway.elastic.surface import Facets, surface_points
 from validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model, solve
 from validation.reference.contact import contact_forces, groove_gap
 

@@ -8,10 +8,10 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.bodies.meshing import mesh_scene
-from raceway.core.elastic.contacts.facets import Facets
-from raceway.core.elastic.contacts.footprint import Footprint, ellipse, footprint
-from raceway.core.mesh.place import azimuth
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.hex_mesh import azimuth
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.elastic.resultant import Footprint, ellipse, footprint
+from raceway.elastic.surface import Facets
 from raceway.testing import b7206c
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.

@@ -7,10 +7,9 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.contact.hertz import contact_modulus, ellipse
-from raceway.core.contact_laws.hertz import three_halves_or_linear
-from raceway.core.elastic.contacts.footprint import Footprint
-from raceway.core.elastic.contacts.gap import groove, plane
-from raceway.core.elastic.contacts.resultant import ResultantContact, Touch
+from raceway.core.contact.laws import three_halves_or_linear
+from raceway.elastic.contact import groove, plane
+from raceway.elastic.resultant import Footprint, ResultantContact, Touch
 
 #: A ball of 9.5 mm on a groove of a ring, about; loads of some hundred newtons make it approach by some micrometres.
 HERTZ = ellipse(480.0, 0.93, contact_modulus(212e9, 0.29, 212e9, 0.29))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway.core.elastic.statics import settle
+from raceway.elastic.newton import settle
 from raceway.testing import settled
 from tests.test_elastic_scene import TINY
 

@@ -19,9 +19,9 @@ from raceway import load_scene
 from raceway.bodies.elastic.plan import elastic_cost
 from raceway.bodies.meshing import mesh_scene
 from raceway.bodies.model import build_model
-from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.ring import ElasticRing
-from raceway.core.elastic.system import ElasticSystem
+from raceway.elastic.assembly import Assembly
+from raceway.elastic.bearing import ElasticSystem
+from raceway.elastic.ring import ElasticRing
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.storage.cache_folder import cache_root

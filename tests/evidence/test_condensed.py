@@ -12,14 +12,11 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raceway.core.revolution.ball_profile import ball_profile
+from raceway.core.record import Schedule
 from raceway.core.revolution.body import Revolution, seat_areas
-from raceway.core.revolution.profile import dofs
-from raceway.core.revolution.ring_profile import coarse_profile, graded_profile
-from raceway.core.ring.orbit import steady_orbit
-from raceway.core.ring.start import from_orbit
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
+from raceway.core.ring.orbit import from_orbit, steady_orbit
+from raceway.core.time.schemes import integrate
 from raceway.testing import model_of, settled
 from tests.revolution.sections import STEEL, shape
 from validation.condensed import cost, largest, quantities, tables

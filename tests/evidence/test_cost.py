@@ -17,10 +17,9 @@ import numpy as np
 import pytest
 
 from raceway import build_model, load_scene, make_plan
-from raceway.core.ring.orbit import steady_orbit
-from raceway.core.ring.start import from_orbit
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule
+from raceway.core.ring.orbit import from_orbit, steady_orbit
+from raceway.core.time.schemes import integrate
 from raceway.pipeline.settle import settle
 from raceway.scene.file import read_toml
 from raceway.studies.precision.result import EXACT
@@ -211,9 +210,9 @@ import json, sys
 from raceway import load_scene
 from raceway.core.jit import clock
 from raceway.core.ring.equilibrium import settle
-from raceway.core.schemes.explicit.compiled import central_difference
-from raceway.core.schemes.one_step.compiled import implicit
-from raceway.core.schemes.static.compiled import quasi_static
+from raceway.core.time.compiled import central_difference
+from raceway.core.time.compiled import implicit
+from raceway.core.time.compiled import quasi_static
 from raceway.pipeline.run import run
 run(load_scene(sys.argv[1]))
 first = clock["compiled"]

@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.core.elastic.contacts.friction import CoulombFriction
-from raceway.core.elastic.start import from_orbit
-from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.elastic.touching import sticking
+from raceway.core.record import Schedule, drift, largest_share
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.energy import drift, largest_share
-from raceway.core.stepping.record import Schedule
+from raceway.core.time.schemes import integrate
+from raceway.elastic.bearing import SteppedElastic
+from raceway.elastic.friction import CoulombFriction
+from raceway.elastic.iterative_solver import sticking
+from raceway.elastic.ring import from_orbit
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from raceway.testing import run, settle

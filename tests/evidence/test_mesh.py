@@ -14,7 +14,7 @@ import pytest
 
 from raceway import load_scene
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.statics import solve_static
+from raceway.elastic.linear_statics import solve_static
 from raceway.plugins.structured_mesh import Structured
 from validation.command_line import EXAMPLES
 from validation.natural_modes import natural_modes
@@ -46,7 +46,7 @@ begin = time.process_time()
 meshes = mesh_scene(scene)
 seconds = time.process_time() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-from raceway.core.mesh.summary import summary
+from raceway.core.mesh.quality import summary
 print(json.dumps({"seconds": seconds, "memory": memory, "summary": summary(meshes)}))
 """
 

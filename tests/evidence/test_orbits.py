@@ -10,17 +10,14 @@ import pytest
 from scipy.linalg import expm
 
 import raceway as rw
-from raceway.core.periodic.branch import Branch
-from raceway.core.periodic.direct import directly, highest_order, mesh_of, problem_of
-from raceway.core.periodic.doubling import doubled
-from raceway.core.periodic.from_rest import from_rest
-from raceway.core.periodic.sampling import displacements, states
-from raceway.core.periodic.special import DOUBLING, FOLD, PAIR, special_points
-from raceway.core.periodic.symmetry import one_turn
-from raceway.core.ring.address import by_address
-from raceway.core.schemes.drivers import integrate
-from raceway.core.signals.identification import stiffness
-from raceway.core.stepping.record import Motion, Schedule
+from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
+from raceway.core.periodic.collocation import one_turn
+from raceway.core.periodic.refinement import displacements, states
+from raceway.core.periodic.search import directly, from_rest, highest_order, mesh_of, problem_of
+from raceway.core.record import Motion, Schedule
+from raceway.core.ring.system import by_address
+from raceway.core.signals import stiffness
+from raceway.core.time.schemes import integrate
 from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.scene.inner_ring import ring_inertia

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.core.ring.energy import energy_balance
-from raceway.core.ring.friction import friction_energy
-from raceway.core.signals.lines import phasors
+from raceway.core.ring.energy import energy_balance, friction_energy
+from raceway.core.signals import phasors
 from raceway.studies.article.runs import SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude

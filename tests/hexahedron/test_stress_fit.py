@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.contact.subsurface import axis_stresses, largest_shear
-from raceway.core.elastic.contacts.stress_profile import StressProfile
+from raceway.core.contact.hertz import axis_stresses, largest_shear
 from raceway.core.hexahedron.stress_fit import StressFit
+from raceway.elastic.stress import StressProfile
 from validation.reference.half_space import pressed_stress
 
 #: Ellipse of a ball bearing's contact, and steel.

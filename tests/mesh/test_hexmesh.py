@@ -6,8 +6,7 @@ import pytest
 
 from raceway import MeshError
 from raceway.core.mesh.hex_mesh import HexMesh, merged
-from raceway.core.mesh.quality import quality, refuse_bad_cells
-from raceway.core.mesh.summary import summary
+from raceway.core.mesh.quality import quality, refuse_bad_cells, summary
 from tests.mesh.solids import facet_normals
 from validation.cubes import block
 

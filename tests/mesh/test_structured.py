@@ -10,12 +10,9 @@ from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.bodies.meshing import mesh_scene, scene_mesher
 from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
-from raceway.core.mesh.hex_mesh import EDGES
-from raceway.core.mesh.quality import quality, refuse_bad_cells
-from raceway.core.mesh.ring_mesh import ring_mesh
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.mesh.spacing import graded, growing
-from raceway.core.mesh.summary import summary
+from raceway.core.mesh.hex_mesh import EDGES, graded, growing
+from raceway.core.mesh.quality import quality, refuse_bad_cells, summary
+from raceway.core.mesh.ring_mesh import ring_mesh, ring_shape
 from raceway.plugins.structured_mesh import Structured
 from tests.mesh.solids import facet_normals
 from validation.command_line import EXAMPLES

@@ -7,12 +7,9 @@ import numpy as np
 import pytest
 
 from raceway import LAW, ConvergenceError, MeshError, jit
-from raceway.core.contact_laws.hertz import three_halves_or_linear
-from raceway.core.patches.contact import BeyondPatch, Contact
-from raceway.core.patches.factor import Factor
-from raceway.core.patches.field import pressure_field
-from raceway.core.patches.nodal_law import PointLaw
+from raceway.core.contact.laws import three_halves_or_linear
 from raceway.core.patches.patch import Spacing
+from raceway.core.patches.pressure import BeyondPatch, Contact, Factor, PointLaw, pressure_field
 from validation.single import Single, single
 
 

@@ -10,11 +10,11 @@ import pytest
 
 from raceway import make_plan, scene_from_dict
 from raceway.bodies.patches.plan import patch_cost
-from raceway.core.patches.contact import Contact, SlipState
+from raceway.core.patches.balls import Gyroscopic
 from raceway.core.patches.friction import Friction, Traction
-from raceway.core.patches.gyroscopic import Gyroscopic
-from raceway.core.patches.history import History
-from raceway.core.ring.increment import Increment
+from raceway.core.patches.pressure import Contact, SlipState
+from raceway.core.patches.system import History
+from raceway.core.ring.ring import Increment
 from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables
 from validation.reference.mindlin import Mindlin

@@ -8,10 +8,8 @@ import attrs
 import numpy as np
 
 from raceway import load_scene
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.revolution.ball_profile import ball_profile
-from raceway.core.revolution.profile import Profile
-from raceway.core.revolution.ring_profile import graded_profile
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.revolution.sections import Profile, ball_profile, graded_profile
 from validation.command_line import EXAMPLES
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing

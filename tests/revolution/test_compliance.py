@@ -8,10 +8,8 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
 from raceway import MeshError
-from raceway.core.revolution.body import Revolution, seat_areas
-from raceway.core.revolution.cached import cached_compliance
-from raceway.core.revolution.harmonics import solved_harmonics
-from raceway.core.revolution.profile import dofs
+from raceway.core.revolution.body import Revolution, cached_compliance, seat_areas, solved_harmonics
+from raceway.core.revolution.sections import dofs
 from tests.revolution.sections import STEEL, ball, ring
 from validation.reference.swept import Swept
 

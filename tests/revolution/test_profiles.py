@@ -8,11 +8,9 @@ import pytest
 
 from raceway import MeshError, SceneError, scene_from_dict
 from raceway.core.mesh.quality import refuse_bad_cells
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.revolution.ball import free_ball
-from raceway.core.revolution.body import Revolution
-from raceway.core.revolution.profile import Profile, dofs
-from raceway.core.revolution.ring_profile import coarse_profile, graded_profile
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.revolution.body import Revolution, free_ball
+from raceway.core.revolution.sections import Profile, coarse_profile, dofs, graded_profile
 from raceway.plugins.structured_mesh import Structured
 from raceway.scene.inner_ring import ring_inertia
 from raceway.testing import b7206c

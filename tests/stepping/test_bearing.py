@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from raceway import StabilityError
-from raceway.core.ring.start import at_rest, static_orbit
-from raceway.core.ring.stepped import SteppedBearing
-from raceway.core.schemes.drivers import Drivers, integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule
+from raceway.core.ring.orbit import at_rest, static_orbit
+from raceway.core.ring.ring import SteppedBearing
+from raceway.core.time.schemes import Drivers, integrate
 from raceway.integrators import raceway_integrators
 from raceway.testing import settled
 from raceway.testing.integrator import IntegratorSuite

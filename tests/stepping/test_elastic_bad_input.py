@@ -8,20 +8,15 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, MeshError, StabilityError
-from raceway.core.contact_laws.power import linear
-from raceway.core.elastic.assembly import Assembly
-from raceway.core.elastic.body import Body
-from raceway.core.elastic.contacts.facets import Facets
-from raceway.core.elastic.contacts.gap import plane
-from raceway.core.elastic.contacts.nodal import NodalContact, Pair
-from raceway.core.elastic.contacts.surface import surface_points
-from raceway.core.elastic.stepped import SteppedElastic
-from raceway.core.elastic.system import ElasticSystem
+from raceway.core.contact.laws import linear
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import FACES, boundary
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.energy import drift
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule, drift
+from raceway.core.time.schemes import integrate
+from raceway.elastic.assembly import Assembly, Body
+from raceway.elastic.bearing import ElasticSystem, SteppedElastic
+from raceway.elastic.contact import NodalContact, Pair, plane
+from raceway.elastic.surface import Facets, surface_points
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from validation.reference import elastic

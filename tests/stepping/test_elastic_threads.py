@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from raceway import StabilityError
-from raceway.core.elastic.body_forces import fitting_threads
-from raceway.core.elastic.start import at_rest
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule
 from raceway.core.threads import ThreadPool
+from raceway.core.time.schemes import integrate
+from raceway.elastic.assembly import fitting_threads
+from raceway.elastic.ring import at_rest
 from raceway.integrators.central_difference import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
@@ -139,7 +139,7 @@ def test_threads_live_over_a_run_and_end_with_it_also_where_it_fails():
 
 
 def test_small_bodies_are_stepped_by_one_thread(monkeypatch):
-    monkeypatch.setattr("raceway.core.elastic.body_forces.usable_cores", lambda: 16)
+    monkeypatch.setattr("raceway.elastic.assembly.usable_cores", lambda: 16)
     assert fitting_threads(500) == 1
     assert 1 < fitting_threads(60_000) < 16
     assert fitting_threads(1_000_000) == 16

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError
-from raceway.core.elastic.contacts.friction import CoulombFriction
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.energy import drift
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule, drift
+from raceway.core.time.schemes import integrate
+from raceway.elastic.friction import CoulombFriction
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
 from validation.block import POISSON, YOUNG, Block

@@ -5,8 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.elastic.system import ElasticSystem
+from raceway.elastic.bearing import ElasticBearing, ElasticSystem
 from raceway.testing import model_of
 from tests.test_elastic_scene import TINY
 

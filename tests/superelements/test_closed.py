@@ -5,11 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.copies import Copies, sectors
-from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.superelements.loose import Loose, gather_turned
-from raceway.core.elastic.superelements.part import Part
 from raceway.core.hexahedron.operator import HexOperator
+from raceway.elastic.superelement import Closed, Copies, Loose, Part, gather_turned, sectors
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
 from validation.reference import elastic
 

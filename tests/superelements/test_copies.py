@@ -7,11 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from raceway.core.elastic.body_forces import BodyForces
-from raceway.core.elastic.copied_stiffness import CopiedStiffness
-from raceway.core.elastic.copies import Copies, same_bodies, sectors, turn
-from raceway.core.hexahedron.block_rows import BlockRows
+from raceway.core.hexahedron.rows import BlockRows
 from raceway.core.threads import ThreadPool
+from raceway.elastic.assembly import BodyForces, CopiedStiffness
+from raceway.elastic.superelement import Copies, same_bodies, sectors, turn
 from tests.superelements.bearings import built
 from validation.reference import elastic
 

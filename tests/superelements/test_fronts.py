@@ -7,8 +7,7 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.dissection import dissect
-from raceway.core.linear.fronts import factored
+from raceway.elastic.fronts import dissect, factored
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
 from validation.reference import elastic
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.superelements import linearised
-from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.elastic.superelements.interface import Motions
-from raceway.core.elastic.superelements.linearised import Linearised
-from raceway.core.elastic.superelements.loose import Loose
-from raceway.core.elastic.superelements.tangent import BallTangent
+from raceway.elastic import superelement_solver as linearised
+from raceway.elastic.interface import Motions
+from raceway.elastic.superelement import Closed, Loose
+from raceway.elastic.superelement_solver import BallTangent, Linearised
 from tests.superelements.bearings import built, start_of, unreduced, with_node_moved
 
 #: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.elastic.solver import LinearSolver
-from raceway.core.elastic.start import at_rest
-from raceway.core.elastic.superelements.closed import Closed
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Schedule
+from raceway.core.record import Schedule
+from raceway.core.time.schemes import integrate
+from raceway.elastic.iterative_solver import LinearSolver
+from raceway.elastic.ring import at_rest
+from raceway.elastic.superelement import Closed
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
 from raceway.testing import settle

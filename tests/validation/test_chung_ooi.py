@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from raceway.core.ring.kernels.impact import impact_system
-from raceway.core.schemes.drivers import integrate
+from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
 from raceway.studies.many.reference import reference_cases
 from raceway.studies.verify.cases import impact_of, measure, transient_integrators
@@ -42,8 +42,8 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 
     The phase error of the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4.
     """
-    from raceway.core.contact_laws.power import three_halves
-    from raceway.core.stepping.record import Motion, Schedule
+    from raceway.core.contact.laws import three_halves
+    from raceway.core.record import Motion, Schedule
 
     mass, stiffness, x0 = 2.0, 8e6, 1e-5
     system = impact_system(mass, three_halves, np.array([1e10]), clearance=1.0, stiffness=stiffness)
@@ -59,8 +59,8 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 @pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
 def test_an_impact_on_a_penalty(name):
     """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
-    from raceway.core.contact_laws.power import square
-    from raceway.core.stepping.record import Motion, Schedule
+    from raceway.core.contact.laws import square
+    from raceway.core.record import Motion, Schedule
 
     mass, speed, factor = 0.01, 2.0, 1e12
     deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)
@@ -74,7 +74,7 @@ def test_an_impact_on_a_penalty(name):
 
 
 def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
-    from raceway.core.contact_laws.power import three_halves
+    from raceway.core.contact.laws import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]), contact_damping=50.0)
     first, step = np.array([1.0, 0, 0, 0, 0]), 1e-11
@@ -89,7 +89,7 @@ def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
 
 
 def test_a_mass_pressed_on_a_contact_settles_where_hertz_says():
-    from raceway.core.contact_laws.power import three_halves
+    from raceway.core.contact.laws import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]), load=500.0, clearance=2e-6)
     q, _, _ = system.settle(np.zeros(5))

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.revolution.body import Revolution
-from raceway.core.revolution.ring_profile import coarse_profile
+from raceway.core.revolution.sections import coarse_profile
 
 
 def growth_by_elements(scene, size=0.5e-3):

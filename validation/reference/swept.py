@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.linear.rigid_motions import rigid_motions
-from raceway.core.revolution.profile import Profile
+from raceway.core.revolution.sections import Profile
+from raceway.elastic.linear_statics import rigid_motions
 
 
 class Swept:

@@ -16,12 +16,10 @@ from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid import build as rigid
 from raceway.bodies.rigid.build import RigidBearing
-from raceway.core.condensed.elastic_bodies import ElasticBodies, elastic_system
-from raceway.core.condensed.structural import ring_section
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, surrogate
+from raceway.core.structural import ElasticBodies, elastic_system, ring_section
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.estimate import Estimate
 from raceway.planning.plan import Plan
@@ -31,7 +29,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.core.revolution.profile import Profile
+    from raceway.core.revolution.sections import Profile
 
 #: How much coarser the mesh is that error.mesh is estimated with.
 _COARSER = 2.0

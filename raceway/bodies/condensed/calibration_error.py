@@ -11,7 +11,7 @@ from raceway.framework.estimate import Estimate
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.core.condensed.elastic_bodies import ElasticBodies
+    from raceway.core.structural import ElasticBodies
 
 
 def calibration_error(

@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.bodies.basis import Basis, seat_of
-from raceway.core.condensed.calibration import calibrated
-from raceway.core.condensed.elastic_bodies import ElasticBodies
-from raceway.core.condensed.structural import SURFACE, reach, ring_compliance
-from raceway.core.contact.sphere import ball_compliance
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.patches.compliances import RingBody, Solid
+from raceway.core.contact.hertz import ball_compliance
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.patches.patch import RingBody, Solid
+from raceway.core.structural import SURFACE, ElasticBodies, calibrated, reach, ring_compliance
 from raceway.errors import SceneError
 from raceway.scene.scene import Scene
 

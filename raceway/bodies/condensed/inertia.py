@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.bodies.basis import seat_of
-from raceway.core.condensed.modes import first_frequency
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.structural import first_frequency
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -17,13 +17,13 @@ from raceway.bodies.meshing import mesh_scene, scene_mesher
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.elastic.bearing_data import BearingData
-from raceway.core.elastic.ring import ElasticRing
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
+from raceway.elastic.bearing import ElasticBearing
+from raceway.elastic.bearing_data import BearingData
+from raceway.elastic.ring import ElasticRing
 from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.plugin_kernel import plugin_kernel

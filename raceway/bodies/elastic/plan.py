@@ -26,7 +26,7 @@ _POINT_BYTES, _PART_CELLS, _PEAK_BYTES, _FACTOR_BYTES, _FACTOR_S = 3.0e3, 60_288
 _POINT_S, _ALL_S, _STEP_S = 7.0e-5, 1.2e-5, 4.5e-6
 #: Share of the machine's memory that a run may take.
 _SHARE = 0.8
-#: Unknowns up to which the solver takes factors instead of multigrid (``raceway.core.elastic.factorised``).
+#: Unknowns up to which the solver takes factors instead of multigrid (``raceway.elastic.iterative_solver``).
 _FACTORS = 60_000
 #: Processor seconds a cell on one core of a small server: meshing and first forces; factors or multigrid; a linear solve with
 #: the forces that follow it.  Measured with factors at 1900 and 12 000 cells (settling and stiffness: 4.7e-4 and 5.0e-4 s a cell),

@@ -11,7 +11,7 @@ from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.report import ElasticBodies
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.bodies.model import Told
-from raceway.core.elastic.contacts.recovery import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
+from raceway.elastic.contact import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

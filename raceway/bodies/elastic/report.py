@@ -12,14 +12,13 @@ import numpy as np
 
 from raceway.bodies.elastic.locking import locking
 from raceway.bodies.model import Bearing
-from raceway.core.elastic import start
-from raceway.core.elastic.bearing import ElasticBearing
-from raceway.core.elastic.ring import ElasticRing
+from raceway.core.record import Motion
 from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.ring import COORDINATES, Ring
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
-from raceway.core.stepping.record import Motion
+from raceway.core.ring.system import System, surrogate
+from raceway.elastic import ring as start
+from raceway.elastic.bearing import ElasticBearing
+from raceway.elastic.ring import ElasticRing
 from raceway.framework.estimate import Estimate
 from raceway.storage.tables import Tables
 

@@ -17,7 +17,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
-    from raceway.core.condensed.elastic_bodies import ElasticBodies as Compliances
+    from raceway.core.structural import ElasticBodies as Compliances
 
 #: Turn of a contact [rad] that puts it a quarter of its ellipse away from where the mesh was asked: the local compliance there is
 #: another by 0.5 % of a contact's, measured on elements of 3.2 mm.

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.core.contact.subsurface import largest_shear
-from raceway.core.elastic.contacts.contact_axis import ContactAxis, contact_axes
-from raceway.core.elastic.contacts.nodal import NodalContact
-from raceway.core.elastic.contacts.stress_profile import StressProfile, stress_profile
+from raceway.core.contact.hertz import largest_shear
+from raceway.elastic.contact import NodalContact
+from raceway.elastic.stress import ContactAxis, StressProfile, contact_axes, stress_profile
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

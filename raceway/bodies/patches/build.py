@@ -18,19 +18,14 @@ from raceway.bodies.patches.plan import nodes_of
 from raceway.bodies.patches.report import NodalBearing
 from raceway.bodies.rigid.build import probe, rigid_system
 from raceway.contact_laws.hertz import Hertz
-from raceway.core.mesh.ring_shape import ring_shape
-from raceway.core.patches.compliances import RingBody, Solid, make_ball, make_patch
-from raceway.core.patches.contact import BeyondPatch
-from raceway.core.patches.nodal_law import PointLaw
-from raceway.core.patches.patch import Patch, Spacing
-from raceway.core.patches.pool import Pool
-from raceway.core.patches.reach import Reach, reach_of
-from raceway.core.patches.system import PatchSystem
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
+from raceway.core.patches.pressure import BeyondPatch, PointLaw, Reach, reach_of
+from raceway.core.patches.system import PatchSystem, Pool
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, surrogate
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs

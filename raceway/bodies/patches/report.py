@@ -12,15 +12,13 @@ from raceway.bodies.condensed.inertia import inertia_table
 from raceway.bodies.contact_error import overlap
 from raceway.bodies.elastic.locking import locking
 from raceway.bodies.model import Bearing, Told
-from raceway.core.patches.contact import ContactState
-from raceway.core.patches.field import PressureField, pressure_field
 from raceway.core.patches.patch import Spacing
-from raceway.core.patches.pool import Pool
-from raceway.core.patches.system import PatchSystem
+from raceway.core.patches.pressure import ContactState, PressureField, pressure_field
+from raceway.core.patches.system import PatchSystem, Pool
+from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
 from raceway.core.ring.system import System
-from raceway.core.stepping.record import Record
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.estimate import Estimate
 from raceway.scene.inner_ring import load_at_edge

@@ -12,9 +12,8 @@ from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.ring.address import by_address
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, by_address
 from raceway.core.signatures import LAW
 from raceway.framework.estimate import Estimate
 from raceway.framework.plugin_kernel import plugin_kernel
@@ -92,7 +91,7 @@ def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
         from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
     if plan.balls != "tangential":
         return base, base
-    from raceway.core.ring.kernels.rigid_tangential import rigid_tangential
+    from raceway.core.ring.kernels.tangential import rigid_tangential
 
     return rigid_tangential, base
 

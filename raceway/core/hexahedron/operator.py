@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from raceway.core.hexahedron.mass import nodal_volumes
-from raceway.core.hexahedron.one_point import WORK, range_force, range_hourglass_energy
-from raceway.core.hexahedron.point_force import range_point_force
-from raceway.core.hexahedron.ranges import add_parts, add_parts_and_move, divide
-from raceway.core.hexahedron.recovery import centre_stress
+from raceway.core.hexahedron.rows import (
+    add_parts,
+    add_parts_and_move,
+    assemble,
+    centre_stress,
+    divide,
+    nodal_volumes,
+    stable_step,
+)
 from raceway.core.hexahedron.shape import Floats
-from raceway.core.hexahedron.sparse import assemble
-from raceway.core.hexahedron.stable import stable_step
-from raceway.core.hexahedron.stiffness import stiffnesses
+from raceway.core.hexahedron.stiffness import WORK, range_force, range_hourglass_energy, range_point_force, stiffnesses
 from raceway.core.hexahedron.strain import KINDS
 from raceway.core.threads import Job, ThreadPool
 from raceway.errors import MeshError
@@ -49,7 +51,7 @@ class HexOperator:
 
     Notes
     -----
-    Forces are the same to the last bit for any number of threads (``raceway.core.hexahedron.ranges``).  Their speed rests
+    Forces are the same to the last bit for any number of threads (``raceway.core.hexahedron.rows``).  Their speed rests
     on neighbours having near numbers: renumber a mesh first.
     """
 

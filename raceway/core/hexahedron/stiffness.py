@@ -1,11 +1,12 @@
 """Element stiffness matrices, and their sum straight into a compressed sparse matrix."""
 
 import numpy as np
-from numba import float64, int32, int64, uint32, void
+from numba import float64, int32, int64, types, uint32, uint64, void
 
 from raceway.core.hexahedron.shape import HOURGLASS
-from raceway.core.hexahedron.strain import COLUMNS, strain_matrices
+from raceway.core.hexahedron.strain import COLUMNS, gradient_modes, mean_gradient, modes, nodal, square, strain_matrices
 from raceway.core.jit import jit
+from raceway.core.ring.equilibrium import solve
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 _CELLS = uint32[:, ::1]
@@ -24,7 +25,7 @@ def stress_rows(moduli, B, point, weight, out):
 
 @jit(void(VECTOR, MATRIX, MATRIX, float64, MATRIX))
 def add_hourglass(moduli, x, mean, volume, K):
-    """Add the hourglass stiffness of the one-point element; see ``raceway.core.hexahedron.one_point``."""
+    """Add the hourglass stiffness of the one-point element; see ``raceway.core.hexahedron.stiffness``."""
     squares = 0.0
     for n in range(8):
         for k in range(3):
@@ -105,3 +106,245 @@ def add_to_sparse(first, components, matrices, cells, starts, neighbours, data):
                     at = components * (components * begin + a * count + low - begin)
                     for b in range(components):
                         data[at + b] += matrices[e, components * i + a, components * j + b]
+
+
+#: Elements of a block.
+WIDTH = 16
+#: Numbers of a block: three coordinates and three displacements of eight nodes.
+WORK = 48 * WIDTH
+
+_W = float64[::1]
+
+
+_THREE, _FOUR, _SIX, _SEVEN, _EIGHT = (types.UniTuple(float64, count) for count in (3, 4, 6, 7, 8))
+
+
+@jit(_SEVEN(_W, uint64), inline=True)
+def _load(w, at):
+    """Modes of the eight nodal values that lie a block's width apart."""
+    return modes((
+        w[at], w[at + uint64(16)], w[at + uint64(32)], w[at + uint64(48)],
+        w[at + uint64(64)], w[at + uint64(80)], w[at + uint64(96)], w[at + uint64(112)],
+    ))  # fmt: skip
+
+
+@jit(void(_W, uint64, _SEVEN), inline=True)
+def _store(w, at, m):
+    """The eight nodal values of seven modes, a block's width apart."""
+    f0, f1, f2, f3, f4, f5, f6, f7 = nodal(m)
+    w[at], w[at + uint64(16)], w[at + uint64(32)], w[at + uint64(48)] = f0, f1, f2, f3
+    w[at + uint64(64)], w[at + uint64(80)], w[at + uint64(96)], w[at + uint64(112)] = f4, f5, f6, f7
+
+
+@jit(_THREE(float64, types.UniTuple(_SIX, 3), _SEVEN), inline=True)
+def _gradient(r, b, u):
+    """Mean gradient of a field by its modes; r = 1 / (64 V)."""
+    return r * mean_gradient(b[0], u), r * mean_gradient(b[1], u), r * mean_gradient(b[2], u)
+
+
+@jit(_FOUR(float64, _THREE, _SEVEN, types.UniTuple(_SEVEN, 3)), inline=True)
+def _hourglass(k, g, u, x):
+    """Forces k gamma_a . u in the four hourglass modes: what the linear field of gradient g leaves of u."""
+    return (
+        k * (u[3] - g[0] * x[0][3] - g[1] * x[1][3] - g[2] * x[2][3]),
+        k * (u[4] - g[0] * x[0][4] - g[1] * x[1][4] - g[2] * x[2][4]),
+        k * (u[5] - g[0] * x[0][5] - g[1] * x[1][5] - g[2] * x[2][5]),
+        k * (u[6] - g[0] * x[0][6] - g[1] * x[1][6] - g[2] * x[2][6]),
+    )
+
+
+@jit(float64(float64, _FOUR, _SEVEN), inline=True)
+def _orthogonal(r, q, x):
+    """What the hourglass forces q take off the stress along a coordinate, so that linear fields feel none of them."""
+    return r * (q[0] * x[3] + q[1] * x[4] + q[2] * x[5] + q[3] * x[6])
+
+
+@jit(_SEVEN(_THREE, types.UniTuple(_SIX, 3), _FOUR), inline=True)
+def _force(s, b, q):
+    """Modes of the nodal forces along one direction, of its stresses s and its hourglass forces q."""
+    f, g, h = s
+    x, y, z = b
+    return (
+        f * x[0] + g * y[0] + h * z[0], f * x[1] + g * y[1] + h * z[1], f * x[2] + g * y[2] + h * z[2],
+        f * x[3] + g * y[3] + h * z[3] + q[0], f * x[4] + g * y[4] + h * z[4] + q[1],
+        f * x[5] + g * y[5] + h * z[5] + q[2], q[3],
+    )  # fmt: skip
+
+
+@jit(void(_W, uint64, float64, float64, float64), inline=True)
+def _block(w, base, lame, shear, hourglass):
+    """Replace the displacements of 16 elements by their nodal forces.
+
+    Parameters
+    ----------
+    w : (at least base + WORK,) float
+        Coordinate c of node I of element l at ``base + (8 c + I) WIDTH + l`` [m]; the displacements follow likewise [m].
+    base : int
+    lame, shear, hourglass : float
+        lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa].
+    """
+    for i in range(WIDTH):
+        at = base + uint64(i)  # unsigned: numba then checks for no index from the end
+        x = _load(w, at), _load(w, at + uint64(128)), _load(w, at + uint64(256))
+        b = gradient_modes(x[1], x[2]), gradient_modes(x[2], x[0]), gradient_modes(x[0], x[1])
+        r = 1.0 / mean_gradient(b[0], x[0])  # 1 / (64 V)
+        k = hourglass * r * (square(b[0]) + square(b[1]) + square(b[2]))  # kappa / 8, as B:B = squares / 512
+        u, v, z = _load(w, at + uint64(384)), _load(w, at + uint64(512)), _load(w, at + uint64(640))
+        gu, gv, gz = _gradient(r, b, u), _gradient(r, b, v), _gradient(r, b, z)
+        bulk, twice = lame * (gu[0] + gv[1] + gz[2]), 2.0 * shear
+        sxy, syz, szx = shear * (gu[1] + gv[0]), shear * (gv[2] + gz[1]), shear * (gu[2] + gz[0])
+        q = _hourglass(k, gu, u, x)
+        s = bulk + twice * gu[0] - _orthogonal(r, q, x[0]), sxy - _orthogonal(r, q, x[1]), szx - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(384), _force(s, b, q))
+        q = _hourglass(k, gv, v, x)
+        s = sxy - _orthogonal(r, q, x[0]), bulk + twice * gv[1] - _orthogonal(r, q, x[1]), syz - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(512), _force(s, b, q))
+        q = _hourglass(k, gz, z, x)
+        s = szx - _orthogonal(r, q, x[0]), syz - _orthogonal(r, q, x[1]), bulk + twice * gz[2] - _orthogonal(r, q, x[2])
+        _store(w, at + uint64(640), _force(s, b, q))
+
+
+@jit(void(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W, _W, _W), releases=True)
+def range_force(r, ranges, cells, x, u, moduli, work, f):
+    """Forces of one range of elements, into that range's part of ``f``.
+
+    Parameters
+    ----------
+    r : int
+        Number of the range.
+    ranges : (ranges, 5) int
+        First element, last element + 1, first node, last node + 1, first node's place in ``f``.
+    cells : (m, 8) uint32
+    x, u : (3 n,) float
+        Coordinates and displacements, node by node [m].
+    moduli : (3,) float
+        lambda, mu, and hourglass (lambda + 2 mu) [Pa].
+    work : (ranges WORK,) float
+    f : (3 places,) float
+        The part of this range is overwritten by its forces [N].
+    """
+    first, last, node, end, place = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
+    for i in range(3 * place, 3 * (place + end - node)):
+        f[i] = 0.0
+    base = uint64(WORK * r)
+    for begin in range(first, last, WIDTH):
+        for i in range(WIDTH):
+            e = uint64(min(begin + i, last - 1))  # the last block is filled up with its last element
+            for j in range(8):
+                to = base + uint64(WIDTH * j + i)
+                n = uint64(3) * uint64(cells[e, uint64(j)])
+                work[to], work[to + uint64(384)] = x[n], u[n]
+                work[to + uint64(128)], work[to + uint64(512)] = x[n + uint64(1)], u[n + uint64(1)]
+                work[to + uint64(256)], work[to + uint64(640)] = x[n + uint64(2)], u[n + uint64(2)]
+        _block(work, base, moduli[0] / 64.0, moduli[1] / 64.0, moduli[2] / 64.0)
+        for i in range(min(WIDTH, last - begin)):
+            e = uint64(begin + i)
+            for j in range(8):
+                at = base + uint64(WIDTH * j + i + 384)
+                n = uint64(3) * uint64(cells[e, uint64(j)] - node + place)
+                f[n] += work[at]
+                f[n + uint64(1)] += work[at + uint64(128)]
+                f[n + uint64(2)] += work[at + uint64(256)]
+
+
+@jit(_EIGHT(uint32[:, ::1], int64, uint64, _W), inline=True)
+def _nodes(cells, e, k, a):
+    """Component k of the nodal values of an element."""
+    e, three = uint64(e), uint64(3)
+    return (
+        a[three * cells[e, 0] + k], a[three * cells[e, 1] + k], a[three * cells[e, 2] + k], a[three * cells[e, 3] + k],
+        a[three * cells[e, 4] + k], a[three * cells[e, 5] + k], a[three * cells[e, 6] + k], a[three * cells[e, 7] + k],
+    )  # fmt: skip
+
+
+@jit(float64(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W), releases=True)
+def range_hourglass_energy(r, ranges, cells, x, u, moduli):
+    """Energy [J] that the hourglass control of one range of elements holds; arguments as of ``range_force``.
+
+    Notes
+    -----
+    kappa / 16 sum_ai (gamma_a . u_i)^2 an element: half of what its forces do on u.
+    """
+    total = 0.0
+    for e in range(ranges[r, 0], ranges[r, 1]):
+        place = (
+            modes(_nodes(cells, e, uint64(0), x)),
+            modes(_nodes(cells, e, uint64(1), x)),
+            modes(_nodes(cells, e, uint64(2), x)),
+        )
+        b = (
+            gradient_modes(place[1], place[2]), gradient_modes(place[2], place[0]), gradient_modes(place[0], place[1]),
+        )  # fmt: skip
+        over = 1.0 / mean_gradient(b[0], place[0])
+        squares = 0.0
+        for k in range(3):
+            moved = modes(_nodes(cells, e, uint64(k), u))
+            q = _hourglass(1.0, _gradient(over, b, moved), moved, place)
+            squares += q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
+        total += 0.5 * (moduli[2] / 64.0) * over * (square(b[0]) + square(b[1]) + square(b[2])) * squares
+    return total
+
+
+@jit(void(VECTOR, CUBE, int64, float64, int64, int64, VECTOR, VECTOR))
+def point_stress(moduli, B, point, weight, first, last, values, stress):
+    """weight times the stress (6,) of the columns ``first`` to ``last - 1`` with these values."""
+    xx, yy, zz, xy, yz, zx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for j in range(first, last):
+        value = values[j]
+        xx += B[point, 0, j] * value
+        yy += B[point, 1, j] * value
+        zz += B[point, 2, j] * value
+        xy += B[point, 3, j] * value
+        yz += B[point, 4, j] * value
+        zx += B[point, 5, j] * value
+    bulk, twice = moduli[0] * (xx + yy + zz), 2.0 * moduli[1]
+    stress[0], stress[1], stress[2] = (
+        weight * (bulk + twice * xx),
+        weight * (bulk + twice * yy),
+        weight * (bulk + twice * zz),
+    )
+    stress[3], stress[4], stress[5] = weight * moduli[1] * xy, weight * moduli[1] * yz, weight * moduli[1] * zx
+
+
+@jit(void(int64, VECTOR, CUBE, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR))
+def _relax_modes(points, moduli, B, weight, rows, square, stress, values):
+    """The amplitudes of the nine incompatible modes, ``values[24:]``, at which they carry no load."""
+    square[:, :] = 0.0
+    for i in range(9):
+        values[24 + i] = 0.0
+    load = values[24:]
+    for g in range(points):
+        stress_rows(moduli, B, g, weight[g], rows)
+        point_stress(moduli, B, g, weight[g], 0, 24, values, stress)
+        for i in range(9):
+            for s in range(6):
+                load[i] -= B[g, s, 24 + i] * stress[s]
+                for j in range(9):
+                    square[i, j] += B[g, s, 24 + i] * rows[s, 24 + j]
+    solve(square, load)
+
+
+@jit(void(int64, int64, int64[:, ::1], uint32[:, ::1], MATRIX, VECTOR, VECTOR, VECTOR), allocates=True, releases=True)
+def range_point_force(kind, r, ranges, cells, points, u, moduli, f):
+    """Forces of one range of elements; see ``raceway.core.hexahedron.stiffness.range_force``."""
+    first, last, node, end, place = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
+    x, inverse, mean, weight = np.empty((8, 3)), np.empty((3, 3)), np.empty((8, 3)), np.empty(8)
+    B, rows, square = np.zeros((8, 6, COLUMNS)), np.zeros((6, COLUMNS)), np.empty((9, 9))
+    values, stress = np.zeros(COLUMNS), np.empty(6)
+    columns = COLUMNS if kind == 2 else 24
+    f[3 * place : 3 * (place + end - node)] = 0.0
+    for e in range(first, last):
+        for n in range(8):
+            for k in range(3):
+                x[n, k] = points[cells[e, n], k]
+                values[3 * n + k] = u[3 * int64(cells[e, n]) + k]
+        count = strain_matrices(kind, x, inverse, mean, B, weight)
+        if kind == 2:
+            _relax_modes(count, moduli, B, weight, rows, square, stress, values)
+        for g in range(count):
+            point_stress(moduli, B, g, weight[g], 0, columns, values, stress)
+            for n in range(8):
+                at = 3 * (int64(cells[e, n]) - node + place)
+                for k in range(3):
+                    for s in range(6):
+                        f[at + k] += B[g, s, 3 * n + k] * stress[s]

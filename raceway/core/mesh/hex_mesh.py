@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping
+from math import ceil, cos, log, pi, sin
+from typing import Any
 
 import attrs
 import numpy as np
@@ -236,3 +238,63 @@ def _member(sets: dict[str, np.ndarray], name: str, kind: str) -> np.ndarray:
         full = [other for other in sorted(sets) if len(sets[other])]
         raise MeshError(f"{kind} set '{name}' is empty; sets that are not: {', '.join(full) or 'none'}")
     return found
+
+
+def azimuth(bearing: Any, index: int) -> float:
+    """Azimuth of a ball [rad], from +y towards +z."""
+    return float(bearing.first_ball_azimuth_deg * pi / 180.0 + 2.0 * pi * index / bearing.ball_count)
+
+
+def ball_names(bearing: Any) -> list[str]:
+    """ball_00, ball_01, ..., with as many digits as the largest needs."""
+    digits = len(str(bearing.ball_count - 1))
+    return [f"ball_{index:0{digits}d}" for index in range(bearing.ball_count)]
+
+
+def placed(points: np.ndarray, bearing: Any, psi: float, side: float = 1.0, place: float = 0.0) -> np.ndarray:
+    """A ball's points (n, 3) from its own axes (rolling, across, towards the outer contact) to its place in the bearing."""
+    alpha = bearing.contact_angle
+    radial = np.array([0.0, cos(psi), sin(psi)])
+    u = np.array([0.0, -sin(psi), cos(psi)])
+    w = np.array([side * sin(alpha), 0.0, 0.0]) + cos(alpha) * radial
+    v = np.cross(w, u)
+    centre = 0.5 * bearing.pitch_diameter * radial + [place, 0.0, 0.0]
+    return np.asarray(points @ np.stack([u, v, w]) + centre)
+
+
+def growing(length: float, first: float, coarse: float, growth: float) -> np.ndarray:
+    """(n + 1,) points from 0 to ``length``: distances start at ``first`` or less, grow by ``growth``, end at ``coarse``.
+
+    Notes
+    -----
+    The row of distances first * growth^i, cut at ``coarse``, is continued until it is long enough and then shrunk by one
+    factor to fit, so that no distance exceeds what was asked.
+    """
+    if length <= 0.0:
+        return np.zeros(1)
+    first = min(first, coarse)
+    rising = ceil(log(coarse / first) / log(growth)) if first < coarse else 0
+    steps = first * growth ** np.arange(rising)
+    reach = steps.sum()
+    if reach < length:
+        steps = np.r_[steps, np.full(max(ceil((length - reach) / coarse - 1e-9), 1), coarse)]
+    points = np.r_[0.0, np.cumsum(steps)]
+    last = int(np.searchsorted(points, length * (1.0 - 1e-9)))
+    return points[: last + 1] * (length / points[last])
+
+
+def graded(
+    low: float, high: float, fine_low: float, fine_high: float, fine: float, coarse: float, growth: float
+) -> np.ndarray:
+    """Points from ``low`` to ``high``: distance ``fine`` between ``fine_low`` and ``fine_high``, growing outside of them.
+
+    The zone's number of cells is even, so that a point lies in its middle.
+    """
+    fine = min(fine, coarse)
+    fine_low, fine_high = max(fine_low, low), min(fine_high, high)
+    cells = 2 * max(ceil((fine_high - fine_low) / (2.0 * fine) - 1e-9), 1)
+    zone = np.linspace(fine_low, fine_high, cells + 1)
+    size = min(growth * (fine_high - fine_low) / cells, coarse)
+    below = fine_low - growing(fine_low - low, size, coarse, growth)[:0:-1]
+    above = fine_high + growing(high - fine_high, size, coarse, growth)[1:]
+    return np.concatenate([below, zone, above])

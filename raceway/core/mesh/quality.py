@@ -8,11 +8,14 @@ edge ratio, skew of hexahedra.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import attrs
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import BLOCK, EDGES, HexMesh
 from raceway.errors import MeshError
+from raceway.storage.tables import Tables
 
 #: Neighbours of each corner along the three local axes, in right-handed order.
 _AROUND = np.array([[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]])
@@ -135,3 +138,185 @@ def _unit_determinant(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray
 def _cosine(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     size = np.sqrt((a * a).sum(axis=0) * (b * b).sum(axis=0))
     return np.where(size > 0.0, np.abs((a * b).sum(axis=0)) / np.where(size > 0.0, size, 1.0), 1.0)
+
+
+#: Bytes a cell that a mesh keeps: points, cells, sets (92 to 104 measured, more where sets are many).
+BYTES_KEPT = 110
+#: Bytes a cell beside them while a structured mesh is made and judged (80 to 103 measured, 1.1 and 0.5 million cells).
+BYTES_BESIDE = 120
+#: Above this a mesh is refused [bytes].
+MEMORY_LIMIT = 4 * 2**30
+
+
+@attrs.frozen
+class Prediction:
+    """Size of meshes that have not been made.
+
+    Attributes
+    ----------
+    bodies : name of the body -> number of hexahedra
+    beside_bytes : what is needed at the peak beside the meshes themselves
+    """
+
+    bodies: dict[str, int]
+    beside_bytes: int
+
+    @classmethod
+    def of(cls, bodies: Mapping[str, float], beside_bytes: float | None = None) -> Prediction:
+        """The prediction for bodies of so many cells; by default with what a structured mesh needs beside."""
+        if beside_bytes is None:
+            beside_bytes = BYTES_BESIDE * sum(bodies.values())
+        return cls({name: int(cells) for name, cells in bodies.items()}, int(beside_bytes))
+
+    @property
+    def cells(self) -> int:
+        """Hexahedra of all bodies."""
+        return sum(self.bodies.values())
+
+    @property
+    def memory_bytes(self) -> int:
+        """Bytes at the peak, while the meshes are made and judged."""
+        return sum(map(body_bytes, self.bodies.values())) + self.beside_bytes
+
+
+def body_bytes(cells: int) -> int:
+    """Bytes that a mesh of so many cells keeps."""
+    return BYTES_KEPT * cells
+
+
+def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: str) -> None:
+    """Refuse what will not fit.
+
+    Raises
+    ------
+    MeshError
+        With the predicted number of elements and bytes.
+    """
+    if prediction.memory_bytes > MEMORY_LIMIT:
+        raise MeshError.at(
+            key,
+            value,
+            f"would give about {float(prediction.cells):.3g} elements and take {prediction.memory_bytes / 2**30:.3g} GiB, above "
+            f"{MEMORY_LIMIT / 2**30:.0f} GiB: {remedy}",
+        )
+
+
+def refuse_coarse(size: float, wall: float, where: str) -> None:
+    """Refuse elements that are larger than what they shall fill.
+
+    Raises
+    ------
+    MeshError
+        With both numbers.
+    """
+    if size > wall:
+        raise MeshError.at(
+            "mesh.element_size", size, f"is larger than the {where}, {wall:.4g} m: take no more than that, in metres"
+        )
+
+
+#: Sets of facets that meshers name after contacts.
+PATCHES = ("inner_patch", "outer_patch", "band")
+
+
+def summary(meshes: Mapping[str, HexMesh]) -> Tables:
+    """Numbers of every body and of all.
+
+    Parameters
+    ----------
+    meshes : name of the body -> mesh
+
+    Returns
+    -------
+    dict
+        ``elements, nodes, memory_bytes, scaled_jacobian{min, mean}, aspect{max, mean}, skew{max, mean}``,
+        ``element_size_m{min, mean, max}`` (edges), ``patch_size_m`` (edges on the contact patches: the shorter and the
+        longer direction {min, max}, and the depth of the cells below {min, max}; None where no set is named after a
+        contact), ``bodies{name: the same}``.
+
+    Notes
+    -----
+    A body whose array ``cells`` is the very same object as an earlier one's, with edges as long (balls: a rigid motion of
+    one mesh), takes that one's numbers over.
+    """
+    bodies: dict[str, Tables] = {}
+    seen: dict[int, str] = {}
+    for name, mesh in meshes.items():
+        twin = seen.setdefault(id(mesh.cells), name)
+        bodies[name] = bodies[twin] if twin != name and _congruent(mesh, meshes[twin]) else _body(mesh)
+    weights = np.array([body["elements"] for body in bodies.values()], dtype=float)
+
+    def over(key: str, word: str) -> float:
+        values = np.array([body[key][word] for body in bodies.values()])
+        return float({"min": values.min, "max": values.max}.get(word, lambda: np.average(values, weights=weights))())
+
+    patches = [body["patch_size_m"] for body in bodies.values() if body["patch_size_m"] is not None]
+    return {
+        "elements": int(weights.sum()),
+        "nodes": sum(body["nodes"] for body in bodies.values()),
+        "memory_bytes": sum(body["memory_bytes"] for body in bodies.values()),
+        "scaled_jacobian": {word: over("scaled_jacobian", word) for word in ("min", "mean")},
+        "aspect": {word: over("aspect", word) for word in ("max", "mean")},
+        "skew": {word: over("skew", word) for word in ("max", "mean")},
+        "element_size_m": {word: over("element_size_m", word) for word in ("min", "mean", "max")},
+        "patch_size_m": _widest(patches),
+        "bodies": {name: dict(body) for name, body in bodies.items()},
+    }
+
+
+def _body(mesh: HexMesh) -> Tables:
+    found = quality(mesh)
+    least, total, largest = np.inf, 0.0, 0.0
+    for first in range(0, len(mesh.cells), BLOCK):
+        length = _edges(mesh, mesh.cells[first : first + BLOCK])
+        least, largest, total = min(least, length.min()), max(largest, length.max()), total + length.sum()
+    sizes = {"min": float(least), "mean": float(total / (12 * len(mesh.cells))), "max": float(largest)}
+    patches = [_patch(mesh, name) for name in PATCHES if len(mesh.facet_sets.get(name, ()))]
+    return {
+        "elements": len(mesh.cells),
+        "nodes": len(mesh.points),
+        "memory_bytes": mesh.memory_bytes,
+        "scaled_jacobian": {"min": float(found.scaled_jacobian.min()), "mean": float(found.scaled_jacobian.mean())},
+        "aspect": {"max": float(found.aspect.max()), "mean": float(found.aspect.mean())},
+        "skew": {"max": float(found.skew.max()), "mean": float(found.skew.mean())},
+        "element_size_m": sizes,
+        "patch_size_m": _widest(patches),
+    }
+
+
+def _patch(mesh: HexMesh, name: str) -> dict[str, dict[str, float]]:
+    a, b, c, d = np.moveaxis(mesh.points[mesh.facet_nodes(name)], 1, 0)
+    sides = [
+        0.5 * (np.linalg.norm(b - a, axis=1) + np.linalg.norm(c - d, axis=1)),
+        0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)),
+    ]
+    area = mesh.facet_areas(name)
+    depth = _volumes(mesh, mesh.facets(name)[:, 0]) / area
+    values = {"short": np.minimum(*sides), "long": np.maximum(*sides), "depth": depth}
+    return {word: {"min": float(v.min()), "max": float(v.max())} for word, v in values.items()}
+
+
+def _volumes(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
+    """(k,) volumes [m3] of some cells."""
+    return HexMesh(mesh.points, mesh.cells[cells]).cell_volumes()
+
+
+def _widest(patches: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]] | None:
+    if not patches:
+        return None
+    return {
+        word: {"min": min(p[word]["min"] for p in patches), "max": max(p[word]["max"] for p in patches)}
+        for word in patches[0]
+    }
+
+
+def _edges(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
+    ends = mesh.points[cells[:, EDGES]]
+    return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2))
+
+
+def _congruent(mesh: HexMesh, other: HexMesh) -> bool:
+    """Whether a sample of edges is as long in both: a rigid motion of the same cells."""
+    sample = mesh.cells[:: max(len(mesh.cells) // 1000, 1)]
+    size = float(np.ptp(mesh.points, axis=0).max())
+    return np.allclose(_edges(mesh, sample), _edges(other, sample), rtol=0.0, atol=1e-9 * size)

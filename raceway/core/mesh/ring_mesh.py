@@ -6,14 +6,268 @@ from there to the seat (bore, or outer cylinder).  x is the axis of the bearing,
 
 from __future__ import annotations
 
-from math import acos, asin, pi, sin, sqrt
+from collections.abc import Sequence
+from functools import cache
+from math import acos, asin, atan2, ceil, cos, pi, sin, sqrt
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import HexMesh, nodes_of
-from raceway.core.mesh.outline import Outline, plain_outline
 from raceway.errors import MeshError
+from raceway.storage.tables import Tables
+
+
+@attrs.frozen(eq=False)
+class Outline:
+    """Lines (k, 2) of x and radius [m], x strictly increasing.
+
+    Attributes
+    ----------
+    left, right : race side, from the left side face to the groove, and from the groove to the right side face
+    seat : seat side, from face to face
+    edges : angles of the groove's left and right edge [rad], from its bottom towards +x
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    seat: np.ndarray
+    edges: tuple[float, float]
+
+    def shares(self, side: str, size: float) -> np.ndarray:
+        """(n,) Points 0 to 1 along x of "left" or "right", at most ``size`` [m] apart, one on each corner of it.
+
+        The corners of the seat side below it are met, too, where they are farther than a tenth of ``size`` from others.
+        """
+        line = self.left if side == "left" else self.right
+        marks = list(line[:, 0])
+        for x in self.seat[1:-1, 0]:
+            if line[0, 0] < x < line[-1, 0] and min(abs(x - mark) for mark in marks) > 0.1 * size:
+                marks.append(x)
+        marks.sort()
+        parts = [np.linspace(a, b, ceil((b - a) / size - 1e-9) + 1)[1:] for a, b in zip(marks[:-1], marks[1:], strict=True)]
+        x = np.concatenate([[marks[0]], *parts])
+        return np.asarray((x - marks[0]) / (marks[-1] - marks[0]))
+
+    def top(self, side: str, shares: np.ndarray) -> np.ndarray:
+        """(n, 2) x and radius at shares from 0 to 1 along x of "left" or "right"."""
+        line = self.left if side == "left" else self.right
+        x = line[0, 0] + shares * (line[-1, 0] - line[0, 0])
+        return np.column_stack([x, np.interp(x, *line.T)])
+
+
+def plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> Outline:
+    """A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m]."""
+    half = 0.5 * width
+    return Outline(
+        np.array([[-half, land], [ends[0], land]]),
+        np.array([[ends[1], land], [half, land]]),
+        np.array([[-half, seat], [half, seat]]),
+        (-edge, edge),
+    )
+
+
+def polygon_outline(
+    key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
+) -> Outline:
+    """The outline that a polygon of the whole section, groove not yet cut, stands for.
+
+    Parameters
+    ----------
+    key : the scene's key, for messages
+    polygon : [x, radius] of the corners in their order around the section [m]
+    groove, centre_x, centre_r : radius of the groove and its centre
+
+    Raises
+    ------
+    MeshError
+        What is no section, or cannot be filled with quadrilaterals between two lines.
+    """
+    points = np.asarray(polygon, dtype=float)
+    if len(points) < 4:
+        raise MeshError(f"`{key}` has {len(points)} points: a section needs at least 4, [x, radius] around it")
+    if points[:, 1].min() <= 0.0:
+        raise MeshError(f"`{key}`: the radius {points[:, 1].min():g} m must be greater than 0")
+    low, high = _chains(key, points)
+    race, seat = (high, low) if inner else (low, high)
+    side = -1.0 if inner else 1.0
+    left, right = _cut(key, race, groove, np.array([centre_x, centre_r]))
+    angles = [atan2(p[0] - centre_x, side * (p[1] - centre_r)) for p in (left[-1], right[0])]
+    if max(abs(a) for a in angles) >= 0.5 * pi:
+        raise MeshError(
+            f"`{key}`: the shoulder at x = {1e3 * left[-1, 0]:.4g} or {1e3 * right[0, 0]:.4g} mm closes over the groove: it "
+            "must lie between the groove's bottom and its centre"
+        )
+    return Outline(left, right, seat, (angles[0], angles[1]))
+
+
+def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The lines between the left and the right side face, at small and at large radius."""
+    x = points[:, 0]
+    size = np.ptp(x)
+    count = len(points)
+    lines = []
+    faces = []
+    for end in (x.min(), x.max()):
+        on = np.flatnonzero(np.abs(x - end) <= 1e-9 * size)
+        if len(on) != 2 or (on[1] - on[0]) % count not in (1, count - 1):
+            raise MeshError(
+                f"`{key}` has {len(on)} points at x = {1e3 * end:.4g} mm: each end of a ring is a side face, two neighbouring "
+                "points with the same x"
+            )
+        faces.append(on)
+    for first in faces[0]:
+        step = 1 if (first + 1) % count not in faces[0] else -1
+        walk = [int(first)]
+        while walk[-1] not in faces[1]:
+            walk.append((walk[-1] + step) % count)
+        lines.append(points[walk])
+    for line in lines:
+        bad = np.flatnonzero(np.diff(line[:, 0]) <= 1e-9 * size)
+        if len(bad):
+            at = line[bad[0]]
+            raise MeshError(
+                f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: an upright step or an undercut cannot be meshed; "
+                "lean it a little, or leave it out"
+            )
+    lines.sort(key=lambda line: float(np.interp(0.5 * (x.min() + x.max()), line[:, 0], line[:, 1])))
+    every = np.union1d(lines[0][:, 0], lines[1][:, 0])
+    wall = np.interp(every, *lines[1].T) - np.interp(every, *lines[0].T)
+    if wall.min() <= 0.0:
+        raise MeshError(f"`{key}` crosses itself near x = {1e3 * every[np.argmin(wall)]:.4g} mm")
+    return lines[0], lines[1]
+
+
+def _cut(key: str, race: np.ndarray, groove: float, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The race side left and right of the groove's circle, both ending on it."""
+    places: list[tuple[int, float]] = []
+    for i, (a, b) in enumerate(zip(race[:-1], race[1:], strict=True)):
+        d, e = b - a, a - centre
+        roots = np.roots([d @ d, 2.0 * d @ e, e @ e - groove**2])
+        places += [(i, float(t)) for t in sorted(roots.real) if np.isreal(roots).all() and 0.0 <= t < 1.0]
+    if len(places) != 2:
+        raise MeshError(
+            f"`{key}`: the groove's circle meets the race side {len(places)} times; it must cut it twice, once on each "
+            f"shoulder (centre x = {1e3 * centre[0]:.4g}, r = {1e3 * centre[1]:.4g} mm, radius {1e3 * groove:.4g} mm)"
+        )
+    (i, t), (j, s) = places
+    first, last = race[i] + t * (race[i + 1] - race[i]), race[j] + s * (race[j + 1] - race[j])
+    if np.hypot(*(race[0] - centre)) <= groove or np.hypot(*(race[-1] - centre)) <= groove:
+        raise MeshError(f"`{key}`: a side face lies within the groove's circle: the ring is too narrow")
+    return np.concatenate([race[: i + 1], [first]]), np.concatenate([[last], race[j + 1 :]])
+
+
+#: Gauss points along the axis in each of three parts, and along the radius.
+_ALONG, _ACROSS = 48, 12
+#: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/depth/test_growth.py).
+_DEGREE = 8
+
+
+@attrs.frozen(eq=False)
+class RingSection:
+    """Places and areas to integrate over.
+
+    Attributes
+    ----------
+    x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m];  area : (n,) [m2]
+    contact : x and radius of the groove at the free contact angle [m]
+    """
+
+    x: np.ndarray
+    r: np.ndarray
+    area: np.ndarray
+    contact: tuple[float, float]
+
+    @classmethod
+    def of(cls, bearing: Any, shoulder_height: float) -> RingSection:
+        """From bore, width and groove of a scene's [bearing]."""
+        b = bearing
+        offset, alpha = (b.conformity_inner - 0.5) * b.ball_diameter, b.contact_angle
+        groove = b.conformity_inner * b.ball_diameter
+        centre_x, centre_r = offset * sin(alpha), 0.5 * b.pitch_diameter + offset * cos(alpha)
+        bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height
+        half = sqrt(max(groove**2 - (centre_r - land) ** 2, 0.0))
+        # Where the groove meets the land, or a side face before that.
+        left, right = (min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half))
+        low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in (left, right))
+        at, weight = _rule(_ALONG)
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        tops = [
+            (
+                centre_x + groove * np.sin(angle),
+                centre_r - groove * np.cos(angle),
+                0.5 * (high - low) * groove * np.cos(angle),
+            )
+        ]
+        for first, last in ((-0.5 * b.width, left), (right, 0.5 * b.width)):
+            x = 0.5 * (first + last) + 0.5 * (last - first) * at
+            tops.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (last - first))))
+        x, top, slope = (np.concatenate(parts) for parts in zip(*tops, strict=True))
+        along = slope * np.tile(weight, len(tops))
+        up, share = _rule(_ACROSS)
+        wall = 0.5 * (top - bore)
+        r = bore + wall[:, None] * (1.0 + up)
+        area = along[:, None] * wall[:, None] * share
+        place = centre_x - groove * sin(alpha), centre_r - groove * cos(alpha)
+        return cls(np.repeat(x, _ACROSS), r.ravel(), area.ravel(), place)
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """Volume [m3], transverse inertia about x = 0 and polar inertia over density [m5]."""
+        volume = 2.0 * pi * self.r * self.area
+        return (
+            float(volume.sum()),
+            float(volume @ (0.5 * self.r**2 + self.x**2)),
+            float(volume @ self.r**2),
+        )
+
+    def growth(self, young: float, poisson: float) -> float:
+        """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.
+
+        Notes
+        -----
+        Ritz' method on the section: u_r and u_x are polynomials in x and r up to degree 8 that minimise the elastic energy less
+        the work of the centrifugal force.  The groove's shoulders bend with it: an annulus from bore to land grows by 5 % more.
+        """
+        middle, high, wide = 0.5 * (self.r.max() + self.r.min()), 0.5 * np.ptp(self.r), 0.5 * np.ptp(self.x)
+        x, r = _legendre(self.x / wide), _legendre((self.r - middle) / high)
+        at_x, at_r = _legendre(np.array([self.contact[0] / wide])), _legendre(np.array([(self.contact[1] - middle) / high]))
+        powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
+        radial, axial = [], []  # strains (4, n): radial, hoop, axial, shear
+        none = np.zeros_like(self.r)
+        for i, j in powers:
+            value, by_r, by_x = r[0][i] * x[0][j], r[1][i] * x[0][j] / high, r[0][i] * x[1][j] / wide
+            radial.append((by_r, value / self.r, none, by_x))
+            if i or j:  # a shift along the axis strains nothing
+                axial.append((none, none, by_x, by_r))
+        strain = np.array(radial + axial)
+        lame, shear = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+        elastic = np.diag([2.0 * shear] * 3 + [shear])
+        elastic[:3, :3] += lame
+        weight = self.r * self.area
+        stress = np.matmul(elastic, strain)
+        stiffness = (strain * weight).reshape(len(strain), -1) @ stress.reshape(len(strain), -1).T
+        work = np.zeros(len(strain))
+        work[: len(powers)] = [(r[0][i] * x[0][j] * self.r) @ weight for i, j in powers]
+        amount = np.linalg.solve(stiffness, work)[: len(powers)]
+        return float(amount @ [at_r[0][i, 0] * at_x[0][j, 0] for i, j in powers])
+
+
+def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
+    one = np.eye(_DEGREE + 1)
+    slopes = np.polynomial.legendre.legder(one, axis=1)
+    value = np.polynomial.legendre.legvander(z, _DEGREE).T
+    return value, slopes @ value[:-1]
+
+
+@cache
+def _rule(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights on [-1, 1]; nobody writes into them."""
+    at, weight = np.polynomial.legendre.leggauss(points)
+    at.flags.writeable = weight.flags.writeable = False
+    return at, weight
 
 
 @attrs.frozen
@@ -240,3 +494,56 @@ def _facets(
         middle = 0.5 * (arc[1:] + arc[:-1])
         out["band"] = facets(groove[:, (middle > band[0]) & (middle < band[1])], up)
     return out
+
+
+def ring_shape(bearing: Any, inner: bool) -> RingShape:
+    """Profile of a ring of a row with side +1, from the dimensions of the scene's [bearing] table.
+
+    Raises
+    ------
+    MeshError
+        Dimensions that are missing, or that do not fit together.
+    """
+    key = "inner_profile" if inner else "outer_profile"
+    if getattr(bearing, key, None) is not None:
+        return _given(bearing, key, inner)
+    for key in ("bore", "outer_diameter", "width"):
+        if getattr(bearing, key, None) is None:
+            raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
+    middle, depth = 0.5 * bearing.pitch_diameter, bearing.shoulder_height or 0.2 * bearing.ball_diameter
+    return RingShape(
+        inner=inner,
+        seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
+        land=middle + (-1.0 if inner else 1.0) * (0.5 * bearing.ball_diameter - depth),
+        width=bearing.width,
+        **_groove(bearing, inner),
+    )
+
+
+def _groove(bearing: Any, inner: bool) -> Tables:
+    alpha, sense = bearing.contact_angle, 1.0 if inner else -1.0
+    conformity = bearing.conformity_inner if inner else bearing.conformity_outer
+    offset = sense * (conformity - 0.5) * bearing.ball_diameter
+    return {
+        "groove": conformity * bearing.ball_diameter,
+        "centre_x": offset * sin(alpha),
+        "centre_r": 0.5 * bearing.pitch_diameter + offset * cos(alpha),
+        "contact": -sense * alpha,
+    }
+
+
+def _given(bearing: Any, key: str, inner: bool) -> RingShape:
+    """A ring whose section the user gives."""
+    groove = _groove(bearing, inner)
+    outline = polygon_outline(
+        f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
+    )
+    radii, lands = outline.seat[:, 1], np.r_[outline.left[-1, 1], outline.right[0, 1]]
+    seat, land = (radii.min(), lands.max()) if inner else (radii.max(), lands.min())
+    word, diameter = ("bore", bearing.bore) if inner else ("outer_diameter", bearing.outer_diameter)
+    if diameter is not None and abs(2.0 * seat - diameter) > 1e-6 * diameter:
+        raise MeshError(
+            f"`bearing.{key}` has its seat at a diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
+        )
+    width = float(outline.seat[-1, 0] - outline.seat[0, 0])
+    return RingShape(inner, float(seat), float(land), width, **groove, given=outline)

@@ -14,7 +14,7 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import MATRIX, VECTOR
+from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 INDEX = int64[::1]
 
@@ -65,3 +65,33 @@ def derivatives(axial, radial, geometry, meridian, parallel, nodes, load, slope,
         curved[0] -= w * (1.0 - z * z / (rho * rho))
         curved[1] += w * z * u / (rho * rho) * lean
         curved[2] -= w * ((1.0 - u * u / (rho * rho)) * lean * lean + u * y * y / (reach * reach * reach))
+
+
+@jit(void(CUBE, CUBE, INDEX, INDEX, MATRIX))
+def between(ball, race, to, of, out):
+    """out (len(to), len(of)) [m/N]: displacement of points ``to`` by forces on points ``of``.
+
+    Parameters
+    ----------
+    ball : (rows, n, n) by distance in rows;  race : (n, m, m) by distance in columns
+    to, of : numbers k * n + i
+    """
+    n = ball.shape[1]
+    for a in range(to.size):
+        k, i = to[a] // n, to[a] % n
+        for b in range(of.size):
+            q, j = of[b] // n, of[b] % n
+            out[a, b] = ball[abs(k - q), i, j] + race[abs(i - j), k, q]
+
+
+@jit(void(CUBE, CUBE, INDEX, INDEX, VECTOR, VECTOR))
+def displaced(ball, race, to, of, load, out):
+    """out (len(to),) [m]: displacement of points ``to`` by loads [N] on points ``of``."""
+    n = ball.shape[1]
+    for a in range(to.size):
+        k, i = to[a] // n, to[a] % n
+        total = 0.0
+        for b in range(of.size):
+            q, j = of[b] // n, of[b] % n
+            total += (ball[abs(k - q), i, j] + race[abs(i - j), k, q]) * load[b]
+        out[a] = total

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
 
-from raceway.core.patches.balls import AppliedLoads, Balls, LinearisedBalls
-from raceway.core.patches.gyroscopic import Gyroscopic
-from raceway.core.patches.history import History
-from raceway.core.patches.pool import STEP, Pool, Row
-from raceway.core.ring.increment import AT_ONCE, Increment
+from raceway.core.patches.balls import AppliedLoads, Balls, Gyroscopic, LinearisedBalls
+from raceway.core.patches.friction import Traction
+from raceway.core.patches.patch import Patch
+from raceway.core.patches.pressure import BeyondPatch, Contact, PointLaw
+from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import (
     BALL_OVER_PITCH,
     CENTRIFUGAL,
@@ -30,14 +31,229 @@ from raceway.core.ring.kernels.layout import (
     TILT_ARM,
     place,
 )
-from raceway.core.ring.ring import TOLERANCE, Evaluation
-from raceway.core.ring.surrogate import SteppedRing
+from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
+from raceway.core.ring.system import SteppedRing
 from raceway.core.signatures import Constants
-from raceway.core.stepping.record import Record
-from raceway.errors import ConvergenceError
+from raceway.errors import ConvergenceError, MeshError
 
 if TYPE_CHECKING:
-    from raceway.core.patches.contact import ContactState
+    from raceway.core.patches.pressure import ContactState
+
+
+#: Columns before the slips: energy lost, number of velocities known, the last velocity, the one before, number of the patches.
+_LOST, _KNOWN, _LAST, _BEFORE, _GRID, _SLIP = range(6)
+
+
+@attrs.frozen(eq=False)
+class History:
+    """One state's memory.
+
+    Attributes
+    ----------
+    lost : (2 Z,) energy that friction has taken [J]
+    known : 0 to 2;  last, before : (Z, 2) velocities of the balls [m/s]
+    grid : number of the patches on which the slips lie;  slip : (2 Z, points) [m], beyond the slip of the contact as a
+        whole; without columns at first
+    """
+
+    lost: np.ndarray
+    known: int
+    last: np.ndarray
+    before: np.ndarray
+    grid: int
+    slip: np.ndarray
+
+    @classmethod
+    def of(cls, memory: np.ndarray, balls: int) -> History:
+        """From the rows of a memory (2 Z, 0 or more)."""
+        if memory.shape[1] < _SLIP:
+            none = np.zeros((balls, 2))
+            return cls(np.zeros(2 * balls), 0, none, none, 0, np.zeros((2 * balls, 0)))
+        last, before = (memory[:, column].reshape(2, -1).T for column in (_LAST, _BEFORE))
+        return cls(memory[:, _LOST], int(memory[0, _KNOWN]), last, before, int(memory[0, _GRID]), memory[:, _SLIP:])
+
+    def slips(self, reference: np.ndarray, generations: list[tuple[Patch, Patch]]) -> list[np.ndarray]:
+        """Of the points of every contact on the last of the patches [m]; reference (2 Z,): of the contacts as a whole."""
+        balls, now, then = len(reference) // 2, generations[-1], generations[self.grid]
+        out = []
+        for k, whole in enumerate(reference):
+            patch, before = now[k // balls], then[k // balls]
+            if not self.slip.shape[1]:
+                out.append(np.full(patch.rows * patch.columns, whole))
+            elif patch is before:
+                out.append(whole + self.slip[k, : patch.rows * patch.columns])
+            else:
+                out.append(whole + _resampled(self.slip[k, : before.rows * before.columns], before, patch))
+        return out
+
+    def with_inertia(self, given: AppliedLoads, mass: float, dt: float, gain: float, rate: np.ndarray) -> AppliedLoads:
+        """With the force -m a of balls that move at gain * place + rate, a from the velocities before (BDF 2, at first BDF 1)."""
+        if not self.known:
+            return given
+        if self.known == 1:
+            to_v, rest = 1.0 / dt, -self.last / dt
+        else:
+            to_v, rest = 1.5 / dt, (0.5 * self.before - 2.0 * self.last) / dt
+        return attrs.evolve(given, push=-mass * (to_v * rate + rest), spring=mass * to_v * gain)
+
+    def after(
+        self, velocity: np.ndarray | None, traction_state: list[Traction | None], reference: np.ndarray, grid: int = 0
+    ) -> np.ndarray:
+        """(2 Z, 5 + points) the memory when the step is accepted; velocity (Z, 2) of the balls, None in a series of equilibria."""
+        rubbed = [one for one in traction_state if one is not None]
+        points = max((len(one.slip) for one in rubbed), default=0)
+        out = np.zeros((len(traction_state), _SLIP + points))
+        out[:, _LOST], out[:, _GRID] = self.lost, grid
+        if velocity is not None:
+            out[:, _KNOWN] = min(self.known + 1, 2)
+            out[:, _LAST], out[:, _BEFORE] = velocity.T.reshape(-1), self.last.T.reshape(-1)
+        for k, one in enumerate(rubbed):
+            out[k, _LOST] += one.lost
+            out[k, _SLIP : _SLIP + len(one.slip)] = one.slip - reference[k]
+        return out
+
+
+def _resampled(slip: np.ndarray, before: Patch, now: Patch) -> np.ndarray:
+    """Slips on wider patches: linear between rows; points that are new have not carried and follow the ball, as the corner does."""
+    old = slip.reshape(before.rows, before.columns)
+    out = np.full((now.rows, now.columns), old[0, 0])
+    more = (now.columns - before.columns) // 2
+    for column in range(before.columns):
+        ends = float(old[0, column]), float(old[-1, column])
+        out[:, more + column] = np.interp(now.race.angle, before.race.angle, old[:, column], *ends)
+    return out.reshape(-1)
+
+
+T = TypeVar("T")
+#: Largest step of a ball or the ring in an iteration, of the ball's diameter.
+STEP = 5e-4
+#: How often the patches may be made wider for one solution.
+_WIDER = 12
+
+
+@attrs.define(eq=False)
+class Row:
+    """The balls' solver of one system and where it was last.
+
+    Attributes
+    ----------
+    balls : Balls
+    force : (2 Z, 2) contact forces on the balls [N]
+    last : the state of the last solution, with the places (Z, 2) of groove centres and balls there [m]
+    """
+
+    balls: Balls
+    force: np.ndarray
+    last: LinearisedBalls | None = None
+    centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
+    where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
+
+    def settle(
+        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, given: AppliedLoads | None = None
+    ) -> tuple[np.ndarray, LinearisedBalls]:
+        """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
+
+        Notes
+        -----
+        Near the last solution its linearisation tells places and forces better than any guess.
+        """
+        force = self.force
+        if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():
+            step, change = self.balls.move(self.last, (centre - self.centre).reshape(-1))
+            try:
+                near = self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance, given)
+                return self._keep(centre, near)
+            except ConvergenceError:
+                pass  # from the guess, then
+        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, given))
+
+    def _keep(
+        self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, LinearisedBalls]
+    ) -> tuple[np.ndarray, LinearisedBalls]:
+        self.centre, (self.where, self.force, self.last) = centre, found
+        return self.where, self.last
+
+
+class Pool:
+    """Patches of both races and solvers for any set of balls on them.
+
+    Parameters
+    ----------
+    patches : of the inner and the outer race
+    laws : at the points of the inner and the outer race; None for no penetration
+    wider : called with a ``BeyondPatch``, returns patches that reach further; None: contact that leaves is an error
+    friction : coefficient of Coulomb friction; the patches have compliances along the groove where it is not 0
+    """
+
+    def __init__(
+        self,
+        patches: tuple[Patch, Patch],
+        laws: tuple[PointLaw | None, PointLaw | None] = (None, None),
+        wider: Callable[[BeyondPatch], tuple[Patch, Patch]] | None = None,
+        friction: float = 0.0,
+    ) -> None:
+        self.generations, self.laws, self._wider, self.friction = [patches], laws, wider, friction
+        self._rows: dict[tuple[bool, tuple[float, ...]], Row] = {}
+
+    @property
+    def patches(self) -> tuple[Patch, Patch]:
+        """Of the inner and the outer race, the widest so far."""
+        return self.generations[-1]
+
+    @property
+    def diameter(self) -> float:
+        """Of the balls [m]."""
+        return 2.0 * self.patches[0].ball.radius
+
+    def row(self, table: np.ndarray, with_friction: bool = False) -> Row:
+        """The solver for the balls of a system's ``table``; ``with_friction``: with friction."""
+        key = with_friction, tuple(table[:, CENTRIFUGAL].tolist())
+        if key not in self._rows:
+            z = len(table)
+            both, friction = zip(self.patches, self.laws, strict=True), self.friction if with_friction else 0.0
+            contacts = [Contact(patch, law, friction) for patch, law in both for _ in range(z)]
+            loads = np.zeros((z, 2))
+            loads[:, 1] = table[:, CENTRIFUGAL]
+            balls = Balls(contacts, self._coupling(z), loads, STEP * self.diameter)
+            self._rows[key] = Row(balls, np.zeros((2 * z, 2)))
+        return self._rows[key]
+
+    def widened(self, solve: Callable[[], T]) -> T:
+        """The solution, on patches that are made wider while the contact leaves them.
+
+        Raises
+        ------
+        ConvergenceError
+            The contact leaves every patch, or nothing makes them wider.
+        """
+        for _ in range(_WIDER):
+            try:
+                return solve()
+            except BeyondPatch as left:
+                if self._wider is None:
+                    raise ConvergenceError(str(left)) from left
+                try:
+                    self.generations.append(self._wider(left))
+                except MeshError as why:  # the bodies were meshed: what cannot be is this contact
+                    raise ConvergenceError(f"the balls run away from the races: {left} ({why})") from why
+                self._rows.clear()
+        raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
+
+    def _coupling(self, z: int) -> np.ndarray:
+        """(4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings."""
+        row = len(self.patches[0].race.crossing)
+        out = np.zeros((2, z, 2, 2, z, 2))
+        ball = np.arange(z)
+        for component in (0, 1):
+            for here, there in ((0, 1), (1, 0)):
+                out[here, ball, component, there, ball, component] = -self.patches[0].ball.opposite
+        for race, patch in enumerate(self.patches):
+            for k in range(z):
+                first = k // row * row
+                for other in range(first, first + row):
+                    out[race, k, :, race, other, :] += patch.race.crossing[(k - other) % row]
+        return out.reshape(4 * z, 4 * z)
+
 
 _LIMIT = 60
 #: Balls' residual over the largest contact force at which they are in equilibrium.
@@ -263,7 +479,7 @@ class PatchSystem(SteppedRing):
         )
 
     def pressures(self) -> list[ContactState]:
-        """Answers of all contacts (``raceway.core.patches.contact.Pressed``), inner races first, at the last state."""
+        """Answers of all contacts (``raceway.core.patches.pressure.Pressed``), inner races first, at the last state."""
         last = self.pool.row(self.table, self.with_friction).last
         return [] if last is None else last.contact_states
 

@@ -22,14 +22,10 @@ from functools import cached_property
 import attrs
 import numpy as np
 
-from raceway.core.periodic.arrays import Change, Eliminated
-from raceway.core.periodic.collocation import Solved, gap
-from raceway.core.periodic.floquet import Floquet, fate_of, transfer
-from raceway.core.periodic.intervals import FORCE, IMBALANCE, condense, imbalances
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.rates import renew, stiff
+from raceway.core.periodic.collocation import Path, Problem, Solved, Symmetry, gap, renew, rotations, stiff
+from raceway.core.periodic.floquet import NEUTRAL, Floquet, fate_of, transfer
+from raceway.core.periodic.intervals import FORCE, IMBALANCE, Change, Eliminated, condense, imbalances, spread
 from raceway.core.periodic.refinement import Estimate, divided, estimate, resampled
-from raceway.core.periodic.sweep import spread
 from raceway.errors import ConvergenceError
 
 _LIMIT = 12
@@ -305,3 +301,126 @@ def between(one: Path, two: Path, part: float) -> Path:
     """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
     names = ("q", "v", "a", "ball", "rate")
     return attrs.evolve(two, **{x: (1.0 - part) * getattr(one, x) + part * getattr(two, x) for x in names})
+
+
+def twice(symmetry: Symmetry) -> Symmetry:
+    """The symmetry of two spans."""
+    turned = symmetry.rotation @ symmetry.rotation
+    return Symmetry(2.0 * symmetry.span, turned, 2.0 * symmetry.angle, symmetry.order[symmetry.order], symmetry.pitch)
+
+
+def two_spans(problem: Problem) -> Problem:
+    """The same problem with a period of two spans."""
+    return Problem(
+        problem.system, problem.speed, twice(problem.symmetry), problem.share, problem.clock, problem.rule, problem.watch
+    )
+
+
+def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
+    """The branch of two spans, and its first point: ``point``, a period doubling, with the tangent that leaves it."""
+    solved = point.solved
+    problem, path = solved.problem, solved.path
+    turned, order = problem.symmetry.rotation, problem.symmetry.order
+    both = Path(
+        np.append(path.nodes[:-1], problem.symmetry.span + path.nodes),
+        np.vstack([path.q[:-1], path.q @ turned.T]),
+        np.vstack([path.v[:-1], path.v @ turned.T]),
+        np.vstack([path.a, path.a @ turned.T]),
+        np.concatenate([path.ball, path.ball[:, order]]),
+        np.concatenate([path.rate, path.rate[:, order]]),
+    )
+    values, vectors = np.linalg.eig(point.transfer)
+    flip = vectors[:, np.argmin(np.abs(values + 1.0))].real
+    at = branch.problem_at
+    longer = attrs.evolve(branch, problem_at=lambda p: two_spans(at(p)), most_intervals=2 * branch.most_intervals)
+    tangent = np.append(flip / branch.length, 0.0)
+    return longer, longer.along(both, point.parameter, tangent / np.linalg.norm(tangent))
+
+
+def apart(point: Point) -> np.ndarray:
+    """(2 n,) by which the state changes over half of two spans, turned back; 0 where the orbit repeats itself after one."""
+    problem, path = point.solved.problem, point.solved.path
+    middle = int(np.argmin(np.abs(path.nodes - 0.5 * problem.symmetry.span)))
+    back = rotations(np.array([-0.5 * problem.symmetry.angle]))[0]
+    first = np.concatenate([path.q[0], path.v[0]])
+    second = np.concatenate([back @ path.q[middle], back @ path.v[middle]])
+    scale = np.tile(problem.weight, 2)
+    return np.asarray((second - first) / scale)
+
+
+FOLD, BRANCH, DOUBLING, PAIR = "fold", "branch point", "period doubling", "Neimark-Sacker"
+#: Length of a step to which a point is located, over the step in which it was found.
+_CLOSE = 1e-8
+
+Test = Callable[[Point], float]
+
+
+@attrs.frozen(eq=False)
+class Special:
+    """A special point.
+
+    Attributes
+    ----------
+    kind : FOLD, BRANCH, DOUBLING or PAIR;  length : of the step to it from the point before
+    angle : of the critical pair in a span [rad]; the second frequency over the span's; None for others
+    """
+
+    kind: str
+    point: Point
+    length: float
+    angle: float | None = None
+
+
+def special_points(branch: Branch, one: Point, two: Point, size: float) -> list[Special]:
+    """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds."""
+    found = []
+    for kind, test in ((FOLD, _fold), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
+        if test(one) * test(two) < 0.0:
+            found.append(Special(kind, *located(branch, one, two, size, test)))
+    before, after = _outside(one), _outside(two)
+    by_pairs = after[1] - before[1]
+    if abs(by_pairs) >= 2 and abs(sum(after) - sum(before) - by_pairs) <= len(found):
+        count = min(before[1], after[1])
+        point, length = located(branch, one, two, size, lambda at: _pair(at, count))
+        critical = point.floquet.of_span
+        pairs = critical[np.abs(critical.imag) > 1e-6]
+        found.append(Special(PAIR, point, length, float(abs(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))])))))
+    return found
+
+
+def located(branch: Branch, one: Point, two: Point, size: float, test: Test) -> tuple[Point, float]:
+    """Where a function of the points is zero between two neighbours at which its signs differ, and the length of the step to it."""
+    from scipy.optimize import brentq
+
+    known = {0.0: one, size: two}
+
+    def value(length: float) -> float:
+        if length not in known:
+            known[length] = branch.step(one, length)
+        return test(known[length])
+
+    length = brentq(value, 0.0, size, xtol=_CLOSE * size, rtol=1e-12)
+    return known[length], length
+
+
+def _fold(point: Point) -> float:
+    return float(point.tangent[-1])
+
+
+def _doubling(point: Point) -> float:
+    return float(np.linalg.det(point.transfer + np.eye(len(point.transfer))))
+
+
+def _outside(point: Point) -> tuple[int, int]:
+    """How many multipliers of a turn lie outside the unit circle: real ones, and ones of pairs."""
+    fate = point.floquet
+    outside = fate.of_span[np.abs(fate.of_span) > 1.0 + NEUTRAL]
+    complex_ones = int((np.abs(outside.imag) > 1e-6 * np.abs(outside)).sum())
+    return len(outside) - complex_ones, complex_ones
+
+
+def _pair(point: Point, count: int) -> float:
+    """How far the largest pair but ``count`` multipliers is outside."""
+    found = point.floquet.of_span
+    sizes = np.sort(np.abs(found[np.abs(found.imag) > 1e-6 * np.abs(found)]))[::-1]
+    return float(sizes[count] - 1.0 - NEUTRAL) if len(sizes) > count else -1.0

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+
 import attrs
 import numpy as np
 
-from raceway.core.periodic.arrays import Eliminated
-from raceway.core.periodic.newton import (
+from raceway.core.periodic.intervals import (
     CORRECTION,
-    IMBALANCE,
     REPORT,
     ROUNDING,
     SHORTENED,
@@ -17,13 +18,437 @@ from raceway.core.periodic.newton import (
     SOLVED,
     STALLED,
     SWEEPS,
+    WORST_IMBALANCE,
     Closure,
+    Eliminated,
+    Equations,
     Limits,
+    Mesh,
+    Samples,
+    contacts,
+    differentiate,
+    forces,
     newton,
 )
-from raceway.core.periodic.problem import Path, Problem
-from raceway.core.periodic.rates import renew, stiff
+from raceway.core.ring.kernels.layout import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
+from raceway.core.ring.orbit import States
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
+
+#: Gauss points of an interval.
+STAGES = 4
+#: Places at which the motion's polynomial is tried against the balance of forces, besides the Gauss points.
+_TRIED = (0.0, 0.19, 0.5, 0.81, 1.0)
+
+
+@attrs.frozen(eq=False)
+class Rule:
+    """Numbers of the rule with s stages.
+
+    Attributes
+    ----------
+    points : (s,) in (0, 1)
+    velocity, position : (s, s) first and second integrals of the Lagrange polynomials up to each point
+    end : (2, s) the same up to the end of the interval
+    packed : (2 s + 3, s) velocity, position, end and points one below the other, for kernels
+    tried : (e,) further points, tried_values : (e, s) values there from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them (columns 0 to s - 1), then weights of
+        all s + e points for the velocity and the position at the end, then the points themselves in columns 0 to e - 1
+    legendre : (s, s) Legendre coefficients of values at the points
+    """
+
+    points: np.ndarray
+    velocity: np.ndarray
+    position: np.ndarray
+    end: np.ndarray
+    packed: np.ndarray
+    tried: np.ndarray
+    tried_values: np.ndarray
+    try_packed: np.ndarray
+    legendre: np.ndarray
+
+
+def integrals(points: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lagrange polynomials of points (s,) in [0, 1] at places (n,): values, first and second integrals from 0, (n, s) each."""
+    s = len(points)
+    powers = np.linalg.inv(np.vander(points, s, increasing=True))  # s <= 9 points: 1e-10 of rounding at worst
+    k = np.arange(s)
+    monomials = at[:, None] ** k
+    once = monomials * at[:, None] / (k + 1)
+    return monomials @ powers, once @ powers, (once * at[:, None] / (k + 2)) @ powers
+
+
+@cache
+def rule(stages: int = STAGES) -> Rule:
+    """The rule with a number of Gauss points an interval."""
+    x, _ = np.polynomial.legendre.leggauss(stages)
+    points = 0.5 * (x + 1.0)
+    _, velocity, position = integrals(points, points)
+    _, v_end, q_end = integrals(points, np.ones(1))
+    end = np.vstack([v_end, q_end])
+    tried = np.array(_TRIED)
+    values, v_tried, q_tried = integrals(points, tried)
+    both = np.concatenate([points, tried])
+    _, v_all, q_all = integrals(both, np.ones(1))
+    e = len(tried)
+    packed = np.zeros((2 * e + 3, stages + e))
+    packed[:e, :stages], packed[e : 2 * e, :stages] = v_tried, q_tried
+    packed[2 * e], packed[2 * e + 1], packed[2 * e + 2, :e] = v_all[0], q_all[0], tried
+    legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
+    return Rule(
+        points, velocity, position, end, np.ascontiguousarray(np.vstack([velocity, position, end, points])), tried,
+        values, packed, legendre,
+    )  # fmt: skip
+
+
+#: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
+_SAME = 1e-9
+
+
+@attrs.frozen(eq=False)
+class Symmetry:
+    """The motion repeats itself after ``span`` [rad of the force's angle], rotated.
+
+    Attributes
+    ----------
+    rotation : (5, 5) P;  angle : by which P rotates about x [rad]
+    order : (Z,) the ball that stood where each ball stands one span later
+    pitch : whether the span is one ball pitch
+    """
+
+    span: float
+    rotation: np.ndarray
+    angle: float
+    order: np.ndarray
+    pitch: bool
+
+
+def rotations(angles: np.ndarray) -> np.ndarray:
+    """(n, 5, 5) x, y, z, tilt_y, tilt_z turned by angles (n,) about x."""
+    c, s = np.cos(angles), np.sin(angles)
+    out = np.zeros((len(c), 5, 5))
+    out[:, 0, 0] = 1.0
+    out[:, 1, 1] = out[:, 2, 2] = out[:, 3, 3] = out[:, 4, 4] = c
+    out[:, 2, 1] = out[:, 4, 3] = s
+    out[:, 1, 2] = out[:, 3, 4] = -s
+    return out
+
+
+def one_turn(system: System) -> Symmetry:
+    """No symmetry: the motion repeats itself after a turn."""
+    return Symmetry(2.0 * np.pi, np.eye(5), 0.0, np.arange(system.ball_count), False)
+
+
+def one_pitch(system: System, speed: float, q: np.ndarray) -> Symmetry | None:
+    """The symmetry of one ball pitch, or None where forces or bodies do not have it.
+
+    Parameters
+    ----------
+    speed : of the force [rad/s];  q : (5,) equilibrium; bodies are tried some way off it
+    """
+    table = system.table
+    rows: dict[tuple[float, float], list[int]] = {}
+    for k, row in enumerate(table[:, [SIDE, LEVER]].tolist()):
+        rows.setdefault((row[0], row[1]), []).append(k)
+    counts = {len(row) for row in rows.values()}
+    count = counts.pop()
+    # A load across the axis is no part of it whatever the balls are.
+    if counts or count < 2 or np.any(system.load[1:] * system.free[1:]):
+        return None
+    direction = np.arctan2(table[:, SINE], table[:, COSINE])
+    cage = system.scalars[CAGE] / speed
+    for sense in (1.0, -1.0):
+        if sense == cage:
+            continue
+        span = 2.0 * np.pi / count / abs(sense - cage)
+        found = Symmetry(span, rotations(np.array([sense * span]))[0], sense * span, np.arange(len(table)), True)
+        if not _forces_turn(system, found, speed):
+            continue
+        order = _order(direction, list(rows.values()), -np.sign(sense - cage) * 2.0 * np.pi / count)
+        if order is None:
+            return None
+        found = attrs.evolve(found, order=order)
+        return found if _bodies_turn(system, found, speed, q) else None
+    return None
+
+
+def _order(direction: np.ndarray, rows: list[list[int]], by: float) -> np.ndarray | None:
+    """For every ball the one of its row that stands at an angle ``by`` from it; None where there is none."""
+    order = np.empty(len(direction), dtype=int)
+    for row in rows:
+        off = direction[row][:, None] + by - direction[row][None, :]
+        off = np.abs((off + np.pi) % (2.0 * np.pi) - np.pi)
+        if off.min(axis=1).max() > 1e-9:
+            return None
+        order[row] = np.array(row)[off.argmin(axis=1)]
+    return order
+
+
+def _forces_turn(system: System, found: Symmetry, speed: float) -> bool:
+    """Whether the force one span later is the force now, turned."""
+    times = np.array([0.0, 0.37, 1.9]) / speed
+    push = np.empty((6, 5))
+    forces(system.force, system.force_params, np.concatenate([times, times + found.span / speed]), push)
+    push *= system.free
+    return bool(np.abs(push[3:] - push[:3] @ found.rotation.T).max() <= _SAME * np.abs(push).max())
+
+
+def _bodies_turn(system: System, found: Symmetry, speed: float, q: np.ndarray) -> bool:
+    """Whether mass, damping, shaft and contacts answer a turned motion with turned forces."""
+    turn, free = found.rotation, system.free
+    linear = np.array([system.mass, system.damping, system.stiffness, np.diag(free)])
+    apart = np.abs(turn @ linear - linear @ turn).max(axis=(1, 2))
+    if (apart > 1e-12 * np.abs(linear).max(axis=(1, 2))).any():
+        return False
+    # Some way off the axis, in no special direction: a tenth of what the axial load presses the rings together.
+    size = 0.1 * max(abs(q[0]), 1e-3 * abs(system.scalars[REST_RADIAL]), 1e-9)
+    off = np.array([0.2, 1.0, 0.6, -0.4 / system.arm, 0.7 / system.arm]) * size * free
+    state = q + off
+    v = 0.3 * speed * off[[0, 2, 1, 4, 3]]
+    z = system.ball_count
+    ball, gap, load = np.zeros((2, z, system.ball_columns)), np.empty((2, 2 * z)), np.empty((2, 2 * z))
+    times = np.array([0.0, found.span / speed])
+    states = States(times, np.array([state, turn @ state]), np.array([v, turn @ v]), ball, np.zeros_like(ball))
+    if contacts(system.compiled_forces, system.law_state, states, gap, load) < 2:
+        return False
+    # Forces, gaps and places of all balls are what the ring's force is made of.
+    both = np.concatenate([found.order, found.order + z])
+    pairs = ((ball[0], ball[1], found.order), (gap[0], gap[1], both), (load[0], load[1], both))
+    return all(np.abs(two - one[order]).max() <= _SAME * np.abs(one).max() for one, two, order in pairs)
+
+
+@attrs.frozen(eq=False)
+class Problem:
+    """M q'' + C q' + K q + f = load + share * force(t) with q(theta + span) = P q(theta).
+
+    Attributes
+    ----------
+    speed : of the force, w [rad/s]: a turn of theta is a turn of the force
+    share : of the excitation that acts;  clock : speed that belongs to the excitation's own time, ``speed`` unless a branch
+        is followed over speed while the bodies keep theirs
+    free : (n,) numbers of the unknown coordinates
+    weight : (5,) makes moments forces; lengths of tilts are tilts over it
+    closing : (2 n, 2 n) rotation of an unknown state (q, v) by the span
+    watch : called between the tries of a search, which what it raises ends
+    """
+
+    system: System
+    speed: float
+    symmetry: Symmetry
+    share: float = 1.0
+    clock: float = attrs.field()
+    rule: Rule = attrs.field(factory=rule)
+    watch: Callable[[], None] = lambda: None
+
+    free: np.ndarray = attrs.field(init=False)
+    weight: np.ndarray = attrs.field(init=False)
+    closing: np.ndarray = attrs.field(init=False)
+
+    @clock.default
+    def _clock(self) -> float:
+        return self.speed
+
+    @free.default
+    def _free(self) -> np.ndarray:
+        return np.flatnonzero(self.system.free > 0.0)
+
+    @weight.default
+    def _weight(self) -> np.ndarray:
+        arm = self.system.arm
+        return np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm])
+
+    @closing.default
+    def _closing(self) -> np.ndarray:
+        part = self.symmetry.rotation[np.ix_(self.free, self.free)]
+        n = len(part)
+        out = np.zeros((2 * n, 2 * n))
+        out[:n, :n] = out[n:, n:] = part
+        return out
+
+    def angles(self, nodes: np.ndarray) -> np.ndarray:
+        """(m s,) of the Gauss points."""
+        return (nodes[:-1, None] + np.diff(nodes)[:, None] * self.rule.points).ravel()
+
+    def force(self, nodes: np.ndarray) -> np.ndarray:
+        """The whole excitation at the Gauss points (m s, 5)."""
+        angles = self.angles(nodes)
+        force = np.empty((len(angles), 5))
+        forces(self.system.force, self.system.force_params, angles / self.clock, force)
+        return force
+
+    def push(self, nodes: np.ndarray) -> np.ndarray:
+        """Load and excitation at the Gauss points (m s, 5)."""
+        return self.system.load + self.share * self.force(nodes)
+
+    @property
+    def equations(self) -> Equations:
+        """What compiled parts need of it."""
+        system = self.system
+        return Equations(system.compiled_forces, system.linear, system.law_state, self.free, self.weight, self.speed)
+
+    def mesh(self, nodes: np.ndarray) -> Mesh:
+        """Nodes (m + 1,) with the rule inside the intervals."""
+        return Mesh(nodes, self.rule.packed)
+
+    def eliminated(self, nodes: np.ndarray) -> Eliminated:
+        """Room for a linearisation on a mesh."""
+        m, s, n = len(nodes) - 1, len(self.rule.points), len(self.free)
+        return Eliminated(np.empty((m * s * n, 2 * n + 2)), np.empty((2 * m * n, 2 * n + 2)), np.empty((2 * n, 2 * n + 2)))
+
+
+@attrs.frozen(eq=False)
+class Path:
+    """A motion over one span, its derivatives by the angle.
+
+    Attributes
+    ----------
+    nodes : (m + 1,) angles, from 0 to the span;  q, v : (m + 1, 5) at nodes;  a : (m s, 5) at Gauss points
+    ball, rate : (m s, Z, c) columns of ``System.evaluate`` and their rates [m/s]
+    """
+
+    nodes: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    ball: np.ndarray
+    rate: np.ndarray
+
+    @property
+    def intervals(self) -> int:
+        return len(self.nodes) - 1
+
+    def samples(self, push: np.ndarray, slope: np.ndarray | None = None) -> Samples:
+        """For compiled parts, with outer forces ``push`` (m s, 5) and their derivative ``slope``; zeros for none."""
+        by = np.zeros_like(push) if slope is None else slope
+        return Samples(self.q, self.v, self.a, self.ball, self.rate, push, by)
+
+
+#: Lag times the largest entry of D above which the rates are solved for: a fifth leaves seven sweeps for 1e-5.
+_STIFF = 0.02
+#: Step of the differences [m/s] over the velocity of the motion.
+_STEP = 0.1
+
+
+def derivative(problem: Problem, path: Path) -> np.ndarray:
+    """Rates (m s, Z, r) of the columns that have rates, from the balls' places along the motion."""
+    rated = problem.system.rated_columns
+    order = problem.symmetry.order
+    # Those of the next and of the last span are this one's, renumbered.
+    before, after = path.ball[-2:][:, np.argsort(order)], path.ball[:2][:, order]
+    ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, rated])
+    rate = np.empty_like(ball)
+    differentiate(_longer(path.nodes), problem.rule.points, problem.speed, ball, rate)
+    return rate[2:-2]
+
+
+def stiff(problem: Problem, path: Path) -> bool:
+    """Whether putting rates in does not converge: balls lag about as long as the ring's damping is over its stiffness."""
+    # One state tells how much dashpots do: balls that are closed anywhere are closed at most times.
+    now, weight = problem.system.evaluate(path.q[0], path.v[0] * problem.speed), problem.weight**2
+    damping = float(np.abs(np.diag(now.damping) * weight).max())
+    lag = damping / max(float(np.abs(np.diag(now.stiffness) * weight).max()), 1e-300)
+    h = float(np.diff(path.nodes).min())
+    return bool(lag * problem.speed * _steepest(problem.rule) / h > _STIFF)
+
+
+def renew(problem: Problem, path: Path, solved: bool) -> None:
+    """Put the rates that belong to the places of the balls into ``path.rate``.
+
+    Parameters
+    ----------
+    solved : one step of Newton's iteration instead of plain substitution
+    """
+    rated = problem.system.rated_columns
+    wanted = derivative(problem, path)
+    if solved:
+        old = path.rate[:, :, rated]
+        wanted = old + _solve(problem, path, wanted - old)
+    path.rate[:, :, rated] = wanted
+
+
+def between(problem: Problem, path: Path) -> np.ndarray:
+    """Rates (m e, Z, c) at the points between the Gauss points that estimates try."""
+    s = len(problem.rule.points)
+    values = problem.rule.tried_values
+    rate = path.rate.reshape(path.intervals, s, *path.rate.shape[1:])
+    return np.ascontiguousarray(np.einsum("es,mszc->mezc", values, rate).reshape(-1, *path.rate.shape[1:]))
+
+
+def _longer(nodes: np.ndarray) -> np.ndarray:
+    """Nodes with an interval more at each end."""
+    h = np.diff(nodes)
+    return np.concatenate([[nodes[0] - h[-1]], nodes, [nodes[-1] + h[0]]])
+
+
+@cache
+def _steepest(rule: Rule) -> float:
+    """Largest entry of the derivative on an interval of length 1 among equals."""
+    return float(np.abs(_weights(rule, np.array([0.0, 1.0]))).max())
+
+
+def _weights(rule: Rule, nodes: np.ndarray) -> np.ndarray:
+    """D (m s, s + 4) by the angle: row i has the weights of samples k s - 2 to k s + s + 1, k the interval of sample i."""
+    m, s = len(nodes) - 1, len(rule.points)
+    width = s + 4
+    rows = np.arange(m * s + 4)
+    # Any s + 4 samples in a row have different remainders: one signal for each remainder tells every weight.
+    signal = np.ascontiguousarray((rows[:, None] % width == np.arange(width)).astype(float)[:, :, None])
+    out = np.empty_like(signal)
+    differentiate(_longer(nodes), rule.points, 1.0, signal, out)
+    of = (np.arange(m * s) // s * s)[:, None] + np.arange(width)
+    return np.take_along_axis(out[2:-2, :, 0], of % width, axis=1)
+
+
+def _lags(problem: Problem, path: Path) -> np.ndarray:
+    """T (m s, Z, r, r) [s]: places by rates."""
+    columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
+    here, *moved = _places(problem, path, np.arange(len(path.a)), [[], *columns])
+    return np.stack([(one - here) / _step(problem, path) for one in moved], axis=-1)
+
+
+def _step(problem: Problem, path: Path) -> float:
+    return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
+
+
+def _places(problem: Problem, path: Path, chosen: np.ndarray, moved: list[list[int]]) -> list[np.ndarray]:
+    """Columns (n, Z, r) of the balls at some of the Gauss points, for each set of columns with the rates of that set moved."""
+    system, rule = problem.system, problem.rule
+    s, rated = len(rule.points), system.rated_columns
+    k, i = chosen // s, chosen % s
+    h, a = np.diff(path.nodes)[k, None], path.a.reshape(path.intervals, s, 5)[k]
+    q = path.q[k] + rule.points[i, None] * h * path.v[k] + h**2 * np.einsum("ns,nsc->nc", rule.position[i], a)
+    v = (path.v[k] + h * np.einsum("ns,nsc->nc", rule.velocity[i], a)) * problem.speed
+    times = (path.nodes[k] + rule.points[i] * h[:, 0]) / problem.speed
+    gap, force = np.empty((2, len(chosen), 2 * system.ball_count))
+    found = []
+    for columns in moved:
+        ball, rate = path.ball[chosen].copy(), path.rate[chosen].copy()
+        rate[:, :, columns] += _step(problem, path)
+        done = contacts(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), gap, force)
+        if done < len(chosen):
+            raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
+        found.append(ball[:, :, rated])
+    return found
+
+
+def _solve(problem: Problem, path: Path, rest: np.ndarray) -> np.ndarray:
+    """(I - D T)^-1 of a residual (m s, Z, r), all balls of a span together: one goes on where another one ends."""
+    from scipy.sparse import bsr_array, eye_array
+    from scipy.sparse.linalg import splu
+
+    n, z, r = rest.shape
+    s, order = len(problem.rule.points), problem.symmetry.order
+    lags, weights = _lags(problem, path), problem.speed * _weights(problem.rule, path.nodes)
+    back = np.argsort(order)
+    ball, sample = np.meshgrid(np.arange(z), np.arange(n), indexing="ij")
+    at = sample[:, :, None] // s * s + np.arange(s + 4) - 2
+    whose = np.where(at < 0, back[ball][:, :, None], np.where(at >= n, order[ball][:, :, None], ball[:, :, None]))
+    at %= n
+    blocks = -weights[None, :, :, None, None] * lags[at, whose]
+    row = np.arange(z * n + 1) * (s + 4)
+    matrix = bsr_array((blocks.reshape(-1, r, r), (whose * n + at).ravel(), row), shape=(z * n * r, z * n * r))
+    found = splu((matrix + eye_array(z * n * r)).tocsc()).solve(rest.swapaxes(0, 1).ravel())
+    return found.reshape(z, n, r).swapaxes(0, 1)
+
 
 #: Turns of motion and rates, and the change over the motion's size that rounding may leave.
 _RATES, _LEFT = 20, 1e-9
@@ -119,7 +544,7 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
         )
         raise ConvergenceError(
             f"no periodic motion found near the first guess: {why} after {int(report[SWEEPS])} iterations, imbalance "
-            f"{report[IMBALANCE]:.2g} N",
+            f"{report[WORST_IMBALANCE]:.2g} N",
             {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()},
         )
     return Solved(

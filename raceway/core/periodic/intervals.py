@@ -1,15 +1,90 @@
 """Interval by interval: the state at a Gauss point, the balance of forces there, and the elimination of its unknowns."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, void
+from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
-from raceway.core.periodic.arrays import ELIMINATED, EQUATIONS, MESH, SAMPLES
-from raceway.core.ring.dense import copy_matrix
-from raceway.core.ring.kernels.columns import work_rows
-from raceway.core.signatures import MATRIX, RESPONSE, VECTOR, Balls, Contacts, Response, record
+from raceway.core.ring.equilibrium import copy_cube, copy_matrix
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP
+from raceway.core.ring.kernels.layout import work_rows
+from raceway.core.ring.orbit import STATES
+from raceway.core.signatures import (
+    CUBE,
+    FORCE_POINTER,
+    FORCES,
+    LINEAR,
+    MATRIX,
+    RESPONSE,
+    VECTOR,
+    Balls,
+    Contacts,
+    Forces,
+    Linear,
+    Response,
+    record,
+)
+
+INDICES = int64[::1]
+
+
+class Equations(NamedTuple):
+    """Compiled forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
+
+    The weight makes moments forces.
+    """
+
+    forces: Forces
+    linear: Linear
+    memory: np.ndarray
+    free: np.ndarray
+    weight: np.ndarray
+    speed: float
+
+
+class Mesh(NamedTuple):
+    """Angles of the nodes (m + 1,), and ``Rule.packed`` (2 p + 3, s) or ``Rule.try_packed`` (2 p + 3, s + p) of p points."""
+
+    nodes: np.ndarray
+    rule: np.ndarray
+
+
+class Samples(NamedTuple):
+    """q, v (m + 1, 5) at nodes, a (m s, 5) at Gauss points; there also columns of the balls and their rates (m s, Z, c),
+    the outer forces ``push`` (m s, 5), and the derivative of the balance of forces by the parameter, ``slope`` (m s, 5).
+    """
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    ball: np.ndarray
+    rate: np.ndarray
+    push: np.ndarray
+    slope: np.ndarray
+
+
+class Eliminated(NamedTuple):
+    """stages (m s n, 2 n + 2): S_y, S_r, S_p; transfer (m 2 n, 2 n + 2): T_y, T_r, T_p; whole (2 n, 2 n + 2): all intervals'."""
+
+    stages: np.ndarray
+    transfer: np.ndarray
+    whole: np.ndarray
+
+
+class Change(NamedTuple):
+    """Corrections of q, v (m + 1, 5) and a (m s, 5)."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+
+
+EQUATIONS = record(Equations, FORCES, LINEAR, MATRIX, INDICES, VECTOR, float64)
+MESH = record(Mesh, VECTOR, MATRIX)
+SAMPLES = record(Samples, MATRIX, MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX)
+ELIMINATED = record(Eliminated, MATRIX, MATRIX, MATRIX)
+CHANGE = record(Change, MATRIX, MATRIX, MATRIX)
 
 #: Entries of ``report``: largest weighted imbalance at a Gauss point [N], largest weighted jump between intervals [m], greatest
 #: internal force [N].
@@ -216,3 +291,329 @@ def imbalances(equations, mesh, samples, out):
             for c in range(5):
                 out[at, c] = left_over(equations, samples, at, c, q, v, response.f)
     return m
+
+
+@jit(void(FORCE_POINTER, VECTOR, VECTOR, MATRIX), allocates=True)
+def forces(force, params, times, out):
+    """out (n, 5): the excitation at times (n,)."""
+    for i in range(times.size):
+        force(times[i], params, out[i])
+
+
+@jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE))
+def spread(free, eliminated, first, parameter, change):
+    """The change of a path that the change first (2 n,) of its first state and that of the parameter make."""
+    stages, transfer, _ = eliminated
+    dq, dv, da = change
+    n = free.size
+    m = transfer.shape[0] // (2 * n)
+    s = stages.shape[0] // (m * n)
+    for r in range(n):
+        dq[0, free[r]] = first[r]
+        dv[0, free[r]] = first[n + r]
+    for k in range(m):
+        for i in range(s * n):
+            row = k * s * n + i
+            total = stages[row, 2 * n] + stages[row, 2 * n + 1] * parameter
+            for r in range(n):
+                total += stages[row, r] * dq[k, free[r]] + stages[row, n + r] * dv[k, free[r]]
+            da[k * s + i // n, free[i % n]] = total
+        for i in range(2 * n):
+            row = k * 2 * n + i
+            total = transfer[row, 2 * n] + transfer[row, 2 * n + 1] * parameter
+            for r in range(n):
+                total += transfer[row, r] * dq[k, free[r]] + transfer[row, n + r] * dv[k, free[r]]
+            if i < n:
+                dq[k + 1, free[i]] = total
+            else:
+                dv[k + 1, free[i - n]] = total
+
+
+@jit(void(VECTOR, VECTOR, float64, CUBE, CUBE), allocates=True)
+def differentiate(nodes, points, speed, ball, rate):
+    """rate (m s + 4, Z, r) [m/s] of columns ball (m s + 4, Z, r) that have rates: both with two samples beyond each end.
+
+    Notes
+    -----
+    The derivative of the polynomial through the s points of an interval and two neighbours on either side; ``nodes`` has an
+    interval more at each end, for the places of those neighbours.
+    """
+    s = points.size
+    m = nodes.size - 3
+    width = s + 4
+    x, w = np.empty(width), np.empty(width)
+    for k in range(m):
+        h, before, after = nodes[k + 2] - nodes[k + 1], nodes[k + 1] - nodes[k], nodes[k + 3] - nodes[k + 2]
+        x[0], x[1] = before * (points[s - 2] - 1.0), before * (points[s - 1] - 1.0)
+        for i in range(s):
+            x[2 + i] = h * points[i]
+        x[s + 2], x[s + 3] = h + after * points[0], h + after * points[1]
+        for i in range(width):
+            x[i] /= h
+        for j in range(width):
+            w[j] = 1.0
+            for i in range(width):
+                if i != j:
+                    w[j] /= x[j] - x[i]
+        for i in range(2, s + 2):
+            for ball_number in range(ball.shape[1]):
+                for c in range(ball.shape[2]):
+                    total = 0.0
+                    here = ball[k * s + i, ball_number, c]
+                    for j in range(width):
+                        if j != i:
+                            total += w[j] / w[i] / (x[i] - x[j]) * (ball[k * s + j, ball_number, c] - here)
+                    rate[k * s + i, ball_number, c] = total * speed / h
+
+
+@jit(int64(FORCES, MATRIX, STATES, MATRIX, MATRIX), allocates=True)
+def contacts(forces, memory, states, gap, force):
+    """gap, force (n, 2 Z) at n states; their balls are a guess and become the places.  The number of states done."""
+    constants = forces.constants
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
+    law = Contacts(forces.law, forces.law_params, memory, memory.copy(), 0.0)
+    for i in range(states.times.size):
+        balls = Balls(states.ball[i], 0.0, states.rate[i])
+        if forces.system(states.times[i], states.q[i], states.v[i], balls, law, constants, response) != 0:
+            return i
+        for c in range(gap.shape[1]):
+            gap[i, c] = work[GAP, c]
+            force[i, c] = work[CONTACT_FORCE, c]
+    return states.times.size
+
+
+class Excitation(NamedTuple):
+    """Excitation with its parameters (k,), the share of it that acts, and the speed of its own clock [rad/s]."""
+
+    force: Any
+    params: np.ndarray
+    share: float
+    clock: float
+
+
+EXCITATION = record(Excitation, FORCE_POINTER, VECTOR, float64, float64)
+
+
+@jit(void(EQUATIONS, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
+def acceleration_of(equations, inverse, q, v, push, f, out):
+    """out (n,): second derivatives by the angle of the unknowns, which balance the forces; ``inverse`` (n, n) of the mass.
+
+    f (5,), at first the contacts' forces, becomes what is left of the others.
+    """
+    linear, free, speed = equations.linear, equations.free, equations.speed
+    n = free.size
+    for r in range(n):
+        c = free[r]
+        total = push[c] - f[c]
+        for d in range(5):
+            total -= linear.damping[c, d] * v[d] + linear.stiffness[c, d] * q[d]
+        f[c] = total
+    for r in range(n):
+        out[r] = 0.0
+        for j in range(n):
+            out[r] += inverse[r, j] * f[free[j]]
+        out[r] /= speed * speed
+
+
+@jit(int64(EQUATIONS, EXCITATION, MATRIX, MESH, MATRIX, SAMPLES, MATRIX), allocates=True)
+def try_between(equations, excitation, inverse, mesh, tried, samples, defect):
+    """defect (m, 2 n): what q and v at the end of each interval gain; the number of intervals done, less than m at a failure.
+
+    Parameters
+    ----------
+    inverse : (n, n) of the mass
+    tried : ``Rule.try_packed``;  ``samples.rate`` : (m e, Z, c) [m/s] at the e points of an interval that are tried
+    """
+    forces, free = equations.forces, equations.free
+    constants, load = forces.constants, equations.linear.load
+    m, s, n = mesh.nodes.size - 1, mesh.rule.shape[1], free.size
+    e, trial = tried.shape[1] - s, Mesh(mesh.nodes, tried)
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
+    contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
+    q, v, push, acceleration = np.empty(5), np.empty(5), np.empty(5), np.empty(n)
+    place = np.empty((constants.table.shape[0], samples.ball.shape[2]))
+    for k in range(m):
+        h = mesh.nodes[k + 1] - mesh.nodes[k]
+        for i in range(2 * n):
+            defect[k, i] = 0.0
+        for i in range(s):
+            for r in range(n):
+                value = samples.a[k * s + i, free[r]]
+                defect[k, r] += h * h * (tried[2 * e + 1, i] - mesh.rule[2 * s + 1, i]) * value
+                defect[k, n + r] += h * (tried[2 * e, i] - mesh.rule[2 * s, i]) * value
+        for i in range(e):
+            u = tried[2 * e + 2, i]
+            t = state_at(trial, samples, k, i, equations.speed, q, v)
+            copy_matrix(samples.ball[k * s + min(s - 1, int64(u * s))], place)
+            if forces.system(t, q, v, Balls(place, 0.0, samples.rate[k * e + i]), contacts, constants, response) != 0:
+                return k
+            excitation.force((mesh.nodes[k] + u * h) / excitation.clock, excitation.params, push)
+            for c in range(5):
+                push[c] = load[c] + excitation.share * push[c]
+            acceleration_of(equations, inverse, q, v, push, response.f, acceleration)
+            for r in range(n):
+                defect[k, r] += h * h * tried[2 * e + 1, s + i] * acceleration[r]
+                defect[k, n + r] += h * tried[2 * e, s + i] * acceleration[r]
+    return m
+
+
+@jit(void(INDICES, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX))
+def carry(free, transfer, first, defect, dq, dv):
+    """dq, dv (m + 1, 5) that defects (m, 2 n) at the ends of intervals and a first state (2 n,) make."""
+    n = free.size
+    m = transfer.shape[0] // (2 * n)
+    for r in range(n):
+        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
+    for k in range(m):
+        for i in range(2 * n):
+            total = defect[k, i]
+            for r in range(n):
+                total += transfer[2 * n * k + i, r] * dq[k, free[r]] + transfer[2 * n * k + i, n + r] * dv[k, free[r]]
+            if i < n:
+                dq[k + 1, free[i]] = total
+            else:
+                dv[k + 1, free[i - n]] = total
+
+
+#: A displacement's rounding over the displacement itself, below which no correction can come.
+ROUNDING = 1e-14
+#: Entries of ``report``: sweeps of all intervals, largest imbalance [N], last correction [m], size of the motion [m], and 1
+#: where a step had to be shortened.
+SWEEPS, WORST_IMBALANCE, CORRECTION, SIZE, SHORTENED = range(5)
+REPORT = 8
+SOLVED, STALLED, BALLS_FAILED, SINGULAR = range(4)
+#: Sweeps at the limit of rounding after which no better one comes.
+_FINE = 5
+
+
+class Closure(NamedTuple):
+    """How a span ends: rotation of a state (2 n, 2 n), order of the balls (Z,), columns of the balls that have rates (r,)."""
+
+    rotation: np.ndarray
+    order: np.ndarray
+    rated: np.ndarray
+
+
+class Limits(NamedTuple):
+    """Last correction over the motion's size, imbalance that is rounding [N], sweeps, and halvings of a step that may follow each other."""
+
+    tolerance: float
+    rounding: float
+    sweeps: int
+    patience: int
+
+
+CLOSURE = record(Closure, MATRIX, INDICES, INDICES)
+LIMITS = record(Limits, float64, float64, int64, int64)
+
+
+@jit(void(SAMPLES, CHANGE, float64))
+def move(samples, change, factor):
+    """Add a part of a change to a path."""
+    for k in range(samples.q.shape[0]):
+        for c in range(5):
+            samples.q[k, c] += factor * change.q[k, c]
+            samples.v[k, c] += factor * change.v[k, c]
+    for k in range(samples.a.shape[0]):
+        for c in range(5):
+            samples.a[k, c] += factor * change.a[k, c]
+
+
+@jit(boolean(EQUATIONS, MATRIX, MATRIX, SAMPLES, MATRIX, VECTOR))
+def first_state(equations, rotation, whole, samples, close, first):
+    """first (2 n,): correction of the state at the start with which the span closes; False where it has none."""
+    free = equations.free
+    n, m, q, v = free.size, samples.q.shape[0] - 1, samples.q, samples.v
+    # A path that was put together from others may not end where it begins: that is corrected with the rest.
+    for i in range(2 * n):
+        close[i, 2 * n] = whole[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
+        for j in range(2 * n):
+            close[i, j] = rotation[i, j] - whole[i, j]
+            close[i, 2 * n] -= rotation[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
+    if not eliminate(close, 2 * n, 1):
+        return False
+    for i in range(2 * n):
+        first[i] = close[i, 2 * n]
+    return True
+
+
+@jit(types.UniTuple(float64, 3)(VECTOR, SAMPLES, CHANGE))
+def sizes(weight, samples, change):
+    """Largest correction of a displacement, derivative by the angle, and displacement [m]; tilts as lengths."""
+    correction, size, place = 0.0, 0.0, 0.0
+    for k in range(samples.q.shape[0]):
+        for c in range(5):
+            correction = max(correction, abs(change.q[k, c]) / weight[c])
+            size = max(size, abs(samples.v[k, c]) / weight[c])
+            place = max(place, abs(samples.q[k, c]) / weight[c])
+    return correction, size, place
+
+
+@jit(void(MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
+def renew_rates(mesh, closure, speed, ball, rate):
+    """rate (m s, Z, c) [m/s] of the columns of ball (m s, Z, c) that have one: two samples of the next span follow at each end."""
+    nodes, rated, order = mesh.nodes, closure.rated, closure.order
+    m, s, z = nodes.size - 1, mesh.rule.shape[1], ball.shape[1]
+    longer, more = np.empty(m + 3), np.empty((m * s + 4, z, rated.size))
+    most = np.empty_like(more)
+    longer[0], longer[m + 2] = nodes[0] - (nodes[m] - nodes[m - 1]), nodes[m] + nodes[1] - nodes[0]
+    for k in range(m + 1):
+        longer[k + 1] = nodes[k]
+    for c in range(rated.size):
+        for b in range(z):
+            for k in range(m * s):
+                more[k + 2, b, c] = ball[k, b, rated[c]]
+            for k in range(2):
+                # Ball b stands one span later where ball order[b] stood.
+                more[m * s + 2 + k, b, c] = ball[k, order[b], rated[c]]
+                more[k, order[b], c] = ball[m * s - 2 + k, b, rated[c]]
+    differentiate(longer, mesh.rule[2 * s + 2], speed, more, most)
+    for k in range(m * s):
+        for b in range(z):
+            for c in range(rated.size):
+                rate[k, b, rated[c]] = most[k + 2, b, c]
+
+
+@jit(int64(EQUATIONS, CLOSURE, MESH, SAMPLES, LIMITS, ELIMINATED, VECTOR), allocates=True)
+def newton(equations, closure, mesh, samples, limits, eliminated, report):
+    """Move the samples, but push and slope, onto the periodic motion."""
+    m, n = mesh.nodes.size - 1, equations.free.size
+    noted, safe = np.zeros(3), samples.ball.copy()
+    change = Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
+    close, first = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n)
+    factor, worst, halvings, fine = 1.0, np.inf, 0, 0
+    for sweep in range(1, limits.sweeps + 1):
+        report[SWEEPS] = sweep
+        done = condense(equations, mesh, samples, eliminated, noted)
+        # The accelerations of a first guess are rough: its imbalance tells nothing.
+        if done < m or (sweep > 2 and noted[IMBALANCE] > 2.0 * worst and noted[IMBALANCE] > 1e-9 * noted[FORCE]):
+            report[SHORTENED] = 1.0
+            halvings += 1
+            if sweep == 1 or halvings > limits.patience:
+                return BALLS_FAILED if done < m else STALLED
+            factor *= 0.5
+            move(samples, change, -factor)
+            copy_cube(safe, samples.ball)
+            continue
+        worst, halvings = noted[IMBALANCE], 0
+        report[WORST_IMBALANCE] = worst
+        if not first_state(equations, closure.rotation, eliminated.whole, samples, close, first):
+            return SINGULAR
+        spread(equations.free, eliminated, first, 0.0, change)
+        if sweep > 1:
+            factor = min(1.0, 2.0 * factor)
+        move(samples, change, factor)
+        correction, size, place = sizes(equations.weight, samples, change)
+        report[CORRECTION], report[SIZE] = correction, size
+        if not np.isfinite(correction):
+            return SINGULAR
+        copy_cube(samples.ball, safe)
+        renew_rates(mesh, closure, equations.speed, samples.ball, samples.rate)
+        if factor < 1.0 or sweep == 1:
+            continue
+        fine = fine + 1 if correction <= 1e-8 * size else 0
+        if correction <= limits.tolerance * size + ROUNDING * place or worst <= limits.rounding or fine > _FINE:
+            return SOLVED
+    return STALLED

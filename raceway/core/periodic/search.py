@@ -2,21 +2,456 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from functools import partial
+from itertools import islice, pairwise
+from math import ceil
+from typing import ClassVar
+
 import attrs
 import numpy as np
 
-from raceway.core.periodic.detour import from_elsewhere, from_undamped
-from raceway.core.periodic.direct import MOST, directly, full_steps, grown, highest_order, mesh_of
-from raceway.core.periodic.first_guess import standing
+from raceway.core.periodic.branch import Branch, Point, between, towards
+from raceway.core.periodic.collocation import Path, Problem, Solved, one_pitch, one_turn, solve, stiff
 from raceway.core.periodic.floquet import Floquet, floquet
-from raceway.core.periodic.from_rest import Trail, at_whole_force, trail
-from raceway.core.periodic.neighbour import Neighbour, Recorded, neighbour_of
-from raceway.core.periodic.problem import Problem
-from raceway.core.periodic.rates import stiff
-from raceway.core.periodic.refinement import Refined, refine
-from raceway.core.periodic.sampling import displacements
-from raceway.core.ring.kernels.layout import CAGE
+from raceway.core.periodic.intervals import Eliminated, forces
+from raceway.core.periodic.refinement import Refined, displacements, half_a_turn_later, motion_at, refine
+from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
+
+#: Samples a turn of the force: enough for eight harmonics.
+_SAMPLES = 32
+
+
+def response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Orders k (m,) of the force and the linear response's complex lines (m, 5): Re(x e^{j k theta}).
+
+    Parameters
+    ----------
+    tangent : (5, 5) stiffness of the contacts at the equilibrium
+    """
+    system, w, free = problem.system, problem.speed, problem.free
+    times = 2.0 * np.pi / problem.clock / _SAMPLES * np.arange(_SAMPLES)
+    force = np.empty((_SAMPLES, 5))
+    forces(system.force, system.force_params, times, force)
+    lines = np.fft.rfft(problem.share * force[:, free], axis=0)[: _SAMPLES // 4 + 1] / _SAMPLES
+    lines[1:] *= 2.0
+    orders = np.flatnonzero(np.abs(lines).max(axis=1) > 1e-9 * np.abs(lines).max(initial=0.0))
+    part = np.ix_(free, free)
+    mass, damping, stiffness = system.mass[part], system.damping[part], (tangent + system.stiffness)[part]
+    found = np.zeros((len(orders), 5), dtype=complex)
+    for row, k in enumerate(orders):
+        found[row, free] = np.linalg.solve(stiffness - (k * w) ** 2 * mass + 1j * k * w * damping, lines[k])
+    return orders, found
+
+
+def guess(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
+    """Linear response about an equilibrium q (5,), on a mesh."""
+    orders, lines = response(problem, tangent)
+
+    def at(angles: np.ndarray, derivative: int) -> np.ndarray:
+        waves = np.exp(1j * angles[:, None] * orders) * (1j * orders) ** derivative
+        return (waves @ lines).real
+
+    return standing(problem, q, nodes, at(nodes, 0), at(nodes, 1), at(problem.angles(nodes), 2))
+
+
+def standing(
+    problem: Problem,
+    q: np.ndarray,
+    nodes: np.ndarray,
+    dq: np.ndarray | float = 0.0,
+    v: np.ndarray | float = 0.0,
+    a: np.ndarray | float = 0.0,
+) -> Path:
+    """The equilibrium q (5,) for all times, with a motion about it."""
+    m, s, z = len(nodes) - 1, len(problem.rule.points), problem.system.ball_count
+    shape = (m * s, z, problem.system.ball_columns)
+    zero = np.zeros((m + 1, 5))
+    return Path(nodes, zero + q + dq, zero + v, np.zeros((m * s, 5)) + a, np.zeros(shape), np.zeros(shape))
+
+
+#: Intervals a turn at least, and for each order of the highest natural frequency.
+_INTERVALS, _PER_ORDER = 24, 1.5
+#: Highest order that meshes are made for: the part of a solution that vibrates faster grows over each interval, a thousand
+#: radians of it beyond all numbers, so that slow motions look singular.
+HIGHEST = 2000.0
+#: Sweeps of an iteration with full steps only.
+_LIMIT = 12
+#: Intervals of meshes that branches are followed on.
+MOST = 512
+#: First and least step of a growing force; on larger meshes the least is half the first.
+_FIRST_SHARE, _LEAST_SHARE = 0.25, 0.02
+#: Relative error of motions on the way.
+ROUGH = 1e-4
+
+
+def problem_of(system: System, speed: float, q: np.ndarray, symmetric: bool = True) -> Problem:
+    """The boundary-value problem of one pitch where forces and bodies allow it, else of one turn.
+
+    Parameters
+    ----------
+    speed : of the force [rad/s];  q : (5,) static equilibrium
+    """
+    pitch = one_pitch(system, speed, q) if symmetric else None
+    return Problem(system, speed, pitch or one_turn(system))
+
+
+def highest_order(problem: Problem, tangent: np.ndarray) -> float:
+    """Highest natural frequency over the force's, with the tangent (5, 5) of the contacts."""
+    return float(problem.system.natural_frequencies(tangent)[-1]) / problem.speed
+
+
+def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
+    """Nodes of a first mesh, equidistant over the span, for vibrations up to an order ``highest``."""
+    turn = max(_INTERVALS, _PER_ORDER * min(highest, HIGHEST))
+    count = max(2, ceil(factor * turn * problem.symmetry.span / (2.0 * np.pi) - 1e-9))
+    return np.linspace(0.0, problem.symmetry.span, count + 1)
+
+
+def directly(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
+    """The motion that full steps from the linear response about an equilibrium q (5,) lead to."""
+    first = guess(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
+    return refine(full_steps(problem, first, 1e-2 * tolerance), tolerance)
+
+
+def full_steps(problem: Problem, first: Path, tolerance: float) -> Solved:
+    """Newton's iteration that never shortens a step: one that has to be may end on a resonant branch far away."""
+    return solve(problem, first, tolerance, 0, _LIMIT)
+
+
+def grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
+    """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
+    nodes = mesh_of(problem, highest_order(problem, tangent), 2)
+
+    def part(share: float) -> Problem:
+        return attrs.evolve(problem, share=share * problem.share)
+
+    share, step = 0.0, _FIRST_SHARE
+    last, before, gap = standing(problem, q, nodes), None, 1.0
+    while share < 1.0:
+        problem.watch()
+        step = min(step, 1.0 - share)
+        here = part(share + step)
+        first = guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)
+        try:
+            solved = full_steps(here, first, ROUGH)
+        except ConvergenceError:
+            step *= 0.5
+            # A large mesh makes small steps dear; none leads round a fold anyway.
+            if step < (_LEAST_SHARE if len(nodes) <= MOST else 0.5 * _FIRST_SHARE):
+                raise
+            continue
+        share, gap = share + step, step
+        before, last = last, solved.path
+        step *= 1.5 if solved.sweeps <= 5 else 1.0
+    return refine(solve(problem, last, 1e-2 * tolerance), tolerance)
+
+
+#: Nonlinear part over the motion's size, up to which a neighbour is followed.  A Duffing oscillator has one motion only as
+#: long as its amplitude stays within a third of the linear one (with some damping); far below that nothing can fold.
+MOST_NONLINEAR = 0.1
+
+
+@attrs.frozen(eq=False)
+class Neighbour:
+    """A solved motion, to be followed.
+
+    Attributes
+    ----------
+    problem : that it solves
+    excess : motion less its linear response about the equilibrium; balls and rates as they are
+    share : largest derivative of the excess over that of the motion
+    """
+
+    problem: Problem
+    excess: Path
+    share: float
+
+    def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
+        """First guess for Newton's iteration on a mesh; None where this motion is none of the problem's unknowns.
+
+        Parameters
+        ----------
+        q : (5,) static equilibrium of ``problem``;  tangent : (5, 5) of its contacts
+        """
+        if not self._alike(problem):
+            return None
+        first = guess(problem, q, tangent, nodes)
+        dq, dv, _, _, _ = motion_at(self.problem, self.excess, nodes)
+        _, _, da, ball, rate = motion_at(self.problem, self.excess, problem.angles(nodes))
+        return Path(nodes, first.q + dq, first.v + dv, first.a + da, np.ascontiguousarray(ball), np.ascontiguousarray(rate))
+
+    @property
+    def near_linear(self) -> bool:
+        """Whether the motion is so close to its linear response that no other one is near."""
+        return self.share <= MOST_NONLINEAR
+
+    def _alike(self, problem: Problem) -> bool:
+        mine, other = self.problem, problem
+        same = (mine.system.ball_count, mine.system.ball_columns) == (other.system.ball_count, other.system.ball_columns)
+        return same and mine.symmetry.span == other.symmetry.span and np.array_equal(mine.free, other.free)
+
+
+@attrs.frozen(eq=False)
+class Recorded:
+    """A turn of a motion that was integrated, to be followed to the periodic one that it settles on.
+
+    Attributes
+    ----------
+    period : [s];  displacement, velocity, acceleration : (n, 5) at equidistant times from 0 on
+    """
+
+    period: float
+    displacement: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+    near_linear: ClassVar[bool] = False
+
+    def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
+        """The same motion on a mesh; parameters as of ``Neighbour``'s."""
+        w, inner = problem.speed, problem.angles(nodes)
+        still = standing(problem, q, nodes)
+        return attrs.evolve(
+            still,
+            q=self._at(self.displacement, nodes / w),
+            v=self._at(self.velocity, nodes / w) / w,
+            a=self._at(self.acceleration, inner / w) / w**2,
+        )
+
+    def _at(self, values: np.ndarray, times: np.ndarray) -> np.ndarray:
+        """By trigonometric interpolation."""
+        n = len(values)
+        lines = np.fft.rfft(values, axis=0) / n
+        lines[1 : (n + 1) // 2] *= 2.0  # but the line at half the sampling rate
+        waves = np.exp(2j * np.pi / self.period * times[:, None] * np.arange(len(lines)))
+        return np.ascontiguousarray((waves @ lines).real)
+
+
+def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+    """A solved motion, for other problems to start from; ``q``, ``tangent`` as in ``first_guess``."""
+    problem, path = solved.problem, solved.path
+    first = guess(problem, q, tangent, path.nodes)
+    excess = attrs.evolve(path, q=path.q - first.q, v=path.v - first.v, a=path.a - first.a)
+    share = float(np.abs(excess.v / problem.weight).max()) / max(solved.size, 1e-300)
+    return Neighbour(problem, excess, share)
+
+
+#: Points of a branch.
+POINTS = 120
+#: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
+#: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
+#: of the article's scene with tilt free at 1.6 and 1.8 times.
+_BEYOND = 2.0
+#: A branch that stays below this share of the force for so many points has become a free vibration: it is left there.
+_SMALL_SHARE, _SMALL_POINTS = 0.2, 10
+
+
+@attrs.frozen(eq=False)
+class Trail:
+    """Points of a branch over the share of the force.
+
+    Attributes
+    ----------
+    largest : share of the force;  reaches : the whole force
+    folds : whether it turns back anywhere
+    crossings : neighbouring points on either side of the whole force or its opposite, in the order of the branch
+    """
+
+    largest: float = 0.0
+    folds: bool = False
+    crossings: tuple[tuple[Point, Point], ...] = ()
+
+    @property
+    def reaches(self) -> bool:
+        return self.largest >= 1.0
+
+    @classmethod
+    def of(cls, points: Iterable[Point]) -> Trail:
+        """Of points that come one by one."""
+        largest, folds, crossings = 0.0, False, []
+        for one, two in pairwise(points):
+            largest, folds = max(largest, one.parameter, two.parameter), folds or two.folded
+            if any((one.parameter - whole) * (two.parameter - whole) <= 0.0 for whole in (1.0, -1.0)):
+                crossings.append((one, two))
+        return cls(largest, folds, tuple(crossings))
+
+
+def trail(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Trail:
+    """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
+
+    Raises
+    ------
+    ConvergenceError
+        It has no first point.
+    """
+    return Trail.of(from_rest(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+
+
+def from_rest(
+    problem: Problem,
+    q: np.ndarray,
+    tangent: np.ndarray,
+    nodes: np.ndarray,
+    most: float = 1.0,
+    least: float = -0.01,
+    small_points: int = POINTS,
+) -> Iterator[Point]:
+    """Points from the resting ring on until the force's share leaves ``least`` to ``most``, or to where the branch is lost.
+
+    Parameters
+    ----------
+    small_points : points in a row of next to no force that end it, too: there it has become a free vibration
+
+    Raises
+    ------
+    ConvergenceError
+        There is no first point.
+    """
+    _, lines = response(problem, tangent)
+    length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
+
+    def slope(at: Problem, path: Path) -> np.ndarray:
+        return -problem.share * at.force(path.nodes)
+
+    branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, ROUGH, MOST, slope)
+    still = attrs.evolve(problem, share=0.0)
+    n, none = len(problem.free), np.empty((0, 0))
+    linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
+    rest = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
+    first, small = branch.start(rest, 0.0), 0
+    try:
+        for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
+            yield point
+            small = small + 1 if point.solved.size > length and abs(point.parameter) < _SMALL_SHARE else 0
+            if point.parameter >= most or point.parameter < least or small >= small_points:
+                return
+    except ConvergenceError:  # lost: what it led to stands
+        return
+
+
+def at_whole_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
+    """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
+    opposite = _reverses(problem) and problem.system.scalars[CAGE] == 0.0
+    for one, two in crossings:
+        for wanted in (1.0, -1.0):
+            if (one.parameter - wanted) * (two.parameter - wanted) > 0.0 or (wanted < 0.0 and not opposite):
+                continue
+            path = towards(one, two, wanted)
+            try:
+                if wanted < 0.0:
+                    path = half_a_turn_later(attrs.evolve(two.solved, path=path), problem)
+                yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
+            except ConvergenceError:
+                continue
+
+
+def _reverses(problem: Problem) -> bool:
+    """Whether the force half a turn later is its opposite."""
+    angles = np.array([0.1, 0.9, 2.3])
+    now, later = np.empty((3, 5)), np.empty((3, 5))
+    system = problem.system
+    forces(system.force, system.force_params, angles / problem.clock, now)
+    forces(system.force, system.force_params, (angles + np.pi) / problem.clock, later)
+    return bool(np.abs(now + later).max() <= 1e-9 * np.abs(now).max())
+
+
+#: Speeds, and axial loads, over the wanted one, that the motion is followed from.
+_RATIOS, _LOADS = (1.15, 1.3, 1.6, 0.85, 0.7), (1.5, 2.5)
+#: Speeds that are so near that a branch leads here through its folds, if at all.
+_NEAR = (1.02, 1.05, 0.97)
+
+
+def from_elsewhere(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, lost: bool
+) -> tuple[Refined, str] | None:
+    """The first motion that leads here from another speed or load, and from where; None where none does.
+
+    Parameters
+    ----------
+    q : (5,) static equilibrium;  tangent : (5, 5) of its contacts
+    lost : no motion is known here, so that nearby branches are worth following through their folds
+    """
+    for ratio in (*(_NEAR if lost else ()), *_RATIOS):
+        problem.watch()
+        at = partial(_at_speed, problem)
+        with suppress(ConvergenceError):
+            found = _followed_to(at, q, tangent, tolerance, ratio, lost and ratio in _NEAR)
+            return found, "from a higher speed" if ratio > 1.0 else "from a lower speed"
+    if problem.system.load[0] == 0.0 or problem.system.free[0] == 0.0:
+        return None
+    for ratio in _LOADS:
+        problem.watch()
+        at = partial(_at_load, problem)
+        with suppress(ConvergenceError):
+            system = at(ratio).system
+            there, ball, _ = system.settle(q)
+            stiff = system.evaluate(there, ball=ball).stiffness
+            return _followed_to(at, there, stiff, tolerance, ratio, False), "from a heavier axial load"
+    return None
+
+
+def from_undamped(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray, tolerance: float
+) -> Iterator[Refined]:
+    """Motions that the branch from rest leads to without damping, each continued to the damped ring; none of an undamped one.
+
+    Notes
+    -----
+    Without damping branches of motions cross, where the ring's motion may lead or lag alike; the least damping parts them
+    there, and what lay beyond the crossing is no longer on the branch that begins at rest, though it still exists.
+    """
+    system = problem.system.without(DAMPING, TIME_CONSTANT)
+    skew = 0.5 * (system.damping - system.damping.T)  # gyroscopic moments stay: they take no energy
+    if np.array_equal(system.scalars, problem.system.scalars) and np.array_equal(skew, system.damping):
+        return
+    still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
+    problem.watch()
+    with suppress(ConvergenceError):
+        for motion in at_whole_force(still, trail(still, q, tangent, nodes).crossings, ROUGH):
+            problem.watch()
+            with suppress(ConvergenceError):
+                yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
+
+
+def _at_speed(problem: Problem, ratio: float) -> Problem:
+    """At another speed of the force, the bodies' own speed and the force itself unchanged."""
+    return attrs.evolve(problem, speed=ratio * problem.speed, clock=problem.speed)
+
+
+def _at_load(problem: Problem, ratio: float) -> Problem:
+    load = problem.system.load.copy()
+    load[0] *= ratio
+    return attrs.evolve(problem, system=attrs.evolve(problem.system, load=load))
+
+
+def _followed_to(
+    at: Callable[[float], Problem], q: np.ndarray, tangent: np.ndarray, tolerance: float, ratio: float, through: bool
+) -> Refined:
+    """From the motion about an equilibrium at a ratio to that at 1; ``through`` folds, too.
+
+    Raises
+    ------
+    ConvergenceError
+        None leads there.
+    """
+    far, sense = at(ratio), float(np.sign(1.0 - ratio))
+    try:
+        begin = directly(far, q, tangent, ROUGH)
+    except ConvergenceError:
+        begin = grown(far, q, tangent, ROUGH)
+    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, ROUGH, MOST)
+    points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
+    for one, two in pairwise(islice(points, POINTS)):
+        if (two.parameter - 1.0) * sense >= 0.0:
+            return refine(solve(at(1.0), towards(one, two, 1.0), 1e-2 * tolerance), tolerance)
+        if (two.folded and not through) or (two.parameter - ratio) * sense < 0.0:
+            break
+    raise ConvergenceError("the branch turns back")
+
 
 #: Distance of a motion from its neighbour, over its size, up to which it is that one's continuation.
 _STAYS = 0.2

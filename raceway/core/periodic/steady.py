@@ -2,23 +2,98 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import attrs
 import numpy as np
 
-from raceway.core.periodic.direct import problem_of
-from raceway.core.periodic.sampling import record
-from raceway.core.periodic.search import Found, find
-from raceway.core.periodic.told import orbits, several, unstable
-from raceway.core.ring.address import by_address
+from raceway.core.periodic.collocation import Problem, Solved, solve
+from raceway.core.periodic.intervals import forces
+from raceway.core.periodic.refinement import displacements, record, refine, states
+from raceway.core.periodic.search import (
+    HIGHEST,
+    Found,
+    Recorded,
+    can_follow,
+    find,
+    found_by,
+    highest_order,
+    mesh_of,
+    problem_of,
+)
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
+from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.surrogate import compiled, surrogate
-from raceway.core.ring.system import System
-from raceway.core.stepping.record import Motion, Record, Schedule
-from raceway.errors import SceneError
+from raceway.core.ring.system import System, by_address, compiled, surrogate
+from raceway.core.signals import stiffness
+from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
+
+#: Samples of a turn for its 1x line: a path has no more intervals as a rule, and harmonics up to this order alias nothing.
+_TABLE_SAMPLES = 360
+
+_WAYS = {
+    "+1": "through +1: it drifts to another motion",
+    "-1": "through -1: the period doubles",
+    "pair": "as a pair: a second frequency comes in",
+}
+
+
+def orbits(found: Sequence[Found]) -> list[Tables]:
+    """``motion.orbits`` of result.json: every motion that was found, the one that is taken first."""
+    return [_orbit(one, one is found[0]) for one in found]
+
+
+def _orbit(found: Found, taken: bool) -> Tables:
+    """Z [N/m] and amplitude [m] of the 1x line of one motion, and what becomes of disturbances."""
+    fate = found.fate
+    z, amplitude = first_line(found.refined.solved)
+    return {
+        "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
+        "amplitude_m": amplitude,
+        "multiplier": fate.largest,
+        "verdict": fate.verdict,
+        "leaves_by": fate.leaves_by or None,
+        "stable": fate.verdict != "unstable",
+        "found": found.how,
+        "taken": taken,
+    }
+
+
+def first_line(solved: Solved) -> tuple[complex, float]:
+    """Z [N/m] along the force and the major semi-axis [m] of the radial motion's 1x line."""
+    problem = solved.problem
+    angles = 2.0 * np.pi * np.arange(_TABLE_SAMPLES) / _TABLE_SAMPLES
+    push = np.empty((_TABLE_SAMPLES, 5))
+    forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
+    turned = 2.0 / _TABLE_SAMPLES * np.exp(-1j * angles)
+    line, force = turned @ displacements(solved, angles), turned @ push
+    forward, backward = 0.5 * abs(line[1] - 1j * line[2]), 0.5 * abs(line[1] + 1j * line[2])
+    return complex(stiffness(force, line)), float(forward + backward)
+
+
+def several(told: list[Tables]) -> tuple[str, ...]:
+    """What a user should know where more than one motion exists that a ring can stay on."""
+    lasting = [one for one in told if one["stable"]]
+    if len(lasting) < 2:
+        return ()
+    values = " and ".join(_complex(one) for one in lasting)
+    return (
+        f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: which one a ring takes depends on "
+        "how it came here. The first is reported; motion.orbits lists all that were found, others may exist",
+    )
+
+
+def unstable(one: Tables) -> str:
+    """Growth of disturbances of a motion, in words."""
+    return f"disturbances grow {one['multiplier']:.4g} times a turn, {_WAYS[one['leaves_by']]}"
+
+
+def _complex(one: Tables) -> str:
+    z = one["dynamic_stiffness"]
+    return f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j"
+
 
 #: Imbalance of an equilibrium over the contact forces that the settled state is known by.
 _SETTLED = 1e-8
@@ -118,3 +193,86 @@ def warnings(found: Found, told: list[Tables], tolerance: float) -> tuple[str, .
     if found.refined.error > tolerance:
         out.append(f"the mesh cannot follow the motion closer than {found.refined.error:.1e} of its amplitude")
     return tuple(out)
+
+
+#: Samples of an orbit, as many as Fourier collocation has, and error of the search over the motion.
+_SAMPLES, _TOLERANCE = 65, 1e-7
+
+
+@attrs.frozen(eq=False)
+class Beginning:
+    """The motion that a transient starts on.
+
+    Attributes
+    ----------
+    orbit : periodic motion at equidistant times
+    told : every motion that was found, as ``raceway.core.periodic.steady`` tells them; empty where nothing could be said
+    warnings : what a user should know
+    """
+
+    orbit: Orbit
+    told: list[Tables] = attrs.field(factory=list)
+    warnings: tuple[str, ...] = ()
+
+
+def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None) -> Beginning | None:
+    """The motion to start on; None where it is not searched for, because each try would take seconds.
+
+    Parameters
+    ----------
+    system : with compiled forces, without friction, memory and orbiting balls;  q : (5,) static equilibrium
+    watch : called in the search, which what it raises ends
+
+    Raises
+    ------
+    ConvergenceError
+        No periodic motion found.
+    """
+    system = by_address(system)
+    tangent = system.evaluate(q).stiffness
+    problem = problem_of(system, 2.0 * np.pi / period, q)
+    if not can_follow(problem, q, tangent):
+        return None
+    if watch is not None:
+        problem = attrs.evolve(problem, watch=watch)
+    try:
+        found = find(problem, q, tangent, _TOLERANCE)
+    except ConvergenceError:
+        orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
+        try:
+            found = _collocated(problem, orbit, highest)
+        except ConvergenceError:
+            if highest <= HIGHEST:
+                raise
+            return Beginning(orbit)  # so slow that no mesh holds the vibrations that it has none of
+    told = orbits(found.all)
+    warnings = several(told)
+    if not told[0]["stable"]:
+        warnings += (
+            f"the motion starts on a steady orbit that is unstable, {unstable(told[0])}; no stable one was found, and a real "
+            "ring does not stay on it",
+        )
+    return Beginning(sampled(found, period), told, warnings)
+
+
+def _collocated(problem: Problem, orbit: Orbit, highest: float) -> Found:
+    """The motion of Fourier collocation, solved for once more on a mesh."""
+    known = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
+    path = known.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
+    return found_by(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
+
+
+def sampled(found: Found, period: float) -> Orbit:
+    """A motion at equidistant times of a turn."""
+    solved = found.refined.solved
+    problem, system = solved.problem, solved.problem.system
+    times = period / _SAMPLES * np.arange(_SAMPLES)
+    q, v, a, ball, rate = states(solved, problem.speed * times)
+    q, v = np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed)
+    f, K, C = np.empty((_SAMPLES, 5)), np.empty((_SAMPLES, 5, 5)), np.empty((_SAMPLES, 5, 5))
+    done = evaluate_many(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
+    if done < _SAMPLES:
+        raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
+    force = np.array([system.outer_force(t) for t in times])
+    iterations = found.refined.sweeps
+    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, C, found.refined.error, iterations)

@@ -4,18 +4,239 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import attrs
 import numpy as np
 
-from raceway.core.revolution.factor import condensed, elimination_order, factorised
-from raceway.core.revolution.harmonics import offset_weights, solved_harmonics
-from raceway.core.revolution.profile import Profile
-from raceway.core.revolution.sector import Pencil, Sector
+from raceway.core.hexahedron.operator import HexOperator
+from raceway.core.revolution.sections import Profile, ball_profile, dofs
 from raceway.errors import MeshError
+from raceway.storage.array_cache import kept
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import SuperLU
+
+
+class Sector:
+    """One sector of a body of N equal ones: element matrices and masses.
+
+    Attributes
+    ----------
+    even, cosine, sine : (M, 12, 12) float
+        Parts A, B, S of the quadrilaterals' matrices, component by component of their four nodes [N/m].
+    mass : (N,) float
+        Lumped masses of the nodes of one meridian [kg].
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        divisions: int,
+        young: float,
+        poisson: float,
+        density: float,
+        formulation: str,
+        hourglass: float,
+    ) -> None:
+        half, count = np.pi / divisions, len(profile.points)
+        r, x = profile.points.T
+        c, s = np.cos(half), np.sin(half)
+        points = np.concatenate([np.column_stack([x, c * r, -s * r]), np.column_stack([x, c * r, s * r])])
+        cells = np.concatenate([profile.quads, profile.quads + count], axis=1)
+        operator = HexOperator(points, cells, young, poisson, density, formulation, hourglass)
+        # Columns: r, theta, x of the nodes on either side in x, y, z.
+        sides = np.stack([_frame(-half)] * 4 + [_frame(half)] * 4)
+        elements = operator.element_stiffness(slice(0, len(cells))).reshape(-1, 8, 3, 8, 3)
+        k = np.einsum("iab,eiajc,jcd->eibjd", sides, elements, sides, optimize=True)
+        here, there = slice(0, 4), slice(4, 8)
+        near = k[:, here, :, here] + k[:, there, :, there]
+        far, back = k[:, here, :, there], np.einsum("eiajb->ejbia", k[:, here, :, there])
+        alike = np.ones((3, 3), dtype=bool)
+        alike[1, [0, 2]] = alike[[0, 2], 1] = False
+        # conj(w_a) w_b with w = 1 for r and x, i for theta: +i couples r and x to theta, -i theta to r and x.
+        sign = np.array([[0, -1, 0], [1, 0, 1], [0, -1, 0]], dtype=float)
+        size = (-1, 12, 12)
+        self.even = (near * alike[:, None, :]).reshape(size)
+        self.cosine = ((far + back) * alike[:, None, :]).reshape(size)
+        self.sine = ((far - back) * sign[:, None, :]).reshape(size)
+        masses = operator.element_masses
+        self.mass = np.bincount(profile.quads.ravel(), weights=(masses[:, :4] + masses[:, 4:]).ravel(), minlength=count)
+
+    def assembled(self, quads: np.ndarray, place: np.ndarray) -> Pencil:
+        """The sector's matrices with the degree of freedom 3 node + component in row ``place`` (-1: held)."""
+        from scipy.sparse import coo_matrix
+
+        number = place[(3 * quads[:, :, None] + np.arange(3)).reshape(len(quads), 12)]
+        rows = np.broadcast_to(number[:, :, None], self.even.shape).ravel()
+        columns = np.broadcast_to(number[:, None, :], self.even.shape).ravel()
+        kept = (rows >= 0) & (columns >= 0)
+        rows, columns, size = rows[kept], columns[kept], int(place.max()) + 1
+
+        def total(part: np.ndarray) -> csr_matrix:
+            return coo_matrix((part.ravel()[kept], (rows, columns)), shape=(size, size)).tocsc()
+
+        return Pencil(total(self.even), total(self.cosine).data, total(self.sine).data)
+
+
+class Pencil:
+    """K(n) = A + B cos(n a) + S sin(n a) in one sparsity pattern."""
+
+    def __init__(self, even: csr_matrix, cosine: np.ndarray, sine: np.ndarray) -> None:
+        self.even, self.cosine, self.sine = even, cosine, sine
+
+    def add_to_diagonal(self, values: np.ndarray) -> None:
+        """Add springs (m,) [N/m] to every harmonic."""
+        matrix = self.even
+        rows, columns = matrix.indices, np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+        matrix.data[rows == columns] += values
+
+    def at(self, angle: float) -> csr_matrix:
+        """(m, m) scipy.sparse.csc_matrix of the harmonic with n a = ``angle``."""
+        from scipy.sparse import csc_matrix
+
+        data = self.even.data + np.cos(angle) * self.cosine + np.sin(angle) * self.sine
+        return csc_matrix((data, self.even.indices, self.even.indptr), shape=self.even.shape)
+
+
+def _frame(angle: float) -> np.ndarray:
+    """(3, 3) Columns: directions r, theta, x at an azimuth from y towards z, in x, y, z."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[0.0, 0.0, 1.0], [c, -s, 0.0], [s, c, 0.0]])
+
+
+#: A symmetric elimination: pivots stay on the diagonal.
+_SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+
+
+def factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
+    """scipy.sparse.linalg.SuperLU of a symmetric csc_matrix; ``ordered``: its rows already stand in an order of little fill."""
+    from scipy.sparse.linalg import splu
+
+    return splu(matrix, permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A", **_SYMMETRIC)
+
+
+def elimination_order(matrix: csr_matrix) -> np.ndarray:
+    """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
+    return np.argsort(factorised(matrix, ordered=False).perm_c)
+
+
+def condensed(factor: SuperLU, kept: np.ndarray) -> np.ndarray:
+    """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
+
+    Notes
+    -----
+    With K = L D L^T the last block of L D L^T is the condensed stiffness, and its inverse that block of K^-1.  SuperLU may
+    renumber along the elimination tree, which changes no entry of the factors.
+    """
+    place = factor.perm_c[kept]
+    by_place = np.argsort(place)
+    lower, upper = factor.L, factor.U
+    row = np.full(lower.shape[0], -1)
+    row[place[by_place]] = np.arange(len(kept))
+    block = np.zeros((len(kept), len(kept)))
+    for column, at in enumerate(place[by_place]):
+        part = slice(lower.indptr[at], lower.indptr[at + 1])
+        rows = row[lower.indices[part]]
+        block[rows[rows >= 0], column] = lower.data[part][rows >= 0]
+    from scipy.linalg import solve_triangular
+
+    inverse = solve_triangular(
+        block, np.eye(len(kept)), lower=True, unit_diagonal=True, overwrite_b=True, check_finite=False
+    )
+    pivots = upper.diagonal()[place[by_place]]
+    found = inverse.T @ (inverse / pivots[:, None])
+    out = np.empty_like(found)
+    out[np.ix_(by_place, by_place)] = found
+    return out
+
+
+#: All harmonics up to DENSE are solved.  Beyond, each is at most RATIO times the one before, and at most N / 2 / STEPS above
+#: it: towards N / 2, where elements are half a wave long, C(n) varies with n / N and not with log n.
+DENSE, RATIO, STEPS = 12, 1.2, 24
+
+
+def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
+    """(s,) harmonics from 0 to N // 2 that are solved: "sampled", or "all"."""
+    last = divisions // 2
+    if harmonics == "all":
+        return np.arange(last + 1)
+    if harmonics != "sampled":
+        raise ValueError(f"harmonics {harmonics!r} is neither 'sampled' nor 'all'")
+    chosen = list(range(min(DENSE, last) + 1))
+    while chosen[-1] < last:
+        step = int(min((RATIO - 1.0) * chosen[-1], last / STEPS))
+        chosen.append(min(last, chosen[-1] + max(step, 1)))
+    return np.array(chosen)
+
+
+def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the solved harmonics at offsets in whole sectors.
+
+    Returns
+    -------
+    even, odd : (offsets, s)
+        Of the cosine and of the sine part.
+    """
+    n = np.arange(divisions // 2 + 1)
+    share = np.full(len(n), 2.0 / divisions)
+    share[0] = 1.0 / divisions
+    if divisions % 2 == 0:
+        share[-1] = 1.0 / divisions
+    # n k reduced by whole turns in integers, so that large products lose no digits.
+    phase = 2.0 * np.pi / divisions * (np.outer(offsets, n) % divisions)
+    even, odd = share * np.cos(phase), share * np.sin(phase)
+    if len(solved) == len(n):
+        return even, odd
+    spread = np.zeros((len(n), len(solved)))
+    spread[n[: DENSE + 1], n[: DENSE + 1]] = 1.0
+    spread[DENSE + 1 :, 2:] = _spline(solved[2:], n[DENSE + 1 :])
+    return even @ spread, odd @ spread
+
+
+def _spline(solved: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """(wanted, solved) Values of the interpolating spline for unit data."""
+    from scipy.interpolate import make_interp_spline
+
+    unit = make_interp_spline(np.log1p(solved / 8.0), np.eye(len(solved)), k=5)(np.log1p(wanted / 8.0))
+    return np.asarray(unit * (1.0 + solved)[None, :] / (1.0 + wanted)[:, None])
+
+
+def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """M by least squares over all pairs of angles.
+
+    Parameters
+    ----------
+    angles : (n,) contact angles [rad];  weight : (n,) of each
+    response : (n, n, k) displacement along the normal at one angle by a unit force along that at another [m/N]
+
+    Returns
+    -------
+    compliance : (k, 3) axial by axial, axial by radial and radial by radial force [m/N]
+    """
+    pairs = np.outer(weight, weight)
+    columns = _columns(angles[:, None], angles) * pairs
+    values = (response * pairs[:, :, None]).reshape(-1, response.shape[2])
+    return np.asarray(np.linalg.lstsq(columns.reshape(3, -1).T, values, rcond=None)[0].T)
+
+
+def own_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """M (3,) of a contact on itself, from response (n,) at the angle of the force itself; else as ``groove_compliance``."""
+    columns = _columns(angles, angles) * weight
+    return np.asarray(np.linalg.lstsq(columns.T, response * weight, rcond=None)[0])
+
+
+def along_normal(angles: np.ndarray, compliance: np.ndarray) -> np.ndarray:
+    """(n,) n.M n at contact angles [m/N], from M (3,)."""
+    return np.asarray(compliance @ _columns(angles, angles))
+
+
+def _columns(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(3, ...) what the three numbers of M are multiplied by in n.M n'."""
+    return np.stack([np.sin(one) * np.sin(other), np.sin(one + other), np.cos(one) * np.cos(other)])
+
 
 #: Hourglass stiffness of "one_point": in the flat elements of a patch ten times more spoils the answer by percents.
 HOURGLASS = 0.005
@@ -290,3 +511,130 @@ def _flat(dofs: np.ndarray) -> np.ndarray:
 
 def _field(r: np.ndarray, theta: np.ndarray, x: np.ndarray) -> np.ndarray:
     return np.column_stack([r, theta, x]).ravel()
+
+
+#: The code on which the numbers depend; whoever keeps something made of compliances adds its own.
+SOURCES = ("core/revolution", "core/hexahedron")
+
+
+def cached_compliance(
+    what: str,
+    profile: Profile,
+    divisions: int,
+    young: float,
+    poisson: float,
+    load_dofs: np.ndarray,
+    observed_dofs: np.ndarray,
+    offsets: np.ndarray | None = None,
+    formulation: str = "incompatible",
+    seat: str | float = "clamped",
+    harmonics: str = "sampled",
+    hourglass: float = HOURGLASS,
+) -> np.ndarray:
+    """``Revolution.compliance`` [m/N], read-only when it comes from the cache.
+
+    Parameters
+    ----------
+    what : what `raceway cache` says of it, for instance "inner ring of B7206C, 4 nodes per semi-axis"
+    """
+    inputs = {
+        "points": profile.points,
+        "quads": profile.quads,
+        "seat_nodes": profile.seat if seat != "free" else None,
+        "divisions": divisions,
+        "young": float(young),
+        "poisson": float(poisson),
+        "loads": np.asarray(load_dofs, dtype=np.int64),
+        "observed": np.asarray(observed_dofs, dtype=np.int64),
+        "offsets": None if offsets is None else np.asarray(offsets, dtype=np.int64),
+        "formulation": formulation,
+        "hourglass": hourglass if formulation == "one_point" else None,
+        "seat": seat,
+        "harmonics": harmonics,
+    }
+
+    def make() -> dict[str, np.ndarray]:
+        body = Revolution(profile, divisions, young, poisson, 1.0, formulation, seat, hourglass)
+        return {"compliance": body.compliance(load_dofs, observed_dofs, offsets, harmonics)}
+
+    return kept("compliance", what, inputs, SOURCES, make)["compliance"]
+
+
+#: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
+_DIGITS = 9
+
+
+@attrs.frozen(eq=False)
+class FreeBall:
+    """Compliance of a floating ball between points near its equator.
+
+    Attributes
+    ----------
+    divisions : sectors around the equator; one is an angle 2 pi / divisions of contact angle
+    latitudes : (n,) float, of the surface nodes [rad], towards the rolling direction
+    offsets : (o,) int, sectors from the loaded to the observed meridian
+    components : of the rows and columns, one after the other: 0 r (outward), 1 theta, 2 x (rolling direction)
+    dimensionless : (o, len(components) n, len(components) n) float, u E R / F
+    elements : hexahedra that the ball stands for
+    """
+
+    divisions: int
+    latitudes: np.ndarray
+    offsets: np.ndarray
+    components: tuple[int, ...]
+    dimensionless: np.ndarray
+    elements: int
+
+    def compliance(self, radius: float, young: float) -> np.ndarray:
+        """(o, observed, loads) of a ball of that radius [m] and modulus [Pa], in m/N."""
+        return np.asarray(self.dimensionless / (radius * young))
+
+
+def free_ball(
+    radius: float,
+    poisson: float,
+    divisions: int,
+    lateral_step: float,
+    half_width: float,
+    depth_step: float,
+    bulk: float,
+    offsets: np.ndarray,
+    components: tuple[int, ...] = (0, 2),
+    formulation: str = "incompatible",
+    harmonics: str = "all",
+) -> FreeBall:
+    """The floating ball of a mesh, from the cache where it is there.
+
+    Parameters
+    ----------
+    radius : float [m]
+    divisions : int
+        Sectors around the equator.
+    lateral_step, half_width : float
+        Distance of the nodes along the rolling direction, and up to where, as arc lengths [m].
+    depth_step, bulk : float
+        First layer below the surface, and elements far from it [m].
+    offsets : (o,) int
+        Sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away.
+    harmonics : str
+        A ball has but some hundred harmonics, and it is coarsest around its equator, where sampling is least exact.
+    """
+    sizes = [round(length / radius, _DIGITS) for length in (lateral_step, half_width, depth_step, bulk)]
+    profile: Profile = ball_profile(1.0, *sizes)
+    degrees = dofs(profile.race, components)
+    steps = np.asarray(offsets, dtype=np.int64)
+    elements = len(profile.quads) * divisions
+    found = cached_compliance(
+        f"ball, {divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}",
+        profile,
+        divisions,
+        1.0,
+        poisson,
+        degrees,
+        degrees,
+        steps,
+        formulation,
+        "free",
+        harmonics,
+    )
+    return FreeBall(divisions, profile.angles, steps, tuple(components), found, elements)

@@ -14,16 +14,16 @@ More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (198
 """
 
 import numpy as np
-from numba import float64, int64, void
+from numba import boolean, float64, int64, void
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
-from raceway.core.ring.dense import cholesky_solve, copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, STORED
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, stop
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
+    CUBE,
     LINEAR,
     MATRIX,
     SETTLE,
@@ -33,6 +33,86 @@ from raceway.core.signatures import (
     Contacts,
     Response,
 )
+
+
+@jit(boolean(MATRIX, VECTOR))
+def solve(matrix, rhs):
+    """Solve in place by Gaussian elimination with partial pivoting; ``rhs`` becomes the solution.
+
+    Returns False when a pivot vanishes or is not a number; both arrays are then undefined.
+    """
+    n = rhs.size
+    for column in range(n):
+        pivot, largest = column, abs(matrix[column, column])
+        for row in range(column + 1, n):
+            if abs(matrix[row, column]) > largest:
+                pivot, largest = row, abs(matrix[row, column])
+        if not largest > 0.0:
+            return False
+        if pivot != column:
+            for k in range(column, n):
+                matrix[column, k], matrix[pivot, k] = matrix[pivot, k], matrix[column, k]
+            rhs[column], rhs[pivot] = rhs[pivot], rhs[column]
+        inverse = 1.0 / matrix[column, column]
+        for row in range(column + 1, n):
+            factor = matrix[row, column] * inverse
+            if factor != 0.0:
+                for k in range(column + 1, n):
+                    matrix[row, k] -= factor * matrix[column, k]
+                rhs[row] -= factor * rhs[column]
+    for row in range(n - 1, -1, -1):
+        total = rhs[row]
+        for k in range(row + 1, n):
+            total -= matrix[row, k] * rhs[k]
+        rhs[row] = total / matrix[row, row]
+    return True
+
+
+@jit(boolean(MATRIX, VECTOR, int64))
+def cholesky_solve(matrix, rhs, n):
+    """Solve a symmetric positive definite system in place; False (undefined arrays) when it is not one."""
+    for j in range(n):
+        total = matrix[j, j]
+        for k in range(j):
+            total -= matrix[j, k] * matrix[j, k]
+        if not total > 0.0:
+            return False
+        root = total**0.5
+        matrix[j, j] = root
+        for i in range(j + 1, n):
+            total = matrix[i, j]
+            for k in range(j):
+                total -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] = total / root
+    for i in range(n):
+        total = rhs[i]
+        for k in range(i):
+            total -= matrix[i, k] * rhs[k]
+        rhs[i] = total / matrix[i, i]
+    for i in range(n - 1, -1, -1):
+        total = rhs[i]
+        for k in range(i + 1, n):
+            total -= matrix[k, i] * rhs[k]
+        rhs[i] = total / matrix[i, i]
+    return True
+
+
+@jit(void(MATRIX, MATRIX))
+def copy_matrix(source, target):
+    """target[:, :] = source."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            target[i, j] = source[i, j]
+
+
+@jit(void(CUBE, CUBE))
+def copy_cube(source, target):
+    """target[:, :, :] = source."""
+    for i in range(source.shape[0]):
+        for j in range(source.shape[1]):
+            for k in range(source.shape[2]):
+                target[i, j, k] = source[i, j, k]
+
 
 CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE, RUN_AWAY = range(5)
 #: Entries of ``report``.
@@ -256,3 +336,77 @@ def settle(forces, linear, tolerance, t, rest, response, report):
             copy_matrix(new.K, now.K)
             copy_matrix(ball_new, ball)
     return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED
+
+
+_ROOT_LIMIT = 100
+_HALVINGS = 30
+
+
+@jit(SETTLE, allocates=True)
+def find_root(forces, linear, tolerance, t, rest, response, report):
+    """Same arguments and result as ``raceway.core.ring.equilibrium.settle``; slips are taken from ``rest`` as committed."""
+    constants, q, ball, work = forces.constants, rest.q, rest.ball, response.work
+    if constants.scalars[CAGE] != 0.0:
+        constants = Constants(constants.scalars.copy(), constants.table.copy())
+        stop(t, constants.scalars, constants.table)
+    # No rates; the columns of slips hold the committed ones.
+    still, known = np.zeros(5), np.empty_like(ball)
+    keep_slips(constants.scalars, ball, known)
+    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
+    now = Response(response.f, response.K, np.empty((5, 5)), work)
+    J, r, step, weight = np.empty((5, 5)), np.empty(5), np.zeros(5), np.ones(5)
+    weight[3] = 1.0 / constants.scalars[TILT_ARM]
+    weight[4] = 1.0 / constants.scalars[TILT_ARM]
+    before, cuts = np.inf, 0
+    for iteration in range(_ROOT_LIMIT):
+        status = forces.system(t, q, still, Balls(ball, 0.0, known), contacts, constants, now)
+        norm, scale = np.inf, 0.0
+        if status == 0:
+            for i in range(work.shape[1]):
+                scale += abs(work[CONTACT_FORCE, i])
+            for i in range(5):
+                scale += abs(linear.load[i]) * weight[i]
+            norm = imbalance(linear, now.f, q, weight, r)
+        report[ITERATIONS], report[RESIDUAL] = iteration, norm / max(scale, 1e-300)
+        if norm <= tolerance * scale:
+            return CONVERGED
+        if not norm <= 1.5 * before:
+            cuts += 1
+            if cuts > _HALVINGS:
+                return BALLS_FAILED if status != 0 else NOT_CONVERGED
+            for i in range(5):
+                step[i] *= 0.5
+                q[i] -= step[i]
+            continue
+        before = norm
+        if not newton_step(linear, now.K, r, J, step):
+            return NOT_CONVERGED
+        for i in range(5):
+            q[i] += step[i]
+    return NOT_CONVERGED
+
+
+@jit(float64(LINEAR, VECTOR, VECTOR, VECTOR, VECTOR))
+def imbalance(linear, f, q, weight, r):
+    """r (5,): forces that are left [N, N m]; the largest, by weight (5,), or infinity."""
+    norm = 0.0
+    for i in range(5):
+        total = f[i] - linear.load[i]
+        for j in range(5):
+            total += linear.stiffness[i, j] * q[j]
+        r[i] = total * linear.free[i]
+        norm = max(norm, abs(r[i]) * weight[i]) if np.isfinite(r[i]) else np.inf
+    return norm
+
+
+@jit(boolean(LINEAR, MATRIX, VECTOR, MATRIX, VECTOR))
+def newton_step(linear, K, r, J, step):
+    """step (5,) that the tangent K (5, 5) of the contacts asks for; J (5, 5) is scratch.  False where it is singular."""
+    free = linear.free
+    for i in range(5):
+        step[i] = -r[i]
+        for j in range(5):
+            J[i, j] = (K[i, j] + linear.stiffness[i, j]) * free[i] * free[j]
+        if free[i] == 0.0:
+            J[i, i] = 1.0
+    return solve(J, step)

@@ -2,30 +2,61 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 import numpy as np
+from numba import types
+from numba.experimental.function_type import _get_wrapper_address
+from numba.extending import typeof_impl
 
+from raceway.core.record import check_state
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
-from raceway.core.ring.increment import AT_ONCE, Increment
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP
-from raceway.core.ring.kernels.columns import BLOCK, DISTANCE, FIRST, KNOTS, ROW, are_condensed, elastic_columns, work_rows
 from raceway.core.ring.kernels.layout import (
+    BLOCK,
     CAGE,
     CENTRIFUGAL,
+    COSINE,
+    DISTANCE,
+    FIRST,
     FRICTION,
     GYROSCOPIC,
+    KNOTS,
     OFFSET_INNER,
     OFFSET_OUTER,
     OWN_OFFSET_INNER,
     OWN_OFFSET_OUTER,
+    REST_RADIAL,
+    ROW,
+    SHIFT,
+    SIDE,
+    SINE,
+    are_condensed,
+    elastic_columns,
+    work_rows,
 )
-from raceway.core.ring.ring import COORDINATES, TOLERANCE, Evaluation, Growth, Ring
+from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
 from raceway.core.ring.viscous_stiffness import viscous_stiffness
-from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, Rest
-from raceway.core.stepping.states import check_state
+from raceway.core.signatures import (
+    FORCE_POINTER,
+    LAW_POINTER,
+    SYSTEM_POINTER,
+    Balls,
+    Constants,
+    Contacts,
+    Forces,
+    Linear,
+    Response,
+    Rest,
+)
 from raceway.errors import ConvergenceError
+
+if TYPE_CHECKING:
+    from raceway.core.ring.ring import Ring
+
 
 #: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
 _SLOW = 1e-4
@@ -269,7 +300,7 @@ class System(Ring):
         q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
         if self.conservative:
             return q_now, ball_now, total
-        from raceway.core.ring.root import find_root
+        from raceway.core.ring.equilibrium import find_root
 
         whole = self.without(FRICTION, CAGE)
         guess = np.zeros((self.ball_count, self.ball_columns))
@@ -319,3 +350,159 @@ class System(Ring):
             f"no static equilibrium found after {total} iterations: {what}, {left}",
             {"q": q_now, "ball": ball_now},
         )
+
+
+R = TypeVar("R", bound="Ring")  # ChangingSpeed is a Spin of it
+#: Half the interval over which a phase is differentiated [s]: its rounding then makes 1e-9 of the speed.
+_INTERVAL = 1e-5
+
+
+@attrs.frozen(eq=False)
+class ChangingSpeed:
+    """The speed w(t) of the inner ring, and the parts of a system that belong to a reference speed w_r.
+
+    Attributes
+    ----------
+    phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
+    reference : w_r that the system's constants were made for [rad/s]
+    growth : of the inner raceway [m]: at w_r by speed, by its fit at standstill, and what w_r takes from that fit, down to none
+    gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
+    shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
+        where rows stay
+
+    Notes
+    -----
+    Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
+    of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
+    """
+
+    phase: Callable[[np.ndarray], np.ndarray]
+    reference: float
+    growth: tuple[float, float, float]
+    gyroscopic: np.ndarray
+    shift: Callable[[np.ndarray], np.ndarray] | None = None
+    law: Callable[[Any, float], Any] | None = None
+
+    def speed(self, time: np.ndarray) -> np.ndarray:
+        """w (n,) [rad/s] at times (n,) [s] from zero on."""
+        before, after = np.maximum(time - _INTERVAL, 0.0), time + _INTERVAL
+        return np.asarray((self.phase(after) - self.phase(before)) / (after - before))
+
+    def grown(self, speed: np.ndarray) -> np.ndarray:
+        """Growth of the inner raceway (n,) [m] at speeds (n,) [rad/s] beyond that at w_r."""
+        (free, fit, lost), squared = self.growth, (speed / self.reference) ** 2
+        return np.asarray(free * (squared - 1.0) + np.maximum(fit - lost * squared, 0.0) - max(fit - lost, 0.0))
+
+    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
+        """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
+        return np.asarray(cage / self.reference * (self.phase(time) - self.phase(np.zeros(1))))
+
+    def at(self, system: R, t: float) -> R:
+        """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
+        from which balls at the speed of now would have come to their places of now."""
+        now = np.array([t])
+        speed = float(self.speed(now)[0])
+        found = self.constants(system, speed)
+        if system.scalars[CAGE] != 0.0:
+            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - found.scalars[CAGE] * t
+            c, s = np.cos(ahead), np.sin(ahead)
+            found.table[:, COSINE], found.table[:, SINE] = (
+                system.table[:, COSINE] * c - system.table[:, SINE] * s,
+                system.table[:, SINE] * c + system.table[:, COSINE] * s,
+            )
+        return found
+
+    def constants(self, system: R, speed: float) -> R:
+        """The system at a steady speed [rad/s]."""
+        ratio = speed / self.reference
+        if self.law is not None:
+            system = self.law(system, speed)
+        scalars, table = system.scalars.copy(), system.table.copy()
+        scalars[REST_RADIAL] += float(self.grown(np.array([speed]))[0])
+        scalars[GYROSCOPIC] *= ratio**2
+        scalars[CAGE] *= ratio
+        table[:, CENTRIFUGAL] *= ratio**2
+        if self.shift is not None:
+            second = table[:, SIDE] != table[0, SIDE]
+            apart = table[second, SHIFT] - table[second, SHIFT][0]
+            table[second, SHIFT] = self.shift(np.array([speed]))[0] + apart
+        damping = system.damping + (ratio - 1.0) * self.gyroscopic
+        return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)
+
+
+class Address(types.WrapperAddressProtocol):
+    """A kernel of one signature, its machine code looked up once; can be called from Python too."""
+
+    def __init__(self, kernel: Any, pointer: Any) -> None:
+        self.pointer = pointer
+        self._kernel, self._signature = kernel, pointer.signature
+        self._address = _get_wrapper_address(kernel, pointer.signature)
+
+    def __wrapper_address__(self) -> int:
+        return self._address
+
+    def signature(self) -> Any:
+        return self._signature
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._kernel(*arguments)
+
+
+@typeof_impl.register(Address)
+def _type_of(address: Address, _context: Any) -> Any:
+    """The type that the address was made for; numba would make an equal one anew in every call."""
+    return address.pointer
+
+
+@lru_cache(maxsize=64)
+def _address(kernel: Any, pointer: Any) -> Address:
+    return kernel if isinstance(kernel, Address) else Address(kernel, pointer)
+
+
+def plain(kernel: Any) -> Any:
+    """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
+    return kernel._kernel if isinstance(kernel, Address) else kernel
+
+
+def by_address(system: System) -> System:
+    """The same system with its kernels as addresses."""
+    kernel = _address(system.kernel, SYSTEM_POINTER)
+    # Identity of the two kernels tells whether forces have a potential.
+    base = kernel if system.conservative else _address(system.base_kernel, SYSTEM_POINTER)
+    return attrs.evolve(
+        system,
+        kernel=kernel,
+        base_kernel=base,
+        law=_address(system.law, LAW_POINTER),
+        force=_address(system.force, FORCE_POINTER),
+    )
+
+
+@attrs.define(eq=False, kw_only=True)
+class SteppedRing(Ring):
+    """A ring whose contact forces are not compiled.
+
+    Attributes
+    ----------
+    rigid : the same ring with rigid bodies and Hertz's contacts
+    """
+
+    rigid: System
+
+    @property
+    def surrogate(self) -> System:
+        """The rigid ring under this one's loads."""
+        return attrs.evolve(self.rigid, **{f.name: getattr(self, f.name) for f in attrs.fields(Ring)})
+
+
+def compiled(ring: Ring) -> System | None:
+    """The ring for compiled loops; None where it is stepped from Python."""
+    return ring if isinstance(ring, System) else None
+
+
+def surrogate(ring: Ring) -> System:
+    """A compiled ring near this one; itself where it is one."""
+    if isinstance(ring, System):
+        return ring
+    assert isinstance(ring, SteppedRing), "rings are compiled or stepped"
+    return ring.surrogate

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.core.mesh.ring_shape import ring_shape
+from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.errors import MeshError, SceneError
 from raceway.plugins.pictures import new_figure, save_figure
 from raceway.scene.bearing import Bearing

@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
-from raceway.core.linear.statics import solve_static
+from raceway.elastic.linear_statics import solve_static
 from raceway.framework.registry import Registry
 from raceway.studies.stability.study import Rows
 

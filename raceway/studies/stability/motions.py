@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.core.record import Record, Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.impact import impact_system
-from raceway.core.ring.orbit import at_time, steady_orbit
-from raceway.core.ring.start import from_orbit
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Record, Schedule
+from raceway.core.ring.orbit import at_time, from_orbit, steady_orbit
+from raceway.core.ring.system import surrogate
+from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
@@ -36,8 +35,8 @@ from raceway.studies.stability.systems import (
 )
 
 if TYPE_CHECKING:
+    from raceway.core.record import Motion
     from raceway.core.ring.system import System
-    from raceway.core.stepping.record import Motion
 
 
 _BLOCKS = 20

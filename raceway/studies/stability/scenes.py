@@ -17,11 +17,10 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import make_basis
-from raceway.core.elastic.start import at_rest
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.energy import drift
-from raceway.core.stepping.record import Motion, Schedule
+from raceway.core.record import Motion, Schedule, drift
+from raceway.core.ring.system import surrogate
+from raceway.core.time.schemes import integrate
+from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run

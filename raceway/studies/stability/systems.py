@@ -18,11 +18,10 @@ from raceway.bodies.model import Model, build_model
 from raceway.bodies.running import running_pairs
 from raceway.core.contact.damping import stored_energy
 from raceway.core.excitations.harmonic import no_force
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.energy import energy_balance
-from raceway.core.ring.start import at_rest
-from raceway.core.ring.surrogate import surrogate
-from raceway.core.ring.system import System
-from raceway.core.stepping.record import Motion, Record, Schedule
+from raceway.core.ring.orbit import at_rest
+from raceway.core.ring.system import System, surrogate
 from raceway.framework.duties import reach_of, renews
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle

@@ -21,9 +21,9 @@ import numpy as np
 
 from raceway.bodies.model import Model, build_model
 from raceway.core.contact.hertz import contact_modulus, ellipse
+from raceway.core.record import Motion, Schedule
 from raceway.core.ring.kernels.impact import impact_system
-from raceway.core.schemes.drivers import integrate
-from raceway.core.stepping.record import Motion, Schedule
+from raceway.core.time.schemes import integrate
 from raceway.framework.registry import Entry, Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
@@ -230,7 +230,7 @@ def measure(method: Integrator, impact: Impact, steps: int, phase: float) -> tup
     The peak is the largest sample, not interpolated.  Times of touch and release are interpolated linearly: the mass
     flies freely before the touch, and near the release its acceleration vanishes.
     """
-    from raceway.core.contact_laws.power import three_halves
+    from raceway.core.contact.laws import three_halves
 
     system = impact_system(impact.mass, three_halves, np.array([impact.factor]))
     dt, x = impact.contact_time / steps, np.eye(5)[0]

@@ -268,7 +268,7 @@ class Bearing:
 
     def lines(self, inner: bool, side: float, place: float) -> tuple[np.ndarray, np.ndarray]:
         """Race side and seat side (k, 2) of a ring's section over the same x, ascending [mm]."""
-        from raceway.core.mesh.ring_shape import ring_shape
+        from raceway.core.mesh.ring_mesh import ring_shape
 
         shape = ring_shape(self.shape, inner)
         outline = shape.outline

@@ -133,7 +133,7 @@ def mesh_screen(found: ReadTables) -> RenderableType:
 
     Parameters
     ----------
-    found : ``raceway.core.mesh.summary.summary`` with title, mesher, seconds and files
+    found : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds and files
     """
     count = len(found["bodies"])
     size, jacobian = found["element_size_m"], found["scaled_jacobian"]
@@ -215,7 +215,7 @@ def mesh(
         except MemoryError:
             raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
         seconds = time.perf_counter() - start
-        from raceway.core.mesh.summary import summary
+        from raceway.core.mesh.quality import summary
 
         progress("judging the cells", 0, 0)
         content: Tables = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}

@@ -11,9 +11,9 @@ import attrs
 import numpy as np
 
 from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
-from raceway.core.contact.subsurface import axis_shear, axis_stresses
-from raceway.core.elastic.contacts.stress_profile import cells_near
-from raceway.core.hexahedron.recovery import centre_stress, largest_shear, von_mises
+from raceway.core.contact.hertz import axis_shear, axis_stresses
+from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
+from raceway.elastic.stress import cells_near
 from raceway.pipeline.settle import pressures
 from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole

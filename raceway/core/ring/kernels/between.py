@@ -41,31 +41,37 @@ from raceway.core.ring.kernels import (
     RADIAL_BY_SHIFT,
     STORED,
 )
-from raceway.core.ring.kernels.columns import BALL_CROSS, BLOCK, KNOTS, ROW, VALUES
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, TILT_ARM
-from raceway.core.ring.kernels.planar import Pair
-from raceway.core.ring.kernels.section import seat_of, to_ring
-from raceway.core.ring.kernels.structural_rows import (
+from raceway.core.ring.kernels.layout import (
     APPROACH_BY_CENTRE,
+    BALL_CROSS,
     BALL_TANGENT,
+    BLOCK,
     BY_Q,
     BY_V,
     CARRIED,
+    CENTRIFUGAL,
     CENTRIFUGAL_MOVED,
     CURVE,
     DIRECTION,
     INVERSE,
     INVERSE_2,
+    KNOTS,
     LOCAL,
     MATRIX_ROWS,
     MOVED_REST,
     MOVED_STEP,
     OWN,
     RING,
+    ROW,
     SLOPE,
     STEP,
+    TILT_ARM,
     TURNING,
+    VALUES,
     WEIGHT,
+    Pair,
+    seat_of,
+    to_ring,
 )
 from raceway.core.signatures import MATRIX, VECTOR
 

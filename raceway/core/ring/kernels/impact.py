@@ -16,8 +16,7 @@ import numpy as np
 from raceway.core.excitations.harmonic import no_force
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
-from raceway.core.ring.kernels.layout import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM
-from raceway.core.ring.kernels.normal import normal_forces
+from raceway.core.ring.kernels.layout import COLUMNS, DAMPING, OFFSET_INNER, REST_AXIAL, SCALARS, TILT_ARM, normal_forces
 from raceway.core.ring.system import System
 from raceway.core.signatures import SYSTEM
 

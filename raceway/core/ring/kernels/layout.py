@@ -9,12 +9,26 @@ e = (e_rest + shift + side (x + R u), e_rest + rho - X u).  What ``scalars`` say
 differs has the difference in its own columns of ``table``.
 """
 
-import numpy as np
-from numba import float64, int64, types, void
+from typing import NamedTuple
 
+import numpy as np
+from numba import boolean, float64, int64, types, void
+
+from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import MOVED, MOVED_RATE
-from raceway.core.signatures import CONSTANTS, MATRIX, VECTOR
+from raceway.core.ring.kernels import (
+    AHEAD,
+    CONTACT_FORCE,
+    FORCE_BY_GAP,
+    FORCE_BY_RATE,
+    GAP,
+    GAP_RATE,
+    KERNEL_ROWS,
+    MOVED,
+    MOVED_RATE,
+    WORK_ROWS,
+)
+from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
 #: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
@@ -156,3 +170,254 @@ def ring_tangent(table, arm, work, direction, row, K):
     K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = rx_s, rr_cs, rr_ss, ru_ss, -ru_cs
     K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = ux_s, ur_cs, ur_ss, uu_ss, -uu_cs
     K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = -ux_c, -ur_cc, -ur_cs, -uu_cs, uu_cc
+
+
+_FIRST = WORK_ROWS + KERNEL_ROWS + 2
+#: Of ``structural``: azimuths, e and its velocity, derivative of the angle by e, compliances with slopes and curvatures, steps
+#: of the structural approaches, inverses, and the size of what is left.
+DIRECTION, CENTRE, SPEED, TURNING, OWN, SLOPE, CURVE, STEP, LAST, INVERSE, INVERSE_2, NORM = range(_FIRST, _FIRST + 12)
+# Five rows each: forces by q and by v, the ring's force by w or d, by Q at fixed w, and weights of C Q in it.
+BY_Q = NORM + 1
+BY_V, RING, TURN, WEIGHT = BY_Q + 5, BY_Q + 10, BY_Q + 15, BY_Q + 20
+#: Of ``between``: force of each ball on the ring, displacement by centrifugal forces, what is left of the displacements and
+#: their steps, tangents of each ball (two rows), its approaches by e (two rows), and one row of balls in its own order.
+CARRIED, CENTRIFUGAL_MOVED, MOVED_REST, MOVED_STEP, MOVED_LAST, BALL_TANGENT = range(WEIGHT + 5, WEIGHT + 11)
+APPROACH_BY_CENTRE = BALL_TANGENT + 2
+LOCAL = APPROACH_BY_CENTRE + 2
+#: Rows of all that, less a matrix of 2 Z rows behind them.
+ELASTIC_ROWS = LOCAL + 1 - WORK_ROWS
+MATRIX_ROWS = WORK_ROWS + ELASTIC_ROWS
+
+
+class Pair(NamedTuple):
+    """A vector or a row: axial, radial."""
+
+    axial: float
+    radial: float
+
+
+class Tensor(NamedTuple):
+    """A 2x2 matrix: first index the row."""
+
+    aa: float
+    ar: float
+    ra: float
+    rr: float
+
+
+PAIR = types.NamedUniTuple(float64, 2, Pair)
+TENSOR = types.NamedUniTuple(float64, 4, Tensor)
+NOTHING = Pair(0.0, 0.0)
+
+
+@jit(TENSOR(TENSOR, TENSOR), inline=True)
+def times_adjugate(a, j):
+    """A adj J."""
+    return Tensor(a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar)
+
+
+@jit(PAIR(PAIR, TENSOR), inline=True)
+def row_times_adjugate(n, j):
+    """n^T adj J."""
+    return Pair(n.axial * j.rr - n.radial * j.ra, n.radial * j.aa - n.axial * j.ar)
+
+
+@jit(TENSOR(TENSOR, TENSOR, TENSOR), inline=True)
+def less(e, t, x):
+    """E - T X."""
+    return Tensor(
+        e.aa - t.aa * x.aa - t.ar * x.ra,
+        e.ar - t.aa * x.ar - t.ar * x.rr,
+        e.ra - t.ra * x.aa - t.rr * x.ra,
+        e.rr - t.ra * x.ar - t.rr * x.rr,
+    )
+
+
+@jit(PAIR(PAIR, TENSOR, PAIR), inline=True)
+def less_column(e, t, x):
+    """e - T x."""
+    return Pair(e.axial - t.aa * x.axial - t.ar * x.radial, e.radial - t.ra * x.axial - t.rr * x.radial)
+
+
+@jit(PAIR(PAIR, PAIR, TENSOR), inline=True)
+def less_row(e, g, x):
+    """e - g^T X."""
+    return Pair(e.axial - g.axial * x.aa - g.radial * x.ra, e.radial - g.axial * x.ar - g.radial * x.rr)
+
+
+@jit(void(CONTACTS, VECTOR, MATRIX), inline=True)
+def normal_forces(contacts, scalars, work):
+    """Rows CONTACT_FORCE, FORCE_BY_GAP and FORCE_BY_RATE of ``work`` from rows GAP and GAP_RATE."""
+    law, params, old, new, dt = contacts
+    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    tau = scalars[TIME_CONSTANT]
+    if tau == 0.0:
+        law(gap, rate, params, old, new, dt, force, by_gap, by_rate)
+        add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
+        return
+    ahead = work[AHEAD]
+    for i in range(gap.size):
+        viscous = tau * rate[i]
+        ahead[i] = gap[i] + max(viscous, gap[i]) if gap[i] < 0.0 else gap[i]
+    law(ahead, rate, params, old, new, dt, force, by_gap, by_rate)
+    for i in range(gap.size):
+        if tau * rate[i] > gap[i]:
+            by_rate[i] += tau * by_gap[i]
+        else:
+            by_gap[i] *= 2.0
+
+
+#: Entries of ``scalars`` beyond the rigid ones: compliance of a ball by the load on its other race [m/N]; 1 where balls act
+#: on each other through the rings; balls of a row; first angle [rad] and distance of the table's angles, their number n;
+#: then the table: inner compliance (n,), its slopes by angle over that distance (n,), and both again for the outer race.
+#: Where balls act on each other, ``BLOCK`` numbers follow for each distance of two balls, 0 to Z - 1, see ``between``.
+BALL_CROSS, COUPLED, ROW, FIRST, DISTANCE, KNOTS, VALUES = range(SCALARS, SCALARS + 7)
+BLOCK = 5
+#: Column of ``ball`` that the slips of friction begin at, inner and outer contact [m].
+SLIPS = 2
+
+
+@jit(boolean(VECTOR))
+def are_condensed(scalars):
+    """Whether these constants belong to condensed bodies."""
+    return scalars.size > SCALARS
+
+
+@jit(int64(VECTOR))
+def elastic_columns(scalars):
+    """Columns of ``ball`` for the elasticity of the bodies, the last ones."""
+    if not are_condensed(scalars):
+        return 0
+    return 4 if scalars[COUPLED] != 0.0 else 2
+
+
+@jit(int64(VECTOR, MATRIX))
+def work_rows(scalars, table):
+    """Rows of ``work`` that a system needs."""
+    if not are_condensed(scalars):
+        return WORK_ROWS
+    return WORK_ROWS + ELASTIC_ROWS + 2 * table.shape[0]
+
+
+@jit(int64(VECTOR, MATRIX))
+def slips_end(scalars, ball):
+    """The column after the slips, which begin at ``SLIPS``."""
+    return ball.shape[1] - elastic_columns(scalars)
+
+
+@jit(void(VECTOR, MATRIX, MATRIX))
+def keep_slips(scalars, ball, known):
+    """known, like ball: zeros, and the committed slips: what is known of the rates of balls at rest."""
+    end = slips_end(scalars, ball)
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            known[k, c] = ball[k, c] if 2 <= c < end else 0.0
+
+
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+def next_balls(scalars, dt, ball, before, known, trial):
+    """First guess of the balls after a step, and the part of their rates that is known by then.
+
+    Notes
+    -----
+    Rates follow the second-order backward difference (1.5 new - 2 now + 0.5 before) / dt.
+    """
+    end, inverse = slips_end(scalars, ball), 1.0 / dt
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            now, last = ball[k, c], before[k, c]
+            committed = SLIPS <= c < end
+            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if committed else 2.0 * now - last
+
+
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+def accept_balls(scalars, dt, ball, before, known, trial):
+    """Commit ``trial``, then what ``next_balls`` gives for the step after it: in one pass."""
+    end, inverse = slips_end(scalars, ball), 1.0 / dt
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            now, last = trial[k, c], ball[k, c]
+            committed = SLIPS <= c < end
+            before[k, c], ball[k, c] = last, now
+            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if committed else 2.0 * now - last
+
+
+class Seat(NamedTuple):
+    """How a ball's meridian plane meets the ring: azimuth, radius of the tilts' lever [m], side (+1, -1), lever X [m]."""
+
+    cosine: float
+    sine: float
+    arm: float
+    side: float
+    lever: float
+
+
+SEAT = types.NamedUniTuple(float64, 5, Seat)
+
+
+@jit(SEAT(int64, float64, MATRIX, MATRIX, int64), inline=True)
+def seat_of(k, arm, table, work, direction):
+    """The seat of ball k, whose azimuth is in the row ``direction`` of ``work``."""
+    return Seat(work[direction, k], work[direction, table.shape[0] + k], arm, table[k, SIDE], table[k, LEVER])
+
+
+@jit(void(SEAT, PAIR, TENSOR, TENSOR, VECTOR, MATRIX, MATRIX))
+def add_ball(seat, force, stiffness, damping, f, K, C):
+    """Add one ball's force [N] and its derivatives by e and by its velocity to the ring's f (5,), K and C (5, 5).
+
+    Notes
+    -----
+    e = J q with the rows J_a = side (1, 0, 0, R s, -R c) and J_r = (0, c, s, -X s, X c).
+    """
+    c, s, arm, side, lever = seat
+    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
+    jr = (0.0, c, s, -lever * s, lever * c)
+    for i in range(5):
+        f[i] += ja[i] * force.axial + jr[i] * force.radial
+    if K.size == 0:
+        return
+    for j in range(5):
+        ga, gr = stiffness.aa * ja[j] + stiffness.ar * jr[j], stiffness.ra * ja[j] + stiffness.rr * jr[j]
+        for i in range(5):
+            K[i, j] += ja[i] * ga + jr[i] * gr
+    if damping.aa != 0.0 or damping.rr != 0.0:
+        for j in range(5):
+            ga, gr = damping.aa * ja[j] + damping.ar * jr[j], damping.ra * ja[j] + damping.rr * jr[j]
+            for i in range(5):
+                C[i, j] += ja[i] * ga + jr[i] * gr
+
+
+@jit(void(SEAT, PAIR, float64, MATRIX, int64, int64))
+def to_ring(seat, force, turn, work, row, column):
+    """J^T force and the turn of the ball's section, into a column of the five rows of ``work`` from ``row`` on."""
+    axial = force.axial * seat.side
+    couple = seat.arm * axial - seat.lever * force.radial + seat.side * turn
+    work[row, column] = axial
+    work[row + 1, column], work[row + 2, column] = force.radial * seat.cosine, force.radial * seat.sine
+    work[row + 3, column], work[row + 4, column] = couple * seat.sine, -couple * seat.cosine
+
+
+@jit(void(SEAT, float64, PAIR, PAIR, float64, VECTOR, MATRIX))
+def add_couple(seat, couple, force_by_turn, by_centre, by_turn, f, K):
+    """Add the couple [N m] that tangential forces put on a ball's section of the ring, with its derivatives.
+
+    Parameters
+    ----------
+    force_by_turn : derivative of the ball's force by the turn of its section, side (tilt_y s - tilt_z c)
+    by_centre, by_turn : of the couple by e and by that turn
+    """
+    c, s, arm, side, lever = seat
+    turn = (0.0, 0.0, 0.0, side * s, -side * c)
+    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
+    jr = (0.0, c, s, -lever * s, lever * c)
+    for i in range(5):
+        f[i] += turn[i] * couple
+    if K.size == 0:
+        return
+    for j in range(5):
+        moment = by_centre.axial * ja[j] + by_centre.radial * jr[j] + by_turn * turn[j]
+        for i in range(5):
+            K[i, j] += turn[i] * moment + (ja[i] * force_by_turn.axial + jr[i] * force_by_turn.radial) * turn[j]

@@ -40,11 +40,11 @@ from raceway.core.ring.kernels.layout import (
     OWN_OFFSET_OUTER,
     TILT_ARM,
     move_centres,
+    normal_forces,
     place,
     ring_force,
     ring_tangent,
 )
-from raceway.core.ring.kernels.normal import normal_forces
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 60

@@ -17,10 +17,12 @@ References
 The separation into near and far field: docs/physics.md, condensed bodies.
 """
 
+from functools import cache
+
 import numpy as np
 from numba import boolean, float64, int64, types, void
 
-from raceway.core.jit import jit
+from raceway.core.jit import Kernel, jit
 from raceway.core.ring.kernels import (
     AXIAL_BY_SHIFT,
     BY_AXIAL,
@@ -44,33 +46,45 @@ from raceway.core.ring.kernels import (
     STORED,
 )
 from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
-from raceway.core.ring.kernels.columns import BALL_CROSS, COUPLED, DISTANCE, FIRST, KNOTS, VALUES, slips_end
-from raceway.core.ring.kernels.layout import LEVER, SIDE, TILT_ARM, place
-from raceway.core.ring.kernels.planar import Pair, Tensor
-from raceway.core.ring.kernels.section import add_ball, seat_of, to_ring
-from raceway.core.ring.kernels.structural_rows import (
+from raceway.core.ring.kernels.layout import (
+    BALL_CROSS,
     BY_Q,
     BY_V,
     CENTRE,
+    COUPLED,
     CURVE,
     DIRECTION,
+    DISTANCE,
+    FIRST,
     INVERSE,
     INVERSE_2,
+    KNOTS,
     LAST,
+    LEVER,
     MOVED_LAST,
     MOVED_REST,
     MOVED_STEP,
     NORM,
     OWN,
     RING,
+    SIDE,
     SLOPE,
     SPEED,
     STEP,
+    TILT_ARM,
     TURN,
     TURNING,
+    VALUES,
     WEIGHT,
+    Pair,
+    Tensor,
+    add_ball,
+    place,
+    seat_of,
+    slips_end,
+    to_ring,
 )
-from raceway.core.signatures import CONSTANTS, MATRIX, VECTOR
+from raceway.core.signatures import CONSTANTS, MATRIX, SYSTEM, VECTOR
 
 #: Iterations until it is given up, and answers of ``correct``.
 ITERATIONS = 60
@@ -365,3 +379,30 @@ def tangents(scalars, table, ball_gain, work, f, K, C):
                 C[i, j] += total
     if scalars[COUPLED] != 0.0:
         reduce_tangents(scalars, table, ball_gain, work, K, C)
+
+
+@cache
+def condensed(rigid: Kernel) -> Kernel:
+    """The kernel of elastic rings and balls whose contacts, inertia and friction are those of a rigid kernel."""
+
+    @jit(SYSTEM)
+    def elastic(t, q, v, balls, contacts, constants, response):
+        # See ``raceway.core.ring.kernels``; the last columns of ball belong to the elasticity of the bodies [m].
+        ball, ball_gain, ball_known = balls
+        scalars, table = constants
+        f, K, C, work = response
+        begin(t, q, v, constants, work)
+        for _ in range(ITERATIONS):
+            shift(scalars, ball, ball_gain, ball_known, work)
+            status = rigid(t, q, v, balls, contacts, constants, response)
+            if status != 0:
+                return status
+            answer = correct(scalars, table, ball, ball_gain, work, f)
+            if answer == SETTLED:
+                tangents(scalars, table, ball_gain, work, f, K, C)
+                return 0
+            if answer != GOES_ON:
+                return 1
+        return 1
+
+    return elastic

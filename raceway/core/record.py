@@ -1,0 +1,499 @@
+"""What a time integration starts from, is asked for, and leaves behind."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
+
+import attrs
+import numpy as np
+from numba import boolean, float64, int64, void
+
+from raceway.core.jit import jit
+from raceway.core.signatures import VECTOR
+from raceway.core.threads import ThreadPool
+from raceway.errors import ConvergenceError, PluginError, RacewayError, StabilityError
+from raceway.storage.tables import Tables
+
+#: Called between chunks with the steps done and the steps in all.
+OnChunk = Callable[[int, int], None]
+
+
+@attrs.frozen(eq=False)
+class Motion:
+    """State of the ring and the balls at one time.
+
+    Attributes
+    ----------
+    q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
+    ball, ball_before : (Z, 2 or 4) positions (and slips) of the balls now and one step earlier [m]
+    memory : (2 Z, m) of the contact law; None for a law that remembers nothing yet
+    rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
+        goes on from another's final motion needs it
+    whole : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
+    near : the ``solution`` in the record of a similar motion by the same method, for methods that can start from one
+    stay : whether to stay on the motion of ``near`` where several may exist
+    """
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    ball: np.ndarray
+    ball_before: np.ndarray
+    rest: np.ndarray | None = None
+    memory: np.ndarray | None = None
+    whole: Mapping[str, np.ndarray] | None = None
+    near: Any = None
+    stay: bool = False
+
+
+@attrs.frozen(eq=False)
+class Schedule:
+    """Times of an integration: ``steps`` steps of ``dt`` [s], every ``stride``-th recorded, from step ``first`` on.
+
+    Attributes
+    ----------
+    steps_per_turn : int
+    turns : int
+    ramp : float, the excitation grows smoothly over this time [s]
+    first : steps that were taken before: a run that goes on from another's final motion keeps its clock
+    """
+
+    dt: float
+    steps_per_turn: int
+    turns: int
+    stride: int = 1
+    ramp: float = 0.0
+    first: int = 0
+
+    @property
+    def steps(self) -> int:
+        return self.steps_per_turn * self.turns
+
+
+@attrs.frozen(eq=False)
+class Record:
+    """Sampled motion of the inner ring's reference point, with forces.
+
+    Attributes
+    ----------
+    time : (n,) [s]
+    displacement, velocity, force : (n, 5) motion and outer (excitation) force
+    gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2 or 4) positions and slips [m]
+    final : Motion
+    counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
+    energies : name -> (n,) [J], of systems that tell them
+    solution : what a similar motion by the same method may start from
+    """
+
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    ball: np.ndarray
+    final: Motion
+    schedule: Schedule
+    counts: Tables
+    energies: dict[str, np.ndarray] = attrs.field(factory=dict)
+    solution: Any = None
+
+    def last(self, turns: int) -> Record:
+        """The part that belongs to the last turns."""
+        first = self.schedule.first + self.schedule.steps - turns * self.schedule.steps_per_turn
+        keep = self.time > (first + 0.5 * self.schedule.stride) * self.schedule.dt
+        names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
+        energies = {name: values[keep] for name, values in self.energies.items()}
+        return attrs.evolve(self, energies=energies, **{name: getattr(self, name)[keep] for name in names})
+
+
+@jit(void(int64, int64, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR), releases=True)
+def predict(first, last, dt, u, v, a, half, moved, guess):  # type: ignore[no-untyped-def]
+    """Entries ``first`` to ``last - 1`` of the velocity at half a step, the displacement and the guessed velocity at its end.
+
+    Parameters
+    ----------
+    u, v, a : (size,) of the step before;  half, moved, guess : (size,) out
+    """
+    for i in range(first, last):
+        half[i] = v[i] + 0.5 * dt * a[i]
+        moved[i] = u[i] + dt * half[i]
+        guess[i] = v[i] + dt * a[i]
+
+
+@jit(boolean(int64, int64, float64, VECTOR, VECTOR), releases=True)
+def finish(first, last, dt, a, v):  # type: ignore[no-untyped-def]
+    """The velocity v (size,), at first that at half the step, at its end; whether all accelerations a (size,) are finite."""
+    bad = 0
+    for i in range(first, last):
+        v[i] = v[i] + 0.5 * dt * a[i]
+        # Less itself it is zero, or no number.
+        bad += 0 if a[i] - a[i] == 0.0 else 1
+    return bad == 0
+
+
+@jit(float64(int64, int64, VECTOR, VECTOR, VECTOR, VECTOR), releases=True)
+def work(first, last, outer_before, outer, u_before, u):  # type: ignore[no-untyped-def]
+    """Work of the mean outer force over a step, of the entries ``first`` to ``last - 1`` [J]: four sums that do not wait."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    fours = first + (last - first) // 4 * 4
+    for i in range(first, fours, 4):
+        a += (outer_before[i] + outer[i]) * (u[i] - u_before[i])
+        b += (outer_before[i + 1] + outer[i + 1]) * (u[i + 1] - u_before[i + 1])
+        c += (outer_before[i + 2] + outer[i + 2]) * (u[i + 2] - u_before[i + 2])
+        d += (outer_before[i + 3] + outer[i + 3]) * (u[i + 3] - u_before[i + 3])
+    for i in range(fours, last):
+        a += (outer_before[i] + outer[i]) * (u[i] - u_before[i])
+    return 0.5 * ((a + b) + (c + d))
+
+
+@jit(boolean(int64, int64, float64, VECTOR), releases=True)
+def bounded(first, last, bound, u):  # type: ignore[no-untyped-def]
+    """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
+    beyond = 0
+    for i in range(first, last):
+        beyond += 0 if abs(u[i]) < bound else 1
+    return beyond == 0
+
+
+@jit(void(int64, int64, VECTOR, VECTOR, VECTOR), releases=True)
+def divide(first, last, outer, inner, masses):  # type: ignore[no-untyped-def]
+    """Accelerations of the entries ``first`` to ``last - 1``, in place of the inner forces: (outer - inner) / masses."""
+    for i in range(first, last):
+        inner[i] = (outer[i] - inner[i]) / masses[i]
+
+
+#: What is stored in the system, and what has left it.
+STORED, LOST = ("elastic", "kinetic", "contact"), ("friction", "damping")
+
+
+def drift(energies: Mapping[str, np.ndarray]) -> float | None:
+    """Largest change of stored + lost - external work, over the largest of these energies' ranges; None without energies.
+
+    Notes
+    -----
+    "external" is the work of loads and excitation, summed over all steps with the mean force of each step.
+    """
+    if "external" not in energies:
+        return None
+    kept = [energies[name] for name in (*STORED, *LOST) if name in energies]
+    total = np.sum(kept, axis=0) - energies["external"]
+    size = max([float(np.ptp(one)) for one in (*kept, energies["external"])] + [1e-300])
+    return float(np.abs(total - total[0]).max() / size)
+
+
+def largest_share(energies: Mapping[str, np.ndarray], part: str, whole: str) -> float:
+    """Largest part over the largest whole, for instance "hourglass" of "elastic"."""
+    return float(energies[part].max(initial=0.0) / max(energies[whole].max(initial=0.0), 1e-300))
+
+
+def friction_lost(energies: Mapping[str, np.ndarray]) -> float:
+    """What friction took between the first sample and the last [J]."""
+    lost = energies["friction"]
+    return float(lost[-1] - lost[0]) if len(lost) else 0.0
+
+
+@attrs.define(eq=False)
+class State:
+    """Unknowns of a system at one time.
+
+    Attributes
+    ----------
+    u, v, a : (size,) displacement, velocity, acceleration (of generalised-alpha: its own a)
+    rest : (size,) internal less outer forces; of generalised-alpha it is not -M a; None where it is
+    """
+
+    u: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    rest: np.ndarray | None = None
+
+    def copy(self) -> State:
+        return State(self.u.copy(), self.v.copy(), self.a.copy(), None if self.rest is None else self.rest.copy())
+
+
+@attrs.frozen(eq=False)
+class Observation:
+    """What a ``Record`` keeps of one step.
+
+    Attributes
+    ----------
+    displacement, velocity : (5,) of the ring's reference point
+    gap, contact_force : (2 Z,) inner races first [m, N]
+    ball : (Z, 2 or 4) positions (and slips) of the balls [m]
+    energies : name -> [J]; the same names at every step, none where the system does not tell.  "elastic", "kinetic" and
+        "contact" are stored (sticking friction's springs in "contact"), "friction" and "damping" lost since the beginning,
+        "hourglass" is a part of "elastic"; the recorder adds "external", the work of all outer forces
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    ball: np.ndarray
+    energies: dict[str, float] = attrs.field(factory=dict)
+
+
+class SteppedSystem(Protocol):
+    """M a + C v + f(u, v) = load + excitation(t), with C constant and f anything.
+
+    1. ``size``: unknowns, vectors are (size,); ``ball_count``: Z; ``conservative``: forces have a potential; ``smooth``: Newton's
+       method begins a step on the parabola through the displacements before, not at constant acceleration: for many modes that
+       steps do not resolve, whose accelerations alternate.  Entries of coordinates that are held may be anything in forces; ``solve``
+       and ``accelerations`` give zero there.
+    2. ``begin(motion)``: the state that a motion stands for, with ``rest``, and all memory set to it; also for a motion that another run
+       of the same system ended with, of which nothing may be lost.  ``motion(state)``: the way back, after ``commit``.
+    3. ``outer_force(t)``: the excitation (5,) on the ring; ``external(t, scale)``: (size,) constant load + scale * excitation.
+    4. ``internal(t, dt, u, v)``: C v + f(u, v) after a step dt from the committed memory; keeps its linearisation and its
+       trial memory (contact, friction, balls) until the next call.  dt = 0: nothing moves, no rates and no inertia of
+       what is condensed, v is zero.
+    5. ``solve(c_k, c_c, c_m, right)``: (c_k K + c_c C + c_m M)^-1 right, K and C those of the last ``internal``.
+    6. ``mass_times(a)``; ``accelerations(outer, inner, a, c)``: (M + c C)^-1 (outer - inner + c C a) with the constant C;
+       the array ``inner`` may become the answer.
+    7. ``measure(r)``: size of a force vector [N] in a norm of the system's own, held coordinates left out.
+    8. ``contacts()``: greatest penetration [m], greatest contact force [N] and the sum of all [N], at the last ``internal``.
+    9. ``stable_step()``: limit of explicit steps [s] at the last ``internal``.  ``stiffened()``: whether a contact has closed or
+       become stiffer there than at any ``stable_step()`` before, so that another one may be shorter; asked at every explicit
+       step, and cheap therefore.
+    10. ``commit()``: the trial memory of the last ``internal`` becomes the committed one; ``rollback()``: it is forgotten.
+    11. ``observe(u, v)``: what a record keeps of the step that was just committed; computes no forces anew.
+    12. ``threads``: a ``ThreadPool``, which is open during a run and shares the passes over long vectors; of one thread where
+        vectors are short.  Results do not depend on how many there are.
+
+    All arrays that are handed out belong to the caller.
+    """
+
+    @property
+    def size(self) -> int: ...
+    @property
+    def ball_count(self) -> int: ...
+    @property
+    def conservative(self) -> bool: ...
+    @property
+    def smooth(self) -> bool: ...
+    @property
+    def threads(self) -> ThreadPool: ...
+    def begin(self, motion: Motion) -> State: ...
+    def motion(self, state: State) -> Motion: ...
+    def outer_force(self, t: float) -> np.ndarray: ...
+    def external(self, t: float, scale: float) -> np.ndarray: ...
+    def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray: ...
+    def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray: ...
+    def mass_times(self, a: np.ndarray) -> np.ndarray: ...
+    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray: ...
+    def measure(self, r: np.ndarray) -> float: ...
+    def contacts(self) -> tuple[float, float, float]: ...
+    def stable_step(self) -> float: ...
+    def stiffened(self) -> bool: ...
+    def commit(self) -> None: ...
+    def rollback(self) -> None: ...
+    def observe(self, u: np.ndarray, v: np.ndarray) -> Observation: ...
+
+
+def check_start(system: Any, start: Motion) -> None:
+    """Refuse a motion that is none of a system's; see ``check_state``."""
+    parts = {name: getattr(start, name) for name in ("q", "v", "a", "rest", "ball", "ball_before", "memory")}
+    check_state(system, "the motion that an integration starts from", **parts)
+
+
+def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
+    """Refuse arrays that are not a system's; None is left out.
+
+    Parameters
+    ----------
+    system : with ``ball_count``, ``ball_columns`` and ``law_state``;  who : whose arrays they are, for the message
+    arrays : by name: ``q``, ``v``, ``a``, ``rest`` (5,), ``memory`` as ``law_state``, and any other (Z, columns) of balls
+
+    Raises
+    ------
+    PluginError
+        With the array, its shape, and the system's.
+    """
+    coordinates = (5,), "x, y, z, tilts"
+    known: dict[str, tuple[tuple[int, ...], str]] = dict.fromkeys(("q", "v", "a", "rest"), coordinates)
+    known["memory"] = system.law_state.shape, "a row for each contact"
+    balls = (system.ball_count, system.ball_columns), "a row for each ball"
+    for name, values in arrays.items():
+        wanted, rows = known.get(name, balls)
+        if values is not None and np.shape(values) != wanted:
+            raise PluginError(f"{who}: `{name}` has the shape {np.shape(values)}; that of this system is {wanted}: {rows}")
+
+
+#: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
+BOUND = 1.0
+#: Entries of vectors that are summed together: of long ones by one thread at a time, always the same.
+_BLOCK = 16384
+#: Seconds between two reports of progress.
+_REPORT_S = 0.1
+
+
+def ramp(t: float, duration: float) -> float:
+    """Share of the excitation at time t: 10 s^3 - 15 s^4 + 6 s^5 over the ramp, as in the compiled loops."""
+    if t >= duration:
+        return 1.0
+    s = max(t / duration, 0.0)
+    return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+class Recorder:
+    """Follows one integration.
+
+    Parameters
+    ----------
+    system, schedule : what is integrated, over which times
+    on_chunk : called with the steps done and the steps in all
+
+    Attributes
+    ----------
+    state : the last accepted ``State``
+    evaluations : of the internal forces, all steps together
+    """
+
+    def __init__(self, system: SteppedSystem, state: State, schedule: Schedule, on_chunk: OnChunk | None) -> None:
+        self.system, self.state, self.schedule, self.evaluations = system, state, schedule, 0
+        self._on_chunk, self._reported = on_chunk, time.perf_counter()
+        self._done = 0
+        self._rows: list[tuple[float, Observation]] = []
+        self._penetration = self._peak = self._work = 0.0
+        self._outer = self.load(self.time_of(0))
+
+    def time_of(self, step: int) -> float:
+        """Time [s] at the end of a step, counted from 1."""
+        return (self.schedule.first + step) * self.schedule.dt
+
+    def load(self, t: float) -> np.ndarray:
+        """(size,) constant load and excitation under the ramp."""
+        return self.system.external(t, ramp(t, self.schedule.ramp))
+
+    def accept(self, state: State, velocity: np.ndarray | None = None, outer: np.ndarray | None = None) -> None:
+        """Commit a step, keep it in the record where its turn is, and report progress.
+
+        Parameters
+        ----------
+        velocity : (size,) what the record shows; None for ``state.v``
+        outer : (size,) what ``load`` gave for the step's end, where the loop has it still
+
+        Raises
+        ------
+        StabilityError
+            A displacement or rotation that no bearing makes, or that is no number.
+        """
+        outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
+        done = self._passed(state, outer)
+        system, schedule = self.system, self.schedule
+        self._work += done
+        self._outer = outer
+        penetration, peak, _ = system.contacts()
+        self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
+        try:
+            system.commit()
+        except ConvergenceError as why:
+            raise ConvergenceError(f"{why} It was {self._when()}.", self._last_good()) from why
+        self.state = state
+        self._done += 1
+        if (schedule.first + self._done) % schedule.stride == 0:
+            t = self.time_of(self._done)
+            seen = system.observe(state.u, state.v if velocity is None else velocity)
+            if seen.energies:
+                seen.energies["external"] = self._work
+            self._rows.append((t, seen))
+        now = time.perf_counter()
+        if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
+            self._reported = now
+            try:
+                self._on_chunk(self._done, schedule.steps)
+            except RacewayError as why:
+                why.state = {**self._last_good(), **why.state}
+                raise
+
+    def record(self) -> Record:
+        """The whole ``Record``."""
+        times = np.array([t for t, _ in self._rows])
+        seen = [one for _, one in self._rows]
+        z = self.system.ball_count
+
+        def stack(name: str, shape: tuple[int, ...]) -> np.ndarray:
+            return np.array([getattr(one, name) for one in seen]) if seen else np.zeros((0, *shape))
+
+        first: Observation | None = seen[0] if seen else None
+        return Record(
+            time=times,
+            displacement=stack("displacement", (5,)),
+            velocity=stack("velocity", (5,)),
+            force=np.array([ramp(t, self.schedule.ramp) * self.system.outer_force(t) for t in times]).reshape(-1, 5),
+            gap=stack("gap", (2 * z,)),
+            contact_force=stack("contact_force", (2 * z,)),
+            ball=stack("ball", (z, 2)),
+            final=self.system.motion(self.state),
+            schedule=self.schedule,
+            counts={
+                "steps": self.schedule.steps,
+                "evaluations": self.evaluations,
+                "threads": self.system.threads.count,
+                "max_penetration_m": self._penetration,
+                "peak_contact_force_n": self._peak,
+            },
+            energies={name: np.array([one.energies[name] for one in seen]) for name in (first.energies if first else ())},
+        )
+
+    def _passed(self, state: State, outer: np.ndarray) -> float:
+        """Work of the mean outer forces over a step [J].
+
+        Raises
+        ------
+        StabilityError
+            A displacement beyond ``BOUND``, or that is no number.
+        """
+        size = len(state.u)
+        count = -(-size // _BLOCK)
+        arrays = [np.ascontiguousarray(each, dtype=float) for each in (self._outer, outer, self.state.u, state.u)]
+        done, fine = np.empty(count), np.empty(count, dtype=bool)
+
+        def one(number: int) -> None:
+            part = _BLOCK * number, min(_BLOCK * (number + 1), size)
+            fine[number] = bounded(*part, BOUND, arrays[-1])
+            done[number] = work(*part, *arrays)
+
+        self.system.threads.do(count, one)
+        if not fine.all():
+            raise self.unbounded()
+        return float(done.sum())
+
+    def unbounded(self) -> StabilityError:
+        """The error for a motion that grows without bound."""
+        try:
+            limit = self.system.stable_step()
+        except ConvergenceError:
+            limit = float("inf")
+        hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
+        return StabilityError(
+            f"the motion grew without bound {self._when()}, step {self.schedule.dt:.3g} s{hint}. Take more "
+            "`integrator.steps_per_turn`, add damping, or move away from a resonance.",
+            self._last_good(),
+        )
+
+    def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
+        """The error for a step that found no balance, with the residuals [N] of its iterations."""
+        kept = ", ".join(f"{r:.2g}" for r in residuals[-6:])
+        history = (
+            f" (residuals of {len(residuals)} iterations: {'..., ' if len(residuals) > 6 else ''}{kept} N)"
+            if residuals
+            else ""
+        )
+        return ConvergenceError(
+            f"{why} {self._when()}{history}. Take more `integrator.steps_per_turn`.",
+            {**self._last_good(), "residuals": np.array(residuals)},
+        )
+
+    def _when(self) -> str:
+        schedule = self.schedule
+        t, turn = self.time_of(self._done), (schedule.first + self._done) // schedule.steps_per_turn + 1
+        return f"after {self._done} of {schedule.steps} steps (t = {t:.6g} s, turn {turn})"
+
+    def _last_good(self) -> dict[str, np.ndarray]:
+        self.system.rollback()
+        motion = self.system.motion(self.state)
+        found = {"t": np.array(self.time_of(self._done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
+        return found | dict(motion.whole or {})

@@ -1,0 +1,552 @@
+"""Balls with tangential contact forces in their meridian plane: gyroscopic moments, Coulomb friction, or both.
+
+Notes
+-----
+With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the inner race gives a ball
+g_i = f_i n_i + (tau_i - T_i) t_i and the outer one takes g_o = f_o n_o + (tau_o - T_o) t_o; g_i - g_o + F_c = 0.  T comes from
+the gyroscopic moment, tau from friction; both put the couple -r h, h = tau - T, on the section of the inner ring (of friction
+-r k_t u, which belongs to the stored energy).  Gyroscopic moments and sliding have no potential: tangents are not symmetric.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import boolean, float64, int64, types, void
+
+from raceway.core.jit import jit
+from raceway.core.ring.kernels import (
+    AXIAL_BY_SHIFT,
+    BY_AXIAL,
+    BY_AXIAL_SPEED,
+    BY_OTHER,
+    BY_OWN,
+    BY_RADIAL,
+    BY_RADIAL_SPEED,
+    BY_TURN,
+    CONTACT_FORCE,
+    COUPLE_BY_CENTRE,
+    COUPLE_BY_SHIFT,
+    FORCE,
+    FORCE_BY_CENTRE,
+    FORCE_BY_GAP,
+    FORCE_BY_RATE,
+    FORCE_BY_SPEED,
+    FORCE_BY_TURN,
+    GAP,
+    GAP_RATE,
+    KERNEL_ROWS,
+    RADIAL_BY_SHIFT,
+    SHIFT,
+    SHIFT_RATE,
+    WORK_ROWS,
+)
+from raceway.core.ring.kernels import tangential_rows as row
+from raceway.core.ring.kernels.layout import (
+    BALL_OVER_PITCH,
+    CENTRIFUGAL,
+    DIAMETER,
+    FRICTION,
+    GYROSCOPIC,
+    LEVER,
+    NOTHING,
+    OFFSET_INNER,
+    OFFSET_OUTER,
+    OUTER_FACTOR,
+    OUTER_SHARE,
+    PAIR,
+    SEAT,
+    SHARE_INNER,
+    SHARE_OUTER,
+    SIDE,
+    SLIPS,
+    STICK,
+    TENSOR,
+    TILT_ARM,
+    Pair,
+    Seat,
+    Tensor,
+    add_ball,
+    add_couple,
+    less,
+    less_column,
+    less_row,
+    move_centres,
+    normal_forces,
+    place,
+    row_times_adjugate,
+    times_adjugate,
+)
+from raceway.core.ring.kernels.tangential_rows import CONTACT, CONTACTS, Contact, contacts_of
+from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
+
+#: Steps after which a ball begins anew; after twice as many its imbalance has to shrink at every step.
+PATIENCE = 60
+
+
+@jit(boolean(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
+def first_guess(k, q, scalars, table, ball, work):
+    """Begin with ball k; False where nothing presses it on either race: it then lies midway, without forces."""
+    z = table.shape[0]
+    li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    ea, er, shift = work[row.CENTRE, k], work[row.CENTRE, z + k], work[SHIFT, z + k]
+    turn = q[3] * work[row.DIRECTION, z + k] - q[4] * work[row.DIRECTION, k]
+    turned = (li + 0.5 * scalars[DIAMETER]) * table[k, SIDE] * turn
+    length = np.sqrt(ea * ea + er * er)
+    room = li + lo + work[SHIFT, k] + shift
+    work[row.TURNED, z + k] = turned
+    work[row.SLOPE, k], work[row.STATE, z + k], work[row.MERIT, z + k] = 0.0, row.MOVES, np.inf
+    work[row.STEP, k], work[row.STEP, z + k] = 0.0, 0.0
+    # Of gyroscopic moments alone.
+    work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k] = 0.0, 0.0
+    work[row.COUPLE_BY_ANGLE, z + k], work[row.OUTER_BY_INNER_LENGTH, k] = 0.0, 0.0
+    if table[k, CENTRIFUGAL] == 0.0 and length <= room:
+        scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
+        ball[k, 0], ball[k, 1] = scale * ea, scale * er
+        ball[k, SLIPS], ball[k, SLIPS + 1] = li * angle - turned, lo * angle
+        work[row.STATE, z + k] = row.LOOSE
+        return False
+    if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
+        if length > li + lo:
+            scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+            ball[k, 0], ball[k, 1] = scale * ea, scale * er
+        else:
+            seat_outside(k, scalars, table, ball, work)
+    return True
+
+
+@jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX))
+def seat_outside(k, scalars, table, ball, work):
+    """Put ball k where its centrifugal force alone holds it, on the outer race, and forget its steps."""
+    z = table.shape[0]
+    depth = (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
+    ball[k, 0], ball[k, 1] = 0.0, scalars[OFFSET_OUTER] + depth
+    work[row.SLOPE, k], work[row.MERIT, z + k] = 0.0, np.inf
+    work[row.STEP, k], work[row.STEP, z + k] = 0.0, 0.0
+
+
+@jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
+def approach(k, scalars, ball, ball_gain, ball_known, work):
+    """Directions, lengths, gaps and gap rates of both contacts of ball k."""
+    z = ball.shape[0]
+    pa, pr = ball[k, 0], ball[k, 1]
+    xa, xr = work[row.CENTRE, k] - pa, work[row.CENTRE, z + k] - pr
+    so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
+    no_a, no_r = pa / so, pr / so
+    ni_a, ni_r = (xa / si, xr / si) if si > 0.0 else (no_a, no_r)
+    own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+    rate_i = -(ni_a * (work[row.VELOCITY, k] - own_a) + ni_r * (work[row.VELOCITY, z + k] - own_r))
+    rate_o = -(no_a * own_a + no_r * own_r)
+    gap_i, gap_o = scalars[OFFSET_INNER] - si + work[SHIFT, k], scalars[OFFSET_OUTER] - so + work[SHIFT, z + k]
+    rate_i, rate_o = rate_i + work[SHIFT_RATE, k], rate_o + work[SHIFT_RATE, z + k]
+    work[row.LENGTH, k], work[row.LENGTH, z + k] = si, so
+    work[row.INNER, k], work[row.INNER, z + k] = ni_a, ni_r
+    work[row.OUTER, k], work[row.OUTER, z + k] = no_a, no_r
+    work[GAP, k], work[GAP, z + k], work[GAP_RATE, k], work[GAP_RATE, z + k] = gap_i, gap_o, rate_i, rate_o
+
+
+@jit(TENSOR(CONTACT, int64, MATRIX), inline=True)
+def contact_matrix(contact, c, work):
+    """d(f n + h t)/dx of contact c for x = s n."""
+    k, f = contact.stiffness, contact.force
+    h, h_s, h_a = work[row.TANGENTIAL, c], work[row.BY_LENGTH, c], work[row.BY_ANGLE, c]
+    w = 1.0 / contact.length if contact.length > 0.0 else 0.0
+    na, nr = contact.axial, contact.radial
+    ta, tr = nr, -na
+    tt, nt = (f + h_a) * w, -h * w
+    return Tensor(
+        k * na * na + nt * na * ta + h_s * ta * na + tt * ta * ta,
+        k * na * nr + nt * na * tr + h_s * ta * nr + tt * ta * tr,
+        k * nr * na + nt * nr * ta + h_s * tr * na + tt * tr * ta,
+        k * nr * nr + nt * nr * tr + h_s * tr * nr + tt * tr * tr,
+    )
+
+
+@jit(PAIR(int64, CONTACTS, float64, float64, float64, MATRIX), inline=True)
+def _newton_step(k, contacts, ra, rr, longest, work):
+    """-J^-1 R [m], regular where J is not, and no longer than ``longest``.
+
+    Notes
+    -----
+    J = dR/dp = -G_i - G_o + cross terms through the moment's dependence on both angles.
+    """
+    z = work.shape[1] // 2
+    inner, outer = contacts
+    ti_a, ti_r, to_a, to_r = inner.radial, -inner.axial, outer.radial, -outer.axial
+    wi, wo = (1.0 / inner.length if inner.length > 0.0 else 0.0), 1.0 / outer.length
+    cross_i, cross_o = work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k]
+    grows = work[row.OUTER_BY_INNER_LENGTH, k]
+    oi_a, oi_r = cross_o * ti_a * wi + grows * inner.axial, cross_o * ti_r * wi + grows * inner.radial
+    gi, go = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
+    jaa = -gi.aa - go.aa + cross_i * ti_a * to_a * wo + to_a * oi_a
+    jar = -gi.ar - go.ar + cross_i * ti_a * to_r * wo + to_a * oi_r
+    jra = -gi.ra - go.ra + cross_i * ti_r * to_a * wo + to_r * oi_a
+    jrr = -gi.rr - go.rr + cross_i * ti_r * to_r * wo + to_r * oi_r
+    det = jaa * jrr - jar * jra
+    if not abs(det) > 1e-14 * (jaa + jrr) ** 2:
+        shift = -1e-7 * abs(jaa + jrr) - 1.0
+        jaa += shift
+        jrr += shift
+        det = jaa * jrr - jar * jra
+    axial, radial = -(jrr * ra - jar * rr) / det, -(jaa * rr - jra * ra) / det
+    size = np.sqrt(axial * axial + radial * radial)
+    scale = longest / size if size > longest else 1.0
+    return Pair(axial * scale, radial * scale)
+
+
+@jit(boolean(int64, int64, CONTACTS, float64, MATRIX, MATRIX, MATRIX), inline=True)
+def settles(k, attempt, contacts, lo, table, ball, work):
+    """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order."""
+    z = table.shape[0]
+    inner, outer = contacts
+    hi, ho = work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k]
+    ra = inner.force * inner.axial + hi * inner.radial - outer.force * outer.axial - ho * outer.radial
+    rr = inner.force * inner.radial - hi * inner.axial - outer.force * outer.radial + ho * outer.axial
+    rr += table[k, CENTRIFUGAL]
+    size = np.sqrt(ra * ra + rr * rr)
+    da, dr, slope = work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k]
+    too_far = slope > 0.0 and -(ra * da + rr * dr) > 0.9 * slope
+    if attempt > 2 * PATIENCE and np.sqrt(da * da + dr * dr) > 1e-13:
+        # Twice in circles: descend at every step instead.
+        too_far = size > 0.9999 * work[row.MERIT, z + k]
+    if too_far:
+        # Beyond the balance along the last step by more than it began with: go half-way back.
+        da, dr = 0.5 * da, 0.5 * dr
+        work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k] = da, dr, 0.5 * slope
+        ball[k, 0] -= da
+        ball[k, 1] -= dr
+        return False
+    da, dr = _newton_step(k, contacts, ra, rr, 0.2 * lo, work)
+    ball[k, 0] += da
+    ball[k, 1] += dr
+    work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k] = da, dr, ra * da + rr * dr
+    work[row.MERIT, z + k] = size
+    if not np.sqrt(da * da + dr * dr) <= 1e-10 * max(-work[GAP, k], -work[GAP, z + k], 1e-12):
+        return False
+    # Forces and tangents are kept from before this step, which ``add_settled`` adds to the forces.
+    work[row.KEPT_FORCE, k], work[row.KEPT_FORCE, z + k] = inner.force, outer.force
+    work[row.KEPT_BY_GAP, k], work[row.KEPT_BY_GAP, z + k] = work[FORCE_BY_GAP, k], work[FORCE_BY_GAP, z + k]
+    work[row.KEPT_BY_RATE, k], work[row.KEPT_BY_RATE, z + k] = work[FORCE_BY_RATE, k], work[FORCE_BY_RATE, z + k]
+    work[row.STATE, z + k] = row.SETTLED
+    return True
+
+
+#: Step of the difference quotients of the moment [rad]: their error is of the order 1e-10.
+_ANGLE_STEP = 1e-5
+
+
+class Rolling(NamedTuple):
+    """A ball that rolls without spin on the outer race: its axis beta, and that race's part of the speeds' ratio."""
+
+    tangent: float
+    sine: float
+    cosine: float
+    outer: float
+
+
+_ROLLING = types.NamedUniTuple(float64, 4, Rolling)
+
+
+@jit(_ROLLING(float64, float64), inline=True)
+def _rolling(outer, ratio):
+    """At the outer contact angle."""
+    sine, cosine = np.sin(outer), np.cos(outer)
+    beta = np.arctan2(sine, cosine + ratio)
+    tangent = np.tan(beta)
+    return Rolling(tangent, np.sin(beta), np.cos(beta), (cosine + tangent * sine) / (1.0 + ratio * cosine))
+
+
+@jit(float64(float64, _ROLLING, float64, float64), inline=True)
+def _moment(inner, ball, ratio, scale):
+    """M [N m] at the inner contact angle."""
+    cosine = np.cos(inner)
+    rolling = ball.outer + (cosine + ball.tangent * np.sin(inner)) / (1.0 - ratio * cosine)
+    return scale * ball.sine / (rolling * ratio * ball.cosine)
+
+
+@jit(float64(float64, float64, float64, float64))
+def gyroscopic_moment(inner, outer, ratio, scale):
+    """M [N m] at the contact angles; ratio = D / d_m, scale = J * (inner ring's speed) * w_c."""
+    return _moment(inner, _rolling(outer, ratio), ratio, scale)
+
+
+@jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
+def add_gyroscopic(k, contacts, scalars, work):
+    """Add what ball k's moment does to its tangential forces and to the couple on the ring's section."""
+    z = work.shape[1] // 2
+    diameter, ratio, scale = scalars[DIAMETER], scalars[BALL_OVER_PITCH], scalars[GYROSCOPIC]
+    groove = scalars[OFFSET_INNER] + 0.5 * diameter
+    force, stiffness = contacts[0].force, contacts[0].stiffness
+    inner, outer = np.arctan2(contacts[0].axial, contacts[0].radial), np.arctan2(contacts[1].axial, contacts[1].radial)
+    share_i, share_o = scalars[SHARE_INNER] / diameter, scalars[SHARE_OUTER] / diameter
+    here, step = _rolling(outer, ratio), _ANGLE_STEP
+    moment = _moment(inner, here, ratio, scale)
+    by_i = (_moment(inner + step, here, ratio, scale) - _moment(inner - step, here, ratio, scale)) / (2.0 * step)
+    by_o = _moment(inner, _rolling(outer + step, ratio), ratio, scale)
+    by_o = (by_o - _moment(inner, _rolling(outer - step, ratio), ratio, scale)) / (2.0 * step)
+    carried, grows = share_i * moment, 0.0
+    if abs(carried) > force:
+        # No more than the normal force; the outer race takes the rest.
+        sign = 1.0 if moment > 0.0 else -1.0
+        carried, grows = sign * force, sign * stiffness
+        share_i, share_o = 0.0, 2.0 / diameter
+        work[row.TANGENTIAL, z + k] += carried
+    work[row.TANGENTIAL, k] -= carried
+    work[row.BY_LENGTH, k] -= grows
+    work[row.BY_SHIFT, k] += grows
+    work[row.COUPLE_BY_SHIFT, k] -= groove * grows
+    work[row.BY_ANGLE, k] -= share_i * by_i
+    work[row.TANGENTIAL, z + k] -= share_o * moment
+    work[row.BY_ANGLE, z + k] -= share_o * by_o
+    work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
+    work[row.OUTER_BY_INNER_LENGTH, k] = grows
+    work[row.COUPLE, k] += groove * carried
+    work[row.COUPLE_BY_LENGTH, z + k] += groove * grows
+    work[row.COUPLE_BY_ANGLE, k] += groove * share_i * by_i
+    work[row.COUPLE_BY_ANGLE, z + k] = groove * share_i * by_o
+
+
+class Grip(NamedTuple):
+    """Tangential force of a contact [N], its derivatives by angle (zero where it slides), length and shift, and u [m]."""
+
+    force: float
+    by_angle: float
+    by_length: float
+    by_shift: float
+    stretch: float
+
+
+_GRIP = types.NamedUniTuple(float64, 5, Grip)
+
+
+@jit(_GRIP(CONTACT, float64, float64, float64, float64), inline=True)
+def _grip(contact, reach, stretch, mu, stick):
+    """The return map: what sticks at the elastic displacement ``stretch``, or slides; reach = L."""
+    lever = reach / contact.length if contact.length > 0.0 else 1.0
+    tau, limit = stick * stretch * lever, mu * contact.force
+    if abs(tau) <= limit:
+        return Grip(tau, stick * reach * lever, -tau * lever / reach, 0.0, stretch)
+    sign = 1.0 if tau > 0.0 else -1.0
+    by_shift = -sign * mu * contact.stiffness
+    return Grip(sign * limit, 0.0, -by_shift, by_shift, sign * limit / (stick * lever))
+
+
+@jit(void(int64, MATRIX), inline=True)
+def roll(k, work):
+    """No tangential forces of ball k and no couple."""
+    z = work.shape[1] // 2
+    work[row.TANGENTIAL, k], work[row.BY_ANGLE, k], work[row.BY_LENGTH, k], work[row.BY_SHIFT, k] = 0.0, 0.0, 0.0, 0.0
+    o = z + k
+    work[row.TANGENTIAL, o], work[row.BY_ANGLE, o], work[row.BY_LENGTH, o], work[row.BY_SHIFT, o] = 0.0, 0.0, 0.0, 0.0
+    work[row.COUPLE, k], work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k] = 0.0, 0.0, 0.0
+    work[row.BY_TURN, o], work[row.COUPLE_BY_LENGTH, o], work[row.COUPLE_BY_SHIFT, k] = 0.0, 0.0, 0.0
+
+
+@jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
+def rub(k, contacts, scalars, ball, ball_known, work):
+    """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``."""
+    z, mu, stick = work.shape[1] // 2, scalars[FRICTION], scalars[STICK]
+    li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    inner, outer = contacts
+    at_i = li * np.arctan2(inner.axial, inner.radial) - work[row.TURNED, z + k]
+    at_o = lo * np.arctan2(outer.axial, outer.radial)
+    gi = _grip(inner, li, at_i - ball_known[k, SLIPS], mu, stick)
+    go = _grip(outer, lo, at_o - ball_known[k, SLIPS + 1], mu, stick)
+    ball[k, SLIPS], ball[k, SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
+    work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k] = gi.force, go.force
+    work[row.BY_ANGLE, k], work[row.BY_ANGLE, z + k] = gi.by_angle, go.by_angle
+    work[row.BY_LENGTH, k], work[row.BY_LENGTH, z + k] = gi.by_length, go.by_length
+    work[row.BY_SHIFT, k], work[row.BY_SHIFT, z + k] = gi.by_shift, go.by_shift
+    _couple(k, inner, gi, scalars, work)
+
+
+@jit(void(int64, CONTACT, _GRIP, VECTOR, MATRIX), inline=True)
+def _couple(k, contact, grip, scalars, work):
+    """What the grip of the inner contact does to the section, and turning the section to the grip."""
+    z, stick, reach = work.shape[1] // 2, scalars[STICK], scalars[OFFSET_INNER]
+    groove = reach + 0.5 * scalars[DIAMETER]
+    lever = reach / contact.length if contact.length > 0.0 else 1.0
+    work[row.COUPLE, k] = -groove * stick * grip.stretch
+    if grip.by_angle != 0.0:
+        work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k] = -groove * stick * reach, groove * groove * stick
+        work[row.BY_TURN, z + k], work[row.COUPLE_BY_LENGTH, z + k] = -stick * groove * lever, 0.0
+        work[row.COUPLE_BY_SHIFT, k] = 0.0
+    else:
+        work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k], work[row.BY_TURN, z + k] = 0.0, 0.0, 0.0
+        work[row.COUPLE_BY_LENGTH, z + k] = -groove * (grip.by_length / lever + grip.force / reach)
+        work[row.COUPLE_BY_SHIFT, k] = -groove * grip.by_shift / lever
+
+
+class Balance(NamedTuple):
+    """A settled ball, linearised: E, P, X and J, M the damping by the velocity of e.
+
+    by_turn : derivative of the ball's force by the turn of its section [N]
+    """
+
+    e: Tensor
+    p: Tensor
+    x: Tensor
+    j: Tensor
+    m: Tensor
+    by_turn: Pair
+
+
+BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), Balance)
+
+
+@jit(BALANCE(int64, CONTACTS, MATRIX), inline=True)
+def _linearised(k, contacts, work):
+    """Ball k at its balance."""
+    z = work.shape[1] // 2
+    inner, outer = contacts
+    elastic, viscous = -work[FORCE_BY_GAP, k], -work[FORCE_BY_RATE, k]
+    na, nr, to_a, to_r = inner.axial, inner.radial, outer.radial, -outer.axial
+    wi, wo = 1.0 / inner.length, 1.0 / outer.length
+    # Inner and outer tangential force by the angle, the outer one also by the length, of the other contact.
+    cross_o, grows = work[row.BY_OTHER_ANGLE, z + k], work[row.OUTER_BY_INNER_LENGTH, k]
+    ii_a, ii_r = work[row.BY_OTHER_ANGLE, k] * nr, work[row.BY_OTHER_ANGLE, k] * -na
+    oi_a, oi_r = cross_o * nr * wi + grows * na, cross_o * -na * wi + grows * nr
+    e = contact_matrix(Contact(na, nr, inner.length, inner.force, elastic), k, work)
+    g, o = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
+    p = Tensor(-g.aa + ii_a * to_a * wo, -g.ar + ii_a * to_r * wo, -g.ra + ii_r * to_a * wo, -g.rr + ii_r * to_r * wo)
+    j = Tensor(p.aa - o.aa + to_a * oi_a, p.ar - o.ar + to_a * oi_r, p.ra - o.ra + to_r * oi_a, p.rr - o.rr + to_r * oi_r)
+    x = Tensor(e.aa - to_a * oi_a, e.ar - to_a * oi_r, e.ra - to_r * oi_a, e.rr - to_r * oi_r)
+    m = Tensor(viscous * na**2, viscous * na * nr, viscous * na * nr, viscous * nr**2)
+    turn = work[row.BY_TURN, z + k]
+    return Balance(e, p, x, j, m, Pair(turn * nr, turn * -na))
+
+
+@jit(boolean(int64, float64, SEAT, MATRIX, VECTOR, MATRIX, MATRIX), inline=True)
+def add_settled(k, ball_gain, seat, work, f, K, C):
+    """Add ball k to f (5,), K and C (5, 5), and keep for elastic bodies what they ask for; False where J has no inverse."""
+    z = work.shape[1] // 2
+    contacts = contacts_of(k, ball_gain, work)
+    inner, outer = contacts
+    # Forces are those before the ball's last step: with what that changes they are off by its square.
+    b, h, da, dr = _linearised(k, contacts, work), work[row.TANGENTIAL, k], work[row.STEP, k], work[row.STEP, z + k]
+    force = Pair(
+        inner.force * inner.axial + h * inner.radial + b.p.aa * da + b.p.ar * dr,
+        inner.force * inner.radial + h * -inner.axial + b.p.ra * da + b.p.rr * dr,
+    )
+    lost, gained = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
+    work[CONTACT_FORCE, k] = max(inner.force - inner.stiffness * lost, 0.0)
+    work[CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * gained, 0.0)
+    det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
+    if det == 0.0:
+        return False
+    t = times_adjugate(b.p, b.j)
+    t = Tensor(t.aa / det, t.ar / det, t.ra / det, t.rr / det)
+    # The couple by e, and by the ball's place; turning the section moves both forces alike.
+    stretch, angle = work[row.COUPLE_BY_LENGTH, z + k], work[row.COUPLE_BY_ANGLE, k] * (1.0 / inner.length)
+    by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial + angle * -inner.axial)
+    angle = work[row.COUPLE_BY_ANGLE, z + k] * (1.0 / outer.length)
+    by_place = Pair(angle * outer.radial - by_e.axial, angle * -outer.axial - by_e.radial)
+    u, couple = row_times_adjugate(by_place, b.j), work[row.COUPLE, k] + by_place.axial * da + by_place.radial * dr
+    u = Pair(u.axial / det, u.radial / det)
+    force_by_turn, couple_by_centre = less_column(b.by_turn, t, b.by_turn), less_row(by_e, u, b.x)
+    couple_by_turn = work[row.COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
+    add_couple(seat, couple, force_by_turn, couple_by_centre, couple_by_turn, f, K)
+    by_centre, by_speed = less(b.e, t, b.x), less(b.m, t, b.m)
+    if work.shape[0] > WORK_ROWS:
+        work[FORCE, k], work[FORCE, z + k] = force
+        work[FORCE_BY_CENTRE, k], work[FORCE_BY_CENTRE, z + k] = by_centre.aa, by_centre.ar
+        work[FORCE_BY_CENTRE + 1, k], work[FORCE_BY_CENTRE + 1, z + k] = by_centre.ra, by_centre.rr
+        work[FORCE_BY_SPEED, k], work[FORCE_BY_SPEED, z + k] = by_speed.aa, by_speed.ar
+        work[FORCE_BY_SPEED + 1, k], work[FORCE_BY_SPEED + 1, z + k] = by_speed.ra, by_speed.rr
+        work[FORCE_BY_TURN, k], work[FORCE_BY_TURN, z + k] = force_by_turn
+        work[COUPLE_BY_CENTRE, k], work[COUPLE_BY_CENTRE, z + k] = couple_by_centre
+        _keep_for_bodies(k, contacts, b, t, u, work)
+    add_ball(seat, force, by_centre, by_speed, f, K, C)
+    return True
+
+
+@jit(void(int64, CONTACTS, BALANCE, TENSOR, PAIR, MATRIX))
+def _keep_for_bodies(k, contacts, b, t, u, work):
+    """Contact forces by e, its velocity, shifts and turn; the ball's force on the ring and its couple by shifts.
+
+    Notes
+    -----
+    Both contacts have dQ = g (dR), g = dQ/dp J^-1, on top of what they feel at a ball that stays where it is.
+    """
+    z = work.shape[1] // 2
+    det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
+    (na, nr, _, _, ki), (oa, orr, _, _, ko) = contacts
+    gi, go = row_times_adjugate(Pair(na, nr), b.j), row_times_adjugate(Pair(oa, orr), b.j)
+    gi, go = Pair(-ki * gi.axial / det, -ki * gi.radial / det), Pair(ko * go.axial / det, ko * go.radial / det)
+    elastic, viscous = -work[FORCE_BY_GAP, k], -work[FORCE_BY_RATE, k]
+    work[BY_AXIAL, k], work[BY_RADIAL, k] = less_row(Pair(elastic * na, elastic * nr), gi, b.x)
+    work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = less_row(NOTHING, go, b.x)
+    work[BY_AXIAL_SPEED, k], work[BY_RADIAL_SPEED, k] = less_row(Pair(viscous * na, viscous * nr), gi, b.m)
+    work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = less_row(NOTHING, go, b.m)
+    # The ring's force and R by the inner shift, R by the outer one.
+    hi, ho, grows = work[row.BY_SHIFT, k], work[row.BY_SHIFT, z + k], work[row.OUTER_BY_INNER_LENGTH, k]
+    by_shift = Pair(-ki * na + hi * nr, -ki * nr + hi * -na)
+    ri = Pair(by_shift.axial + grows * orr, by_shift.radial + grows * -oa)
+    ro = Pair(ko * oa - ho * orr, ko * orr - ho * -oa)
+    work[BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
+    work[BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
+    work[BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
+    work[BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
+    work[BY_TURN, k] = -gi.axial * b.by_turn.axial - gi.radial * b.by_turn.radial
+    work[BY_TURN, z + k] = -go.axial * b.by_turn.axial - go.radial * b.by_turn.radial
+    work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = less_column(by_shift, t, ri)
+    work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = less_column(NOTHING, t, ro)
+    work[COUPLE_BY_SHIFT, k] = work[row.COUPLE_BY_SHIFT, k] - u.axial * ri.axial - u.radial * ri.radial
+    work[COUPLE_BY_SHIFT, z + k] = -u.axial * ro.axial - u.radial * ro.radial
+
+
+_ITERATIONS = 300
+
+
+@jit(SYSTEM)
+def rigid_tangential(t, q, v, balls, contacts, constants, response):
+    """See ``raceway.core.ring.kernels``; ball (Z, 4): p [m], slips [m]."""
+    ball, ball_gain, ball_known = balls
+    scalars, table = constants
+    f, K, C, work = response
+    force = work[CONTACT_FORCE]
+    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    elastic_bodies = work.shape[0] > WORK_ROWS
+    z = table.shape[0]
+    place(t, q, v, constants, work, (row.DIRECTION, row.CENTRE, row.VELOCITY))
+    if elastic_bodies:
+        move_centres(work, row.CENTRE, row.VELOCITY)
+    moving = 0
+    for k in range(z):
+        moving += first_guess(k, q, scalars, table, ball, work)
+    for attempt in range(_ITERATIONS):
+        for k in range(z):
+            if attempt == PATIENCE and work[row.STATE, z + k] == row.MOVES:
+                # Forces without a potential can lead in circles: once more from the seat on the outer race.
+                seat_outside(k, scalars, table, ball, work)
+            approach(k, scalars, ball, ball_gain, ball_known, work)
+        normal_forces(contacts, scalars, work)
+        for k in range(z):
+            if work[row.STATE, z + k] == row.MOVES:
+                sides = contacts_of(k, ball_gain, work)
+                if scalars[FRICTION] != 0.0:
+                    rub(k, sides, scalars, ball, ball_known, work)
+                else:
+                    roll(k, work)
+                if scalars[GYROSCOPIC] != 0.0:
+                    add_gyroscopic(k, sides, scalars, work)
+                moving -= settles(k, attempt, sides, scalars[OFFSET_OUTER], table, ball, work)
+        if moving == 0:
+            break
+    if moving > 0:
+        return 1
+    f[:], K[:], C[:] = 0.0, 0.0, 0.0
+    for k in range(z):
+        if elastic_bodies:
+            for i in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
+                work[i, k], work[i, z + k] = 0.0, 0.0
+        if work[row.STATE, z + k] == row.LOOSE:
+            force[k], force[z + k] = 0.0, 0.0
+            continue
+        for c in (k, z + k):
+            force[c], by_gap[c], by_rate[c] = work[row.KEPT_FORCE, c], work[row.KEPT_BY_GAP, c], work[row.KEPT_BY_RATE, c]
+        if force[k] == 0.0 and by_gap[k] == 0.0:
+            continue
+        seat = Seat(work[row.DIRECTION, k], work[row.DIRECTION, z + k], scalars[TILT_ARM], table[k, SIDE], table[k, LEVER])
+        if not add_settled(k, ball_gain, seat, work, f, K, C):
+            return 1
+    return 0

@@ -1,0 +1,402 @@
+"""The compiled loop; equations in ``raceway.core.time``.  ``coefficients``: am, af, beta, gamma, tolerance,
+imbalance that is rounding [N]."""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numba import boolean, float64, int64, types, void
+
+from raceway.core.jit import Kernel, jit
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, copy_matrix, solve
+from raceway.core.ring.equilibrium import RESIDUAL as LEFT
+from raceway.core.ring.kernels import CONTACT_FORCE as CONTACT_FORCE_ROW
+from raceway.core.ring.kernels import GAP
+from raceway.core.ring.kernels.layout import TILT_ARM, accept_balls, keep_slips, next_balls, stop, work_rows
+from raceway.core.signatures import (
+    FORCES,
+    LINEAR,
+    LOOP,
+    MATRIX,
+    OUTER,
+    RECORDING,
+    RESPONSE,
+    REST,
+    STATE,
+    VECTOR,
+    Balls,
+    Constants,
+    Contacts,
+    Linear,
+    Response,
+    Rest,
+    record,
+)
+
+#: evaluations, reason of a failure, residual at the failure, greatest penetration [m], greatest contact force [N], rows
+#: recorded, greatest excitation [N].
+EVALUATIONS, REASON, RESIDUAL, PENETRATION, CONTACT_FORCE, ROWS, EXCITATION = range(7)
+COUNTERS = 8
+NO_FAILURE, BALLS, NEWTON, UNBOUNDED = range(4)
+
+
+@jit(void(OUTER, float64, VECTOR), inline=True)
+def outer_force(outer, t, out):
+    """out (5,): the excitation at time t, under a ramp 10 s^3 - 15 s^4 + 6 s^5 (twice continuously differentiable)."""
+    outer.force(t, outer.params, out)
+    if t < outer.ramp:
+        s = max(t / outer.ramp, 0.0)
+        for i in range(out.size):
+            out[i] *= s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+@jit(void(RECORDING, int64, float64, MATRIX, VECTOR, MATRIX, MATRIX), inline=True)
+def note_step(recording, number, t, motion, outer, work, ball):
+    """Note a step at time t under the outer force (5,), and the extremes in the counters."""
+    stride, rows, probes, counters = recording
+    n = work.shape[1]
+    lowest, largest = -counters[PENETRATION], counters[CONTACT_FORCE]
+    for i in range(n):
+        lowest, largest = min(lowest, work[GAP, i]), max(largest, work[CONTACT_FORCE_ROW, i])
+    counters[PENETRATION], counters[CONTACT_FORCE] = -lowest, largest
+    if number % stride != 0:
+        return
+    row = int64(counters[ROWS])
+    if row >= rows.shape[0]:
+        return
+    counters[ROWS] = row + 1.0
+    rows[row, 0] = t
+    for i in range(5):
+        rows[row, 1 + i] = motion[0, i]
+        rows[row, 6 + i] = motion[1, i]
+        rows[row, 11 + i] = outer[i]
+    for i in range(n):
+        probes[row, 0, i] = work[GAP, i]
+        probes[row, 1, i] = work[CONTACT_FORCE_ROW, i]
+    for pair in range(ball.shape[1] // 2):
+        for k in range(ball.shape[0]):
+            probes[row, 2 + pair, 2 * k] = ball[k, 2 * pair]
+            probes[row, 2 + pair, 2 * k + 1] = ball[k, 2 * pair + 1]
+
+
+_NEWTON_LIMIT = 40
+_HALVINGS = 8
+#: A force that is none [N]: a motion that has died out is not resolved further.
+_NOTHING = 1e-30
+
+
+class Formula(NamedTuple):
+    """Numbers of the method, its step [s], and the derivatives of a [1/s^2] and v [1/s] by the displacement at the end."""
+
+    am: float
+    af: float
+    beta: float
+    gamma: float
+    dt: float
+    to_a: float
+    to_v: float
+
+
+class Trial(NamedTuple):
+    """The state at the end of a step as it is known, each (5,): q, v, a, forces but for inertia, imbalance."""
+
+    q: np.ndarray
+    v: np.ndarray
+    a: np.ndarray
+    rest: np.ndarray
+    residual: np.ndarray
+
+
+FORMULA = record(Formula, *[float64] * 7)
+TRIAL = record(Trial, *[VECTOR] * 5)
+
+
+@jit(void(FORMULA, VECTOR, MATRIX, TRIAL), inline=True)
+def differences(formula, free, motion, trial):
+    """v and a at the end of the step from q there and the motion (4, 5) at its begin."""
+    dt, beta, gamma = formula.dt, formula.beta, formula.gamma
+    for i in range(5):
+        predicted = motion[0, i] + dt * motion[1, i] + dt * dt * (0.5 - beta) * motion[2, i]
+        trial.a[i] = (trial.q[i] - predicted) * formula.to_a * free[i]
+        trial.v[i] = motion[1, i] + dt * ((1.0 - gamma) * motion[2, i] + gamma * trial.a[i])
+
+
+@jit(types.UniTuple(float64, 3)(FORMULA, LINEAR, MATRIX, TRIAL, RESPONSE, VECTOR, float64), inline=True)
+def imbalance(formula, linear, motion, trial, response, push, arm):
+    """Largest imbalance [N], inertia force and force of all; fills ``rest`` and ``residual``.  Tilts count by the arm [m]."""
+    mass, damping, stiffness, free, load = linear
+    q, v, a, rests, residual = trial
+    norm, moving, scale = 0.0, 0.0, 0.0
+    for i in range(response.work.shape[1]):
+        scale += abs(response.work[CONTACT_FORCE_ROW, i])
+    for i in range(5):
+        weight = 1.0 if i < 3 else 1.0 / arm
+        rest, inertia, held = response.f[i] - load[i] - push[i], 0.0, 0.0
+        for j in range(5):
+            rest += damping[i, j] * v[j] + stiffness[i, j] * q[j]
+            inertia += mass[i, j] * ((1.0 - formula.am) * a[j] + formula.am * motion[2, j])
+            held += mass[i, j] * abs(q[j])
+        rests[i] = rest
+        residual[i] = (inertia + (1.0 - formula.af) * rest + formula.af * motion[3, i]) * free[i]
+        norm = max(norm, abs(residual[i]) * weight)
+        # Below the rounding of the inertia forces nothing can be asked.
+        moving = max(moving, abs(inertia) * weight, 1e-6 * held * formula.to_a * weight)
+        scale = max(scale, abs(push[i] + load[i]) * weight)
+    return norm, moving, max(scale, moving)
+
+
+@jit(boolean(FORMULA, LINEAR, RESPONSE, VECTOR, MATRIX, VECTOR), inline=True)
+def newton_step(formula, linear, response, residual, J, dq):
+    """dq (5,) that takes the residual away; J (5, 5) is scratch.  False where the matrix is singular."""
+    mass, damping, stiffness, free, _ = linear
+    for i in range(5):
+        dq[i] = -residual[i]
+        for j in range(5):
+            J[i, j] = (
+                (1.0 - formula.am) * formula.to_a * mass[i, j]
+                + (1.0 - formula.af)
+                * (response.K[i, j] + stiffness[i, j] + formula.to_v * (response.C[i, j] + damping[i, j]))
+            ) * free[i] * free[j]  # fmt: skip
+    for i in range(5):
+        if free[i] == 0.0:
+            J[i, i] = 1.0
+    return solve(J, dq)
+
+
+@jit(LOOP, allocates=True)
+def implicit(forces, linear, outer, coefficients, steps, state, recording):
+    """See ``raceway.core.time.compiled``."""
+    am, af, beta, gamma, tolerance, rounding = (
+        coefficients[0], coefficients[1], coefficients[2], coefficients[3], coefficients[4], coefficients[5],
+    )  # fmt: skip
+    dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
+    arm = constants.scalars[TILT_ARM]
+    formula = Formula(am, af, beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
+    trial = Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
+    q, J, dq, push, norm = trial.q, np.empty((5, 5)), np.zeros(5), np.empty(5), np.inf
+    balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
+    contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
+    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+    for step in range(steps.total):
+        number = steps.first + step + 1
+        t = number * dt
+        outer_force(outer, t, push)
+        for i in range(5):
+            # Start from constant acceleration.
+            counters[EXCITATION] = max(counters[EXCITATION], abs(push[i]) * (1.0 if i < 3 else 1.0 / arm))
+            q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
+        before, halvings, found = np.inf, 0, False
+        for _ in range(_NEWTON_LIMIT):
+            differences(formula, linear.free, motion, trial)
+            counters[EVALUATIONS] += 1.0
+            if forces.system(t, q, trial.v, balls, contacts, constants, response) != 0:
+                counters[REASON] = BALLS
+                return step
+            norm, moving, scale = imbalance(formula, linear, motion, trial, response, push, arm)
+            if not np.isfinite(norm):
+                counters[REASON] = UNBOUNDED
+                return step
+            enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
+            # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
+            if norm <= enough or 0.5 * before < norm <= tolerance * scale:
+                found = True
+                break
+            if norm > 2.0 * before and halvings < _HALVINGS:
+                halvings += 1
+                for i in range(5):
+                    dq[i] *= 0.5
+                    q[i] -= dq[i]
+                continue
+            halvings, before = 0, norm
+            if not newton_step(formula, linear, response, trial.residual, J, dq):
+                break
+            for i in range(5):
+                q[i] += dq[i]
+        if not found:
+            counters[REASON], counters[RESIDUAL] = NEWTON, norm
+            return step
+        for i in range(5):
+            if not abs(q[i]) < 1.0:
+                counters[REASON] = UNBOUNDED
+                return step
+        for i in range(5):
+            motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], trial.v[i], trial.a[i], trial.rest[i]
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+        copy_matrix(contacts.new, state.memory)
+        note_step(recording, number, t, motion, push, work, state.ball)
+    return steps.total
+
+
+@jit(boolean(LINEAR, float64, MATRIX), allocates=True)
+def effective_inverse(linear, dt, inverse):
+    """inverse (5, 5) of M + C dt / 2 among the unknowns; False where that is singular."""
+    free = linear.free
+    for column in range(5):
+        J, rhs = np.zeros((5, 5)), np.zeros(5)
+        for i in range(5):
+            for j in range(5):
+                J[i, j] = (linear.mass[i, j] + 0.5 * dt * linear.damping[i, j]) * free[i] * free[j]
+            if free[i] == 0.0:
+                J[i, i] = 1.0
+        rhs[column] = free[column]
+        if not solve(J, rhs):
+            return False
+        for i in range(5):
+            inverse[i, column] = rhs[i]
+    return True
+
+
+@jit(void(LINEAR, boolean, VECTOR, VECTOR, VECTOR, VECTOR), inline=True)
+def unbalanced(linear, ground, q, half, push, f):
+    """f (5,), at first the contacts' force, becomes the force that accelerates; ``ground``: whether damping or stiffness act."""
+    for i in range(5):
+        f[i] = linear.load[i] + push[i] - f[i]
+    if not ground:
+        return
+    for i in range(5):
+        rest = f[i]
+        for j in range(5):
+            rest -= linear.damping[i, j] * half[j] + linear.stiffness[i, j] * q[j]
+        f[i] = rest
+
+
+@jit(boolean(MATRIX, VECTOR, VECTOR, VECTOR), inline=True)
+def accelerate(inverse, f, q, a):
+    """a (5,) of the force f (5,); whether it and the displacement q (5,) are bounded."""
+    bounded = True
+    for i in range(5):
+        total = 0.0
+        for j in range(5):
+            total += inverse[i, j] * f[j]
+        a[i] = total
+        if not abs(q[i]) < 1.0 or not np.isfinite(total):
+            bounded = False
+    return bounded
+
+
+@jit(LOOP, allocates=True)
+def central_difference(forces, linear, outer, coefficients, steps, state, recording):
+    """See ``raceway.core.time.compiled``."""
+    dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    # No tangents are asked for.
+    response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
+    q, half, guess, a, push = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5)
+    balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
+    contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
+    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+    inverse = np.zeros((5, 5))
+    if not effective_inverse(linear, dt, inverse):
+        counters[REASON] = NEWTON
+        return 0
+    # A bearing alone has no linear damping and stiffness at all.
+    ground, taken = linear.damping.any() or linear.stiffness.any(), 0
+    while taken < steps.total:
+        number = steps.first + taken + 1
+        t = number * dt
+        outer_force(outer, t, push)
+        for i in range(5):
+            q0, v0, a0 = motion[0, i], motion[1, i], motion[2, i]
+            half[i], guess[i], q[i] = v0 + 0.5 * dt * a0, v0 + dt * a0, q0 + dt * (v0 + 0.5 * dt * a0)
+        counters[EVALUATIONS] += 1.0
+        if forces.system(t, q, guess, balls, contacts, constants, response) != 0:
+            counters[REASON] = BALLS
+            break
+        unbalanced(linear, ground, q, half, push, response.f)
+        if not accelerate(inverse, response.f, q, a):
+            counters[REASON] = UNBOUNDED
+            break
+        for i in range(5):
+            motion[0, i], motion[1, i], motion[2, i] = q[i], half[i] + 0.5 * dt * a[i], a[i]
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+        copy_matrix(contacts.new, state.memory)
+        note_step(recording, number, t, motion, push, work, state.ball)
+        taken += 1
+    if taken > 0:
+        for i in range(5):
+            motion[3, i] = 0.0
+            for j in range(5):
+                motion[3, i] -= linear.mass[i, j] * motion[2, j]
+    return taken
+
+
+@jit(void(OUTER, float64, VECTOR, STATE, VECTOR, REST, VECTOR))
+def extrapolate(outer, t, load, state, push, rest, total):
+    """First guess ``rest`` of the next equilibrium, and its load ``total`` (5,): the constant one and ``push`` (5,) at time t."""
+    outer_force(outer, t, push)
+    for i in range(5):
+        rest.q[i] = state.motion[0, i] + state.motion[1, i]
+        total[i] = load[i] + push[i]
+    copy_matrix(state.ball, rest.ball)
+
+
+@jit(boolean(FORCES, float64, REST, MATRIX, RESPONSE), allocates=True)
+def remember(forces, t, rest, before, response):
+    """Commit the law's memory of an equilibrium after the balls' places ``before``; False where the balls find no place.
+
+    One more evaluation hands it out: no rates, no step of time.
+    """
+    constants = Constants(forces.constants.scalars.copy(), forces.constants.table.copy())
+    stop(t, constants.scalars, constants.table)
+    known = np.empty_like(rest.ball)
+    keep_slips(constants.scalars, before, known)
+    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
+    if forces.system(t, rest.q, np.zeros(5), Balls(rest.ball, 0.0, known), contacts, constants, response) != 0:
+        return False
+    copy_matrix(contacts.new, rest.memory)
+    return True
+
+
+@jit(void(REST, STATE))
+def accept(rest, state):
+    """Move the state to an equilibrium; motion[1] is the change over the step."""
+    motion, ball, before = state.motion, state.ball, state.ball_before
+    for i in range(5):
+        motion[1, i] = rest.q[i] - motion[0, i]
+        motion[0, i] = rest.q[i]
+    copy_matrix(ball, before)
+    copy_matrix(rest.ball, ball)
+
+
+@jit(float64(int64))
+def reason_of(status):
+    """Why a loop ends, of what a solver says."""
+    if status == BALLS_FAILED:
+        return BALLS
+    return UNBOUNDED if status >= NOT_FINITE else NEWTON
+
+
+@cache
+def quasi_static(solver: Kernel) -> Kernel:
+    """The loop around a kernel of signature ``SETTLE``, which finds an equilibrium."""
+
+    @jit(LOOP, allocates=True)
+    def equilibria(forces, linear, outer, coefficients, steps, state, recording):
+        # See ``raceway.core.time.compiled``; motion[1] is not a velocity here but the change over the last step.
+        constants, counters = forces.constants, recording.counters
+        work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+        response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
+        report, push, total, still = np.zeros(2), np.empty(5), np.empty(5), state.motion.copy()
+        loaded = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
+        rest = Rest(np.empty(5), np.empty_like(state.ball), state.memory)
+        for step in range(steps.total):
+            number = steps.first + step + 1
+            t = number * steps.dt
+            extrapolate(outer, t, linear.load, state, push, rest, total)
+            status = solver(forces, loaded, coefficients[0], t, rest, response, report)
+            counters[EVALUATIONS] += report[ITERATIONS] + 1.0
+            if status != CONVERGED:
+                counters[REASON], counters[RESIDUAL] = reason_of(status), report[LEFT]
+                return step
+            if state.memory.shape[1] > 0 and not remember(forces, t, rest, state.ball, response):
+                counters[REASON] = BALLS
+                return step
+            accept(rest, state)
+            for i in range(5):
+                still[0, i] = rest.q[i]
+            note_step(recording, number, t, still, push, work, state.ball)
+        return steps.total
+
+    return equilibria

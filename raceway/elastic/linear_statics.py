@@ -1,0 +1,480 @@
+"""Static equilibrium of one elastic body: K u = f with some displacements prescribed.
+
+Large systems: conjugate gradients, preconditioned by smoothed aggregation whose coarse spaces hold the six rigid motions,
+so that the number of iterations hardly grows with the mesh.  Small systems: a sparse factorisation, which costs less there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+from numba import float32, float64, int32, void
+
+from raceway.core.jit import jit
+from raceway.errors import ConvergenceError, RacewayError
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+    from numba.core.typing.templates import Signature
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import SuperLU
+
+    from raceway.core.jit import Kernel
+
+
+#: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,
+#: for every direction that is left out makes the next level larger.
+REACH = 2.2
+#: Coarse nodes, of six unknowns each, at which a factorisation is cheap.
+COARSEST = 80
+
+
+@attrs.frozen(eq=False)
+class Levels:
+    """Aggregates from fine to coarse.
+
+    Attributes
+    ----------
+    strong : for each level (n, n), which nodes are strongly coupled
+    aggregates : for each level (n, k), 1 where a node belongs to an aggregate; the k nodes of the next level
+    """
+
+    strong: list[csr_matrix]
+    aggregates: list[csr_matrix]
+
+
+def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Levels:
+    """Aggregates of nodes, of these aggregates, and so on.
+
+    Parameters
+    ----------
+    graph : (n, n) CSR, not zero where two nodes share a cell
+    points : (n, 3) float [m]
+    fewest : nodes that an aggregate holds on average at least; aggregates of aggregates are taken until they do
+
+    Notes
+    -----
+    An aggregate stands at the mean of its nodes, and neighbours those that share a cell with one of its nodes.
+    """
+    from pyamg.aggregation.aggregate import standard_aggregation
+
+    levels = Levels([], [])
+    strong, whole = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
+    while graph.shape[0] > COARSEST:
+        near = _strong(graph, points)
+        found = standard_aggregation(near)[0].tocsr().astype(float)
+        if found.shape[1] > 0.9 * found.shape[0]:  # nothing left to put together
+            break
+        if whole is None:
+            strong, whole = near, found
+        else:
+            whole = (whole @ found).tocsr()
+        points = (found.T @ points) / np.maximum(np.asarray(found.sum(axis=0)).reshape(-1, 1), 1.0)
+        graph = (found.T @ graph @ found).tocsr()
+        if whole.shape[0] >= fewest * whole.shape[1]:
+            levels.strong.append(strong)
+            levels.aggregates.append(whole)
+            whole = None
+    if whole is not None:
+        levels.strong.append(strong)
+        levels.aggregates.append(whole)
+    return levels
+
+
+def _strong(graph: csr_matrix, points: np.ndarray) -> csr_matrix:
+    """(n, n) CSR of ones: pairs that one of the two counts among its nearest, and the diagonal."""
+    import scipy.sparse as sp
+
+    pairs = graph.tocoo()
+    apart = pairs.row != pairs.col
+    row, column = pairs.row[apart], pairs.col[apart]
+    distance = np.linalg.norm(points[row] - points[column], axis=1)
+    nearest = np.full(len(points), np.inf)
+    np.minimum.at(nearest, row, distance)
+    near = distance <= REACH * nearest[row]
+    chosen = sp.csr_matrix((np.ones(near.sum()), (row[near], column[near])), shape=graph.shape)
+    strong = (chosen + chosen.T + sp.eye(len(points), format="csr")).tocsr()
+    strong.data[:] = 1.0
+    return strong
+
+
+#: Columns of ``rigid_motions``.
+MOTIONS = (
+    "translation along x",
+    "translation along y",
+    "translation along z",
+    "rotation about x",
+    "rotation about y",
+    "rotation about z",
+)
+#: Squared singular values below this part of the largest are zero: a support over 1e-4 of a body is no support, rounding 1e-16.
+_RANK = 1e-8
+
+
+def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.ndarray:
+    """Three translations and three rotations about the centre, all of size one.
+
+    Parameters
+    ----------
+    points : (n, 3) float [m]
+    centre : (3,) float [m]; mean of the points when None
+
+    Returns
+    -------
+    (3 n, 6) float : rotations divided by the largest distance from the centre
+    """
+    arm = points - (points.mean(axis=0) if centre is None else centre)
+    largest = float(np.abs(arm).max()) if len(arm) else 1.0
+    arm = arm / (largest or 1.0)
+    motions = np.zeros((len(points), 3, 6))
+    for axis in range(3):
+        motions[:, axis, axis] = 1.0
+        motions[:, :, 3 + axis] = np.cross(np.eye(3)[axis], arm)
+    return motions.reshape(-1, 6)
+
+
+def free_motions(points: np.ndarray, held: np.ndarray) -> list[int]:
+    """Indices into ``MOTIONS`` of what the supports leave free; rotations are those about the middle of the held points.
+
+    Parameters
+    ----------
+    points : (n, 3) float [m]
+    held : (n, 3) bool
+    """
+    somewhere = held.any(axis=1)
+    centre = points[somewhere].mean(axis=0) if somewhere.any() else None
+    rows = rigid_motions(points, centre)[held.reshape(-1)]
+    if not len(rows):
+        return list(range(6))
+    _, sizes, directions = np.linalg.svd(rows.T @ rows)  # 6 x 6; its values are squares of the singular values
+    loose = directions[sizes <= _RANK * sizes[0]]
+    share = (loose**2).sum(axis=0)
+    return [i for i in range(6) if share[i] > 0.1]
+
+
+def _signature(real: Any) -> Signature:
+    vector = real[::1]
+    return void(int32[::1], int32[::1], vector, vector, vector, real, vector)
+
+
+def _multiply(starts, columns, blocks, x, base, factor, out):  # type: ignore[no-untyped-def]
+    """out = factor base + A x."""
+    for row in range(starts.size - 1):
+        i = 3 * row
+        a, b, c = factor * base[i], factor * base[i + 1], factor * base[i + 2]
+        for k in range(starts[row], starts[row + 1]):
+            j, at = 3 * columns[k], 9 * k
+            p, q, r = x[j], x[j + 1], x[j + 2]
+            a += blocks[at] * p + blocks[at + 1] * q + blocks[at + 2] * r
+            b += blocks[at + 3] * p + blocks[at + 4] * q + blocks[at + 5] * r
+            c += blocks[at + 6] * p + blocks[at + 7] * q + blocks[at + 8] * r
+        out[i], out[i + 1], out[i + 2] = a, b, c
+
+
+_MULTIPLY = {np.float64: jit(_signature(float64))(_multiply), np.float32: jit(_signature(float32))(_multiply)}
+
+
+class BlockMatrix:
+    """A square sparse matrix of 3 x 3 blocks.
+
+    Parameters
+    ----------
+    matrix : (3 n, 3 n) scipy.sparse
+    real : numpy.float64 or numpy.float32, of the blocks and of all vectors
+    """
+
+    def __init__(self, matrix: csr_matrix, real: type[np.floating] = np.float64) -> None:
+        blocks = matrix.tobsr((3, 3))
+        self._starts, self._columns = blocks.indptr.astype(np.int32), blocks.indices.astype(np.int32)
+        self._blocks = np.ascontiguousarray(blocks.data.reshape(-1), dtype=real)
+        self._kernel: Kernel = _MULTIPLY[real]
+        self._real = real
+        self._nothing = np.zeros(matrix.shape[0], dtype=real)
+
+    def times(self, x: np.ndarray, base: np.ndarray | None = None, factor: float = 0.0) -> np.ndarray:
+        """(3 n,) A x + factor base."""
+        out = np.empty_like(self._nothing)
+        first = self._nothing if base is None else base
+        self._kernel(self._starts, self._columns, self._blocks, x, first, self._real(factor), out)
+        return out
+
+
+#: Degree of the Chebyshev smoother, and the part of the spectrum that it damps: from a thirtieth of the bound to it.
+_DEGREE, _LOWEST, _MARGIN = 4, 1.0 / 30.0, 1.1
+
+
+class WCycle:
+    """A symmetric W-cycle.
+
+    Parameters
+    ----------
+    levels : list of objects with ``A`` and, but for the last, ``P`` and ``R``: sparse, symmetric, R = P^T
+
+    Notes
+    -----
+    The same cycle as pyamg's with Chebyshev smoothing, without the norms that its solver takes, and with matrices in single
+    precision: a preconditioner needs no more, and memory traffic is what it costs.  Every coarse system is solved by two
+    cycles: flat cells are coarsened in many small steps, whose errors would add up in a V-cycle; on compact cells the coarse
+    levels are so small that the second one costs next to nothing.
+    """
+
+    def __init__(self, levels: list[Any]) -> None:
+        from pyamg.relaxation.chebyshev import chebyshev_polynomial_coefficients
+        from pyamg.util.linalg import approximate_spectral_radius
+
+        self._matrices = [BlockMatrix(level.A, np.float32) for level in levels[:-1]]
+        self._up = [level.P.astype(np.float32) for level in levels[:-1]]
+        self._down = [level.R.astype(np.float32) for level in levels[:-1]]
+        self._smoothers = []
+        for level in levels[:-1]:
+            bound = float(approximate_spectral_radius(level.A))
+            found = -chebyshev_polynomial_coefficients(_LOWEST * bound, _MARGIN * bound, _DEGREE)[:-1]
+            self._smoothers.append([float(c) for c in found])
+        self._coarse = np.linalg.pinv(levels[-1].A.toarray(), hermitian=True).astype(np.float32)
+
+    def matvec(self, right: np.ndarray) -> np.ndarray:
+        """(n,) approximate solution for a right-hand side (n,)."""
+        size = float(np.abs(right).max())  # single precision holds 1e-38 to 1e38
+        if size == 0.0 or not np.isfinite(size):
+            return np.zeros_like(right) if size == 0.0 else np.full_like(right, np.nan)
+        return size * self._cycle(0, (right / size).astype(np.float32)).astype(np.float64)
+
+    def _cycle(self, level: int, right: np.ndarray) -> np.ndarray:
+        if level == len(self._matrices):
+            return np.asarray(self._coarse @ right)
+        matrix = self._matrices[level]
+        found = self._smooth(level, right)
+        coarse = self._down[level] @ (right - matrix.times(found))
+        correction = self._cycle(level + 1, coarse)
+        if level + 1 < len(self._matrices):  # the coarsest system is solved at once
+            correction += self._cycle(level + 1, coarse - self._matrices[level + 1].times(correction))
+        found += self._up[level] @ correction
+        found += self._smooth(level, right - matrix.times(found))
+        return found
+
+    def _smooth(self, level: int, residual: np.ndarray) -> np.ndarray:
+        """p(A) residual by Horner's rule."""
+        matrix, coefficients = self._matrices[level], self._smoothers[level]
+        out = coefficients[0] * residual
+        for c in coefficients[1:]:
+            out = matrix.times(out, residual, c)
+        return np.asarray(out)
+
+
+#: Unknowns up to which a factorisation is faster than setting up the hierarchy (measured on solid bodies).
+DIRECT_UNKNOWNS = 3000
+#: Some twenty iterations are normal; ten times that means that the matrix is not what this solver is for.
+MOST_ITERATIONS = 200
+
+
+@attrs.frozen(eq=False)
+class Solution:
+    """Displacements that balance a load.
+
+    Attributes
+    ----------
+    displacement : (n, 3) float [m]
+    iterations : of the conjugate gradients; 0 where the system was factorised
+    residual : |K u - f| over |f| on the free degrees of freedom, with f the load and the pull of the prescribed ones
+    """
+
+    displacement: np.ndarray
+    iterations: int
+    residual: float
+
+
+def solve_static(
+    stiffness: csr_matrix,
+    points: np.ndarray,
+    load: np.ndarray,
+    held: np.ndarray,
+    values: np.ndarray | float = 0.0,
+    tolerance: float = 1e-8,
+) -> Solution:
+    """Displacements of a body under nodal forces and prescribed displacements.
+
+    Parameters
+    ----------
+    stiffness : (3 n, 3 n) CSR, symmetric positive semi-definite [N/m]
+    points : (n, 3) float [m]
+    load : (n, 3) float [N]
+    held : (n, 3) bool, prescribed degrees of freedom
+    values : (n, 3) float or one number, what is prescribed there [m]
+    tolerance : of the residual relative to the right-hand side
+
+    Raises
+    ------
+    ConvergenceError
+        A rigid motion that nothing holds, a load or matrix that is not finite, or iterations that end too early.
+    """
+    mask = np.asarray(held, dtype=bool)
+    given = np.where(mask, np.broadcast_to(values, held.shape), 0.0)
+    matrix = stiffness.tocsr()
+    if not (np.isfinite(load).all() and np.isfinite(given).all() and np.isfinite(matrix.data).all()):
+        raise ConvergenceError("the static system has loads, prescribed displacements or stiffness that are not finite")
+    _refuse_free_motion(matrix, points, mask.reshape(-1))
+    return StaticSolver(matrix, points, mask).solve(load, given, tolerance)
+
+
+class StaticSolver:
+    """Factors or multigrid of a body, for many loads.
+
+    Parameters
+    ----------
+    stiffness : (3 n, 3 n) CSR, positive definite on the degrees of freedom that are not held [N/m]
+    points : (n, 3) float [m];  held : (n, 3) bool
+    """
+
+    def __init__(self, stiffness: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
+        from scipy.sparse.linalg import splu
+
+        mask = np.asarray(held, dtype=bool).reshape(-1)
+        self._matrix, self._free = stiffness, np.flatnonzero(~mask)
+        self._inner = stiffness[self._free][:, self._free]
+        self._factors: SuperLU = None
+        self._precondition: Preconditioner | None = None
+        if len(self._free) > DIRECT_UNKNOWNS:
+            self._precondition = Preconditioner(stiffness, points, mask)
+        elif len(self._free):
+            self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A")
+
+    def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> Solution:
+        """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).
+
+        Raises
+        ------
+        ConvergenceError
+            Iterations that end too early.
+        """
+        displacement = np.array(np.broadcast_to(values, load.shape), dtype=float).reshape(-1)
+        displacement[self._free] = 0.0
+        right = (np.asarray(load, dtype=float).reshape(-1) - self._matrix @ displacement)[self._free]
+        size = float(np.linalg.norm(right))
+        if size == 0.0:
+            return Solution(displacement.reshape(-1, 3), 0, 0.0)
+        iterations = 0
+        if self._precondition is None:
+            found = self._factors.solve(right)
+        else:
+            found, iterations = _conjugate_gradients(self._inner, right, self._precondition, tolerance)
+        residual = float(np.linalg.norm(self._inner @ found - right)) / size
+        displacement[self._free] = found
+        if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
+            message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
+            raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
+        return Solution(displacement.reshape(-1, 3), iterations, residual)
+
+
+class Preconditioner:
+    """One W-cycle of smoothed aggregation on the symmetrically scaled matrix, coarsened along short edges first.
+
+    Scaling with the root of the diagonal makes Chebyshev smoothing, which knows one spectral bound for all rows, work on
+    graded meshes whose rows differ by orders of magnitude.
+
+    Parameters
+    ----------
+    matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
+    points : (n, 3) float [m]
+    held : (3 n,) bool
+    fewest : nodes of an aggregate, see ``aggregated``
+
+    References
+    ----------
+    P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
+    """
+
+    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray, fewest: float = 1.0) -> None:
+        import scipy.sparse as sp
+
+        pyamg = _pyamg()
+        # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
+        kept = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
+        loose = ~held[kept]
+        self._rows = np.flatnonzero(loose)
+        inner = matrix[kept][:, kept]
+        scale = np.where(loose, 1.0 / np.sqrt(inner.diagonal()), 0.0)
+        scaled = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
+        motions = rigid_motions(points)[kept]
+        candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
+        self.scale = scale[loose]
+        self._size = len(loose)
+        blocks = scaled.tobsr((3, 3))
+        graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
+        nodes = aggregated(graph, points[kept[::3]], fewest)
+        state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
+        np.random.seed(0)
+        try:
+            self.levels = pyamg.smoothed_aggregation_solver(
+                blocks,
+                B=candidates,
+                strength=[("predefined", {"C": strong}) for strong in nodes.strong],
+                aggregate=[("predefined", {"AggOp": found}) for found in nodes.aggregates],
+                # Weak couplings take no part in the smoothing of the coarse space either, or it would fill up.
+                smooth=("jacobi", {"omega": 4.0 / 3.0, "filter_entries": True}),
+                presmoother=None,
+                postsmoother=None,
+                improve_candidates=None,
+                coarse_solver=None,
+            )
+        finally:
+            np.random.set_state(state)
+        self._cycle = WCycle(self.levels.levels)
+
+    def __call__(self, residual: np.ndarray) -> np.ndarray:
+        """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""
+        if residual.ndim == 1:
+            whole = np.zeros(self._size)
+            whole[self._rows] = self.scale * residual
+            found: np.ndarray = self.scale * self._cycle.matvec(whole)[self._rows]
+            return found
+        return np.column_stack([self(column) for column in residual.T])
+
+
+def _conjugate_gradients(
+    matrix: csr_matrix, right: np.ndarray, precondition: Preconditioner, tolerance: float
+) -> tuple[np.ndarray, int]:
+    """Solution and iterations; ends at the tolerance or at ``MOST_ITERATIONS``."""
+    found, residual = np.zeros_like(right), right.copy()
+    direction, before = np.zeros_like(right), 1.0
+    goal = tolerance * float(np.linalg.norm(right))
+    for done in range(MOST_ITERATIONS):
+        if np.linalg.norm(residual) <= goal:
+            return found, done
+        corrected = precondition(residual)
+        now = float(residual @ corrected)
+        direction = corrected + (now / before if done else 0.0) * direction
+        image = matrix @ direction
+        step = now / float(direction @ image)
+        found += step * direction
+        residual -= step * image
+        before = now
+    return found, MOST_ITERATIONS
+
+
+def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray) -> None:
+    """Every connected part has to be held against all six rigid motions."""
+    from scipy.sparse.csgraph import connected_components
+
+    count, label = connected_components(matrix, directed=False)
+    part = label[::3]
+    # Zero blocks may be left out of the matrix, so a node's three rows can be in parts of their own only where they are empty.
+    for index in np.unique(part):
+        nodes = np.flatnonzero(part == index)
+        loose = free_motions(points[nodes], mask.reshape(-1, 3)[nodes])
+        if loose:
+            where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
+            names = ", ".join(MOTIONS[i] for i in loose)
+            raise ConvergenceError(
+                f"nothing holds the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
+            )
+
+
+def _pyamg() -> ModuleType:
+    try:
+        import pyamg
+    except ImportError:
+        raise RacewayError("large elastic bodies need pyamg: pip install '.[mesh]' in a checkout of Raceway") from None
+    return pyamg
