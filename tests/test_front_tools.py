@@ -11,7 +11,7 @@ import pytest
 import raceway as rw
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.plugins.processes import Serial
-from raceway.studies.rotor.command import point_rows
+from raceway.studies.rotor.export import point_rows
 from validation.command_line import invoke
 
 SCENE = {

@@ -14,7 +14,7 @@ import pytest
 import raceway as rw
 from raceway import RacewayError, SceneError
 from raceway.studies.rotor.node_bearing import node_bearing, secant
-from raceway.studies.rotor.ross_table import ross
+from raceway.studies.rotor.ross_file import ross
 from raceway.studies.shaft.bearing import harmonic_load
 from validation.command_line import EXAMPLES
 

@@ -11,7 +11,7 @@ import pytest
 import xarray
 
 from raceway.errors import RacewayError, SceneError
-from raceway.studies.rotor import ross_table
+from raceway.studies.rotor import ross_file
 from raceway.studies.sweep.picture import draw
 from raceway.studies.sweep.plotting import layout
 from raceway.studies.sweep.selection import LIST, keys_of, parse_at, select
@@ -258,13 +258,13 @@ def test_export_says_what_is_lost_and_for_which_ross(store, tmp_path, monkeypatc
     def absent(_name):
         raise PackageNotFoundError
 
-    monkeypatch.setattr(ross_table, "version", absent)
+    monkeypatch.setattr(ross_file, "version", absent)
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")
     assert found.exit_code == 0, found.stderr
     assert "ROSS is not installed here; the file is for ROSS 3" in found.stderr
     assert "moments on the ring" in found.stdout
     assert "kyy = kzz" in found.stdout and "r/min" in found.stdout and "rad/s" not in found.stdout.partition("note")[0]
-    monkeypatch.setattr(ross_table, "version", lambda _name: "2.3.0")
+    monkeypatch.setattr(ross_file, "version", lambda _name: "2.3.0")
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")
     assert "for ROSS 2" in found.stdout
     assert "frequency" in json.loads((tmp_path / "b.json").read_text())["BearingElement_B7206C"]

@@ -13,7 +13,7 @@ import numpy as np
 
 from raceway import RacewayError, load_scene
 from raceway.scene.reading import rig_of
-from raceway.studies.rotor.ross_table import ross
+from raceway.studies.rotor.ross_file import ross
 from raceway.studies.shaft.rotor import Beam, rotor, shaft
 from validation.command_line import EXAMPLES
 

@@ -12,14 +12,14 @@ import numpy as np
 from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.studies.rotor.node_bearing import NodeBearing, node_bearing
-from raceway.studies.rotor.ross_table import generation, ross, through_points
+from raceway.studies.rotor.ross_file import generation, ross, through_points
 
 _ross = ross("raceway.ross.RollingBearing")
 _Element: Any = _ross.BearingElement
 #: Of the table that ROSS's plots and files show [r/min].
 _SPEEDS_RPM = np.linspace(0.0, 30_000.0, 7)
 #: ROSS's coefficient -> row and column in X, Y, Z.
-_PLACES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}
+_ENTRIES = {"xx": (0, 0), "xy": (0, 1), "yx": (1, 0), "yy": (1, 1), "zz": (2, 2)}
 
 
 class RollingBearing(_Element):
@@ -52,8 +52,9 @@ class RollingBearing(_Element):
 
     Notes
     -----
-    K and C are those of small motions about the equilibrium under the preload, whose speed unloads inner races.  ``run_unbalance_response`` replaces them by those of the rotor's own motion.
-    What the rotor moves is the rotor model's: the inner ring's mass, and that of the scene's [rotor].
+    K and C are those of small motions about the equilibrium under the preload, whose speed unloads inner races.
+    ``run_unbalance_response`` replaces them by those of the rotor's own motion.  Masses are the rotor model's: the inner ring's, and
+    that of the scene's [rotor].
 
     Examples
     --------
@@ -87,30 +88,25 @@ class RollingBearing(_Element):
         self.node_bearing: NodeBearing = node_bearing(
             bearing, None if preload is None else abs(preload), tilt, axial, damping
         )
-        self._held: dict[float, np.ndarray] = {}
+        self._at_motion: dict[float, np.ndarray] = {}
         self._dofs: dict[str, int] | None = None
         axis = np.asarray(speeds if speeds is not None else _SPEEDS_RPM * pi / 30.0, dtype=float)
         if axis.ndim != 1 or len(axis) < 2 or not np.all(np.diff(axis) > 0.0):
             raise SceneError.at("speeds", speeds, "must be two or more ascending speeds in rad/s")
-        name = tag if tag is not None else f"{self._name()}, node {n}"
-        self.n_link = n_link
-        table = self._table(axis)
-        over = "frequency" if generation(_ross) < 3 else "speed"
-        super().__init__(
-            n=n, n_link=n_link, tag=name, scale_factor=scale_factor, color=color, **{over: axis}, **table
-        )  # fmt: skip
-        through_points(self)
-
-    def _name(self) -> str:
         scene = self.node_bearing.scene
-        return slug(str(scene.source["bearing"].get("preset") or scene.title.partition("\n")[0]))
+        name = slug(str(scene.source["bearing"].get("preset") or scene.title.partition("\n")[0]))
+        tag = tag if tag is not None else f"{name}, node {n}"
+        self.n_link = n_link
+        table = {"frequency" if generation(_ross) < 3 else "speed": axis, **self._table(axis)}
+        super().__init__(n=n, n_link=n_link, tag=tag, scale_factor=scale_factor, color=color, **table)
+        through_points(self)
 
     def _table(self, axis: np.ndarray) -> dict[str, np.ndarray]:
         """Coefficients over the speeds, by ROSS's names."""
         z = np.array([self.across(self.node_bearing.dynamic_stiffness(w, w)) for w in axis])
         slow = np.maximum(axis, 1e-3)
-        stiffness = {f"k{name}": z.real[:, row, column] for name, (row, column) in _PLACES.items()}
-        damping = {f"c{name}": z.imag[:, row, column] / slow for name, (row, column) in _PLACES.items()}
+        stiffness = {f"k{name}": z.real[:, row, column] for name, (row, column) in _ENTRIES.items()}
+        damping = {f"c{name}": z.imag[:, row, column] / slow for name, (row, column) in _ENTRIES.items()}
         return stiffness | damping
 
     @property
@@ -119,8 +115,8 @@ class RollingBearing(_Element):
         side = self.side
         turned = np.zeros((5, 5))
         turned[[0, 1, 2, 3, 4], [2, 0, 1, 3, 4]] = side, 1.0, side, 1.0, side
-        mine = turned[: self.node_bearing.size, : self.node_bearing.size]
-        return mine if self.n_link is None else np.hstack([mine, -mine])
+        shaft = turned[: self.node_bearing.size, : self.node_bearing.size]
+        return shaft if self.n_link is None else np.hstack([shaft, -shaft])
 
     def across(self, matrix: np.ndarray) -> np.ndarray:
         """A matrix (n, n) of our coordinates over the element's degrees of freedom."""
@@ -132,15 +128,15 @@ class RollingBearing(_Element):
         return self._dofs
 
     @dof_global_index.setter
-    def dof_global_index(self, given: Mapping[str, int] | None) -> None:
-        self._dofs = None if given is None else dict(given)
+    def dof_global_index(self, index: Mapping[str, int] | None) -> None:
+        self._dofs = None if index is None else dict(index)
         if self._dofs is not None and self.node_bearing.tilts:
             first = self._dofs[f"x_{self.n}"]
             self._dofs |= {f"alpha_{self.n}": first + 3, f"beta_{self.n}": first + 4}
 
     @property
     def dofs(self) -> list[int]:
-        """Degrees of freedom of the rotor that the element stands on."""
+        """Degrees of freedom of the rotor at the element's nodes."""
         if self._dofs is None:
             raise RacewayError(f"{self.tag} stands in no rotor yet: hand it to ross.Rotor first")
         return list(self._dofs.values())
@@ -148,16 +144,14 @@ class RollingBearing(_Element):
     def holding(self, values: Mapping[float, np.ndarray]) -> RollingBearing:
         """A copy with other Z (n, n) at some synchronous speeds [rad/s]."""
         twin = copy(self)
-        twin._held = dict(values)
+        twin._at_motion = dict(values)
         return twin
 
     def _dynamic(self, frequency: Any, speed: Any) -> np.ndarray:
-        frequency, speed = (
-            None if w is None else float(getattr(w, "m_as", lambda _, w=w: w)("rad/s")) for w in (frequency, speed)
-        )
+        frequency, speed = (None if w is None else _radians(w) for w in (frequency, speed))
         speed = frequency if speed is None else speed
-        held = self._held.get(speed) if frequency == speed else None
-        return self.across(self.node_bearing.dynamic_stiffness(frequency, abs(speed)) if held is None else held)
+        at_motion = self._at_motion.get(speed) if frequency == speed else None
+        return self.across(self.node_bearing.dynamic_stiffness(frequency, abs(speed)) if at_motion is None else at_motion)
 
     def K(self, frequency: Any, speed: Any = None) -> np.ndarray:
         """Stiffness over the element's degrees of freedom [N/m, N, N m/rad] at a frequency and a speed of the ring [rad/s]."""
@@ -165,11 +159,10 @@ class RollingBearing(_Element):
 
     def C(self, frequency: Any, speed: Any = None) -> np.ndarray:
         """Damping over the element's degrees of freedom [N s/m] at a frequency and a speed of the ring [rad/s]."""
-        w = float(getattr(frequency, "m_as", lambda _: frequency)("rad/s"))
-        return np.ascontiguousarray(self._dynamic(frequency, speed).imag / max(abs(w), 1e-3))
+        return np.ascontiguousarray(self._dynamic(frequency, speed).imag / max(abs(_radians(frequency)), 1e-3))
 
     def M(self, frequency: Any, speed: Any = None) -> np.ndarray:
-        """No mass: what moves is the rotor's."""
+        """No mass: it is the rotor's."""
         return np.zeros((self.frame.shape[1],) * 2)
 
     def G(self) -> np.ndarray:
@@ -178,7 +171,12 @@ class RollingBearing(_Element):
 
     def save(self, file: Any) -> None:
         """Write the table over ``speeds`` as a ``BearingElement``, which ROSS reads without Raceway."""
-        names = [f"{letter}{name}" for letter in "kc" for name in _PLACES]
+        names = [f"{letter}{name}" for letter in "kc" for name in _ENTRIES]
         axes = {name: getattr(self, name) for name in ("speed", "frequency") if getattr(self, name, None) is not None}
-        given = {name: getattr(self, name) for name in (*names, "n", "n_link", "tag", "scale_factor", "color")}
-        _Element(**given, **axes).save(file)
+        options = {name: getattr(self, name) for name in (*names, "n", "n_link", "tag", "scale_factor", "color")}
+        _Element(**options, **axes).save(file)
+
+
+def _radians(speed: Any) -> float:
+    """Of a number, or of a quantity with a unit [rad/s]."""
+    return float(speed.m_as("rad/s") if hasattr(speed, "m_as") else speed)

@@ -23,16 +23,14 @@ from raceway.framework.doors import member
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 from raceway.studies.many.axes import shown
-from raceway.studies.rotor.sources import DIRECTION, directions, reduced, refuse_without_motion, rotating, tangent, tilt_note
+from raceway.studies.rotor.sources import DIRECTION, SOURCES, reduced, refuse_without_motion, tilt_note
 from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
-#: Entries by name: place in the 2x2 matrix over (y, z).
+#: Entries by name: row and column of the 2x2 matrix over (y, z).
 ENTRIES = {"yy": (0, 0), "yz": (0, 1), "zy": (1, 0), "zz": (1, 1)}
 LEAST_POINTS = 5
 _RADIANS = np.pi / 30.0
-#: What coefficients are taken from.
-SOURCES = ("rotating", "directions", "tangent")
 
 
 @attrs.frozen(eq=False)
@@ -74,11 +72,24 @@ class Coefficients:
         both = {"speed": self.speed, "frequency": self.frequency}
         return {name: values for name, values in both.items() if values is not None}
 
+    @property
+    def axis(self) -> np.ndarray:
+        """(n,) speed or frequency [rad/s] of a table over one of them."""
+        (values,) = self.axes.values()
+        return values
+
     def columns(self) -> dict[str, np.ndarray]:
         """``kyy`` ... ``czz`` and ``kxx`` with their ``ending``, each of the table's shape."""
-        both = {"k": self.stiffness, "c": self.damping}
-        found = {f"{k}{name}{self.ending}": one[..., i, j] for k, one in both.items() for name, (i, j) in ENTRIES.items()}
-        return {**found, f"kxx{self.ending}": self.axial}
+        matrices = {"k": self.stiffness, "c": self.damping}
+        across = {f"{k}{name}{self.ending}": m[..., i, j] for k, m in matrices.items() for name, (i, j) in ENTRIES.items()}
+        return {**across, f"kxx{self.ending}": self.axial}
+
+    def largest(self) -> dict[str, float]:
+        """Largest magnitude of all stiffnesses ("k") and of all dampings ("c") [N/m, N s/m]."""
+        return {
+            kind: max(float(np.max(np.abs(values))) for name, values in self.columns().items() if name[0] == kind)
+            for kind in "kc"
+        }
 
     def to_dict(self) -> Tables:
         """Axes [rad/s] and columns as plain tables."""
@@ -89,6 +100,11 @@ class Coefficients:
             "frequency": None if self.frequency is None else self.frequency.tolist(),
             "coefficients": {name: values.tolist() for name, values in self.columns().items()},
         }
+
+
+def unit(name: str) -> str:
+    """Of a coefficient by its name."""
+    return "N/m" if name[0] == "k" else "N s/m"
 
 
 def coefficients(
@@ -120,23 +136,23 @@ def coefficients(
         only_axes(selection, (SPEED, SPIN), purpose)
     _refuse_gaps(selection)
     _refuse_few(selection, least)
-    if source == "tangent":
-        stiffness, damping, resolved, definition, notes = tangent(selection)
-    else:
+    if source != "tangent":
         refuse_without_motion(selection)
-        made = rotating if source == "rotating" else directions
-        stiffness, damping, resolved, definition, notes = made(selection)
-    known = resolved[..., 0, 0] & resolved[..., 1, 1]
-    damping, told = _without_noise(damping, resolved, unresolved)
-    notes += [*told, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, known, unresolved)]
-    still, damper = _still(selection, "stiffness"), _still(selection, "damping")
-    axial = _undirected(selection, reduced(selection)[..., 0, 0]) if "stiffness" in selection.dataset else still[..., 0, 0]
-    speed, frequency, stiffness, damping, axial, still, damper = _table(selection, stiffness, damping, axial, still, damper)
+    stiffness, damping, resolved, definition, notes = SOURCES[source](selection)
+    measured = resolved[..., 0, 0] & resolved[..., 1, 1]
+    damping, replaced = _without_noise(damping, resolved, unresolved)
+    notes += [*replaced, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, measured, unresolved)]
+    tangent, tangent_damping = _at_equilibrium(selection, "stiffness"), _at_equilibrium(selection, "damping")
+    axial = _undirected(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
+    speed, frequency, *arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping)
+    stiffness, damping, axial, tangent, tangent_damping = arrays
     tilt = selection.value("supports.tilt", "locked")
-    return Coefficients(speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), still, damper, tilt)
+    return Coefficients(
+        speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), tangent, tangent_damping, tilt
+    )
 
 
-def _still(selection: Selection, name: str) -> np.ndarray:
+def _at_equilibrium(selection: Selection, name: str) -> np.ndarray:
     """(..., 5, 5) of the equilibria; 0 in a sweep that does not hold it."""
     if name in selection.dataset:
         return _undirected(selection, np.array(selection.dataset[name].values, dtype=float))
@@ -144,11 +160,11 @@ def _still(selection: Selection, name: str) -> np.ndarray:
 
 
 def _undirected(selection: Selection, array: np.ndarray) -> np.ndarray:
-    """Without the last axis where it is the direction of the force, of which an equilibrium knows nothing."""
+    """Without the last axis where it is the direction of the force, on which an equilibrium does not depend."""
     return np.take(array, 0, axis=len(selection.axes) - 1) if DIRECTION in selection.axes else array
 
 
-def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) -> tuple[np.ndarray, list[str]]:
+def _without_noise(damping: np.ndarray, resolved: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
     """Damping (..., 2, 2) with what is not resolved replaced, and what was done.
 
     Notes
@@ -156,14 +172,13 @@ def _without_noise(damping: np.ndarray, resolved: np.ndarray, instead: float) ->
     Noise of either sign would be read as damping, and a negative one as instability.  A point whose cyy or czz is not resolved has
     no cross terms either: they alone would make the matrix indefinite.
     """
-    known = resolved[..., 0, 0] & resolved[..., 1, 1]
-    out = np.where(resolved & known[..., None, None], damping, 0.0) + np.where(
-        known[..., None, None], 0.0, instead * np.eye(2)
-    )
-    if known.all():
-        return out, []
-    given = f"cyy = czz = {instead:g} N s/m stands there, as given" if instead else "0 stands there"
-    return out, [f"damping is not resolved at {int((~known).sum())} of {known.size} points, smaller than its error: {given}"]
+    diagonal = (resolved[..., 0, 0] & resolved[..., 1, 1])[..., None, None]
+    clean = np.where(resolved & diagonal, damping, 0.0) + np.where(diagonal, 0.0, substitute * np.eye(2))
+    if diagonal.all():
+        return clean, []
+    value = f"cyy = czz = {substitute:g} N s/m stands there, as given" if substitute else "0 stands there"
+    count = int((~diagonal).sum())
+    return clean, [f"damping is not resolved at {count} of {diagonal.size} points, smaller than its error: {value}"]
 
 
 def _band(selection: Selection) -> list[str]:
@@ -177,19 +192,15 @@ def _band(selection: Selection) -> list[str]:
     ]
 
 
-def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, known: np.ndarray, unresolved: float) -> list[str]:
-    """That a dry bearing damps next to nothing; not to who gives a damping where there is none."""
+def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, measured: np.ndarray, unresolved: float) -> list[str]:
+    """That a dry bearing damps next to nothing; not where a damping is given for points without one."""
     if unresolved:
         return []
-    largest = float(np.max(damping[..., 0, 0][known])) if known.any() else 0.0 if source == "tangent" else None
-    contact = (
-        ""
-        if source == "tangent"
-        else "give contact.damping (N s/m, each contact) accordingly, or, where C is not resolved, "
-    )
-    remedy = f"{contact}--damping C (in Python damping=C)"
-    told = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
-    return [] if told is None else [told]
+    largest = float(np.max(damping[..., 0, 0][measured])) if measured.any() else 0.0 if source == "tangent" else None
+    in_contacts = "give contact.damping (N s/m, each contact) accordingly, or, where C is not resolved, "
+    remedy = f"{'' if source == 'tangent' else in_contacts}--damping C (in Python damping=C)"
+    words = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
+    return [] if words is None else [words]
 
 
 def _default_source(selection: Selection) -> str:
@@ -220,9 +231,11 @@ def _refuse_gaps(selection: Selection) -> None:
 def _refuse_few(selection: Selection, least: int) -> None:
     speeds = [key for key in (SPEED, SPIN) if key in selection.axes]
     if not speeds:
-        given = selection.value(SPEED)
-        held = f"`{SPEED}` has the one value {shown(given)}" if given is not None else "the scene has no speed"
-        raise SceneError.at(SPEED, None, f"does not vary here ({held}): sweep it, for instance --grid {SPEED}=1000:15000:15")
+        value = selection.value(SPEED)
+        constant = f"`{SPEED}` has the one value {shown(value)}" if value is not None else "the scene has no speed"
+        raise SceneError.at(
+            SPEED, None, f"does not vary here ({constant}): sweep it, for instance --grid {SPEED}=1000:15000:15"
+        )
     few = [key for key in speeds if len(selection.axes[key]) < least]
     if few:
         raise SceneError(
@@ -242,12 +255,9 @@ def _table(selection: Selection, *arrays: np.ndarray) -> tuple[Any, ...]:
     """Axes [rad/s], None where there is none, and the arrays; both axes in the order (speed, frequency)."""
     spins, speeds = (np.array(selection.axes.get(key, []), dtype=float) * _RADIANS for key in (SPIN, SPEED))
     if len(spins) and len(speeds):
-        keys = [key for key in selection.axes if key in (SPIN, SPEED)]
-        if keys != [SPIN, SPEED]:
+        if [key for key in selection.axes if key in (SPIN, SPEED)] != [SPIN, SPEED]:
             arrays = tuple(np.swapaxes(array, 0, 1) for array in arrays)
         return spins, speeds, *arrays
     if len(spins):
         return spins, None, *arrays
-    if selection.value(SPIN) is not None:
-        return None, speeds, *arrays
-    return speeds, None, *arrays
+    return (speeds, None, *arrays) if selection.value(SPIN) is None else (None, speeds, *arrays)

@@ -2,137 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
-from rich.console import Group, RenderableType
 
 from raceway.cli.console import warn
-from raceway.cli.frame import PATH, attempt, common, record, show
+from raceway.cli.frame import PATH, attempt, common, show
 from raceway.errors import SceneError
-from raceway.out.table import rows_table, written
-from raceway.out.wrapping import Words
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.sweep.store_command import at_option, store_argument
 
 if TYPE_CHECKING:
-    from raceway.studies.rotor.files import CoefficientFile
-    from raceway.studies.rotor.ross_table import RossTable
+    from rich.console import RenderableType
 
-
-#: Cross terms of an isotropic bearing, and changes along an axis, below this part of the largest of their kind are rounding.
-_ROUNDING = 1e-9
-_SHOWN = "{:.5g}"
-
-
-def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
-    """One row a point of a table over one axis, the ends of a table over two, by name and unit; sentences on what does not vary."""
-    axes = {name: 30.0 / np.pi * np.array(content[name]) for name in ("speed", "frequency") if content[name] is not None}
-    columns = {name: np.array(values) for name, values in content["coefficients"].items()}
-    largest = {letter: max(float(np.max(np.abs(v))) for n, v in columns.items() if n[0] == letter) for letter in "kc"}
-    shown = {name: v for name, v in columns.items() if np.max(np.abs(v)) > _ROUNDING * largest[name[0]]}
-    groups = _alike(shown)
-    constant = [
-        f"{_joined(names)} = {_text(name, values.flat[0])} {_unit(name)} at all points"
-        for name, names, values in groups
-        if np.ptp(values) <= _ROUNDING * largest[name[0]]
-    ]
-    varying = [(name, names, values) for name, names, values in groups if np.ptp(values) > _ROUNDING * largest[name[0]]]
-    rows = []
-    shape = tuple(len(values) for values in axes.values())
-    for place in np.ndindex(shape):
-        if len(shape) == 2 and any(0 < k < size - 1 for k, size in zip(place, shape, strict=True)):
-            continue
-        row = {f"{name}\nr/min": f"{values[k]:.6g}" for (name, values), k in zip(axes.items(), place, strict=True)}
-        for name, names, values in varying:
-            row[f"{_joined(names)}\n{_unit(name)}"] = _text(name, float(values[place]))
-        rows.append(row)
-    zero = [name for name in columns if name not in shown]
-    return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
-
-
-def _alike(columns: dict[str, np.ndarray]) -> list[tuple[str, list[str], np.ndarray]]:
-    """First name, all names and values of columns that have the same text everywhere."""
-    found: list[tuple[str, list[str], np.ndarray]] = []
-    for name, values in columns.items():
-        texts = [_text(name, float(v)) for v in values.flat]
-        for other, names, known in found:
-            if other[0] == name[0] and texts == [_text(other, float(v)) for v in known.flat]:
-                names.append(name)
-                break
-        else:
-            found.append((name, [name], values))
-    return found
-
-
-def _joined(names: list[str]) -> str:
-    """kyy = kzz; what all names end with stands once."""
-    return " = ".join(name[:3] for name in names) + names[0][3:].replace("_", " ")
-
-
-def _unit(name: str) -> str:
-    return "N/µm" if name[0] == "k" else "N s/m"
-
-
-def _text(name: str, value: float) -> str:
-    return _SHOWN.format(value * (1e-6 if name[0] == "k" else 1.0))
-
-
-#: Characters of a line, and of the blanks between two columns.
-_WIDTH, _BLANKS = 80, 3
-
-
-def export_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """The points, what is the same at all of them, what was written, what their reader has to know."""
-    rows, constant = point_rows(content)
-    parts: list[RenderableType] = [
-        Words(f"{content['tag']}, coefficients for {', '.join(content['programs'])}", "bold"),
-        *(rows_table(part) for part in _fitting(rows)),
-        *map(Words, constant),
-    ]
-    return Group(*parts, *(Words(f"note: {note}") for note in content["notes"]), *written(files))
-
-
-def _fitting(rows: list[dict[str, str]]) -> list[list[dict[str, str]]]:
-    """The rows as tables that fit the width, each with the axes."""
-    axes = [name for name in rows[0] if name.endswith("r/min")]
-    width = {
-        name: max(len(word) for word in (*name.split("\n"), *(row[name] for row in rows))) + _BLANKS for name in rows[0]
-    }
-    room = _WIDTH - sum(width[name] for name in axes)
-    parts: list[list[str]] = [[]]
-    for name in (name for name in rows[0] if name not in axes):
-        if parts[-1] and sum(width[one] for one in parts[-1]) + width[name] > room:
-            parts.append([])
-        parts[-1].append(name)
-    return [[{name: row[name] for name in (*axes, *part)} for row in rows] for part in parts]
-
-
-class ExportOptions(NamedTuple):
-    """What ``raceway export`` is given."""
-
-    store: Path
-    ross: Path | None
-    nastran: Path | None
-    ansys: Path | None
-    table: Path | None
-    at: tuple[str, ...]
-    source: str | None
-    damping: float
-    ross_version: str | None
-    node: int
-    number: int
-    tag: str | None
-    as_json: bool
-
-    def others(self) -> list[tuple[str | None, Path]]:
-        """Kind and path of each file besides that for ROSS."""
-        named = [("nastran", self.nastran), ("ansys", self.ansys), (None, self.table)]
-        return [(kind, path) for kind, path in named if path is not None]
+    from raceway.studies.rotor.export import CoefficientFile
 
 
 @click.command(short_help="Write a sweep's coefficients for a rotor program.")
@@ -161,8 +46,17 @@ class ExportOptions(NamedTuple):
 )  # fmt: skip
 @click.option("--tag", metavar="NAME", help="The element's name in ROSS [the bearing's].")
 @common
-@record(ExportOptions)
-def export(given: ExportOptions) -> int:
+def export(
+    store: Path,
+    ross: Path | None,
+    nastran: Path | None,
+    ansys: Path | None,
+    table: Path | None,
+    number: int,
+    ross_version: str | None,
+    as_json: bool,
+    **common_options: Any,
+) -> int:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for a rotor program.
 
     For ROSS, whose axes X, Y, Z are y, z, x here, for Nastran or Ansys, or as a table of all numbers. The sweep has at
@@ -183,31 +77,47 @@ def export(given: ExportOptions) -> int:
           --nastran bearing.bdf --ansys bearing.inp --table bearing.csv
     """
     from raceway.studies.rotor.export import export_coefficients, export_ross, kind_of
-    from raceway.studies.rotor.ross_table import check_name, installed_generation
+    from raceway.studies.rotor.ross_file import check_name, installed_generation
 
-    others = [(kind_of(kind, path), path) for kind, path in given.others()]
-    if given.ross is None and not others:
+    paths = {"nastran": nastran, "ansys": ansys, None: table}
+    others = [(kind_of(kind, path), path) for kind, path in paths.items() if path is not None]
+    if ross is None and not others:
         raise SceneError.at("raceway export", None, "writes nothing: give --ross, --nastran, --ansys or --table with a FILE")
-    for path in filter(None, (given.ross, *(path for _, path in others))):
+    for path in filter(None, (ross, *(path for _, path in others))):
         writable(path.parent)
-    same: Tables = {name: getattr(given, name) for name in ("at", "source", "damping", "node", "tag")}
-    made: list[tuple[RossTable | CoefficientFile, Path]] = []
-    if given.ross is not None:
-        check_name(given.ross)
-        if given.ross_version is None and installed_generation() is None:
+    exports: list[tuple[CoefficientFile, Path]] = []
+    if ross is not None:
+        check_name(ross)
+        if ross_version is None and installed_generation() is None:
             warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-        made.append((export_ross(given.store, ross_version=given.ross_version, **same), given.ross))
-    made += [(export_coefficients(given.store, kind=kind, number=given.number, **same), path) for kind, path in others]
+        exports.append((export_ross(store, ross_version=ross_version, **common_options), ross))
+    exports += [(export_coefficients(store, kind=kind, number=number, **common_options), path) for kind, path in others]
     files: list[str] = []
-    failed = attempt(lambda: [found.write(path) for found, path in made], files)
-    notes = list(dict.fromkeys(note for found, _ in made for note in found.notes))
-    programs = [found.program for found, _ in made]
+    failed = attempt(lambda: [bearing.write(path) for bearing, path in exports], files)
     content: Tables = {
-        "store": str(given.store),
-        **made[0][0].to_dict(),
-        "programs": programs,
-        "notes": notes,
+        "store": str(store),
+        **exports[0][0].to_dict(),
+        "programs": [bearing.program for bearing, _ in exports],
+        "notes": list(dict.fromkeys(note for bearing, _ in exports for note in bearing.notes)),
         "files": files,
     }
-    show(content, given.as_json, failed, lambda: export_screen(content, files))
+    show(content, as_json, failed, lambda: _screen(content))
     return 0
+
+
+def _screen(content: ReadTables) -> RenderableType:
+    """The points, what is the same at all of them, what was written, what their reader has to know."""
+    from rich.console import Group
+
+    from raceway.out.table import rows_table, written
+    from raceway.out.wrapping import Words
+    from raceway.studies.rotor.export import point_rows
+
+    rows, constant = point_rows(content)
+    return Group(
+        Words(f"{content['tag']}, coefficients for {', '.join(content['programs'])}", "bold"),
+        rows_table(rows),
+        *map(Words, constant),
+        *(Words(f"note: {note}") for note in content["notes"]),
+        *written(content["files"]),
+    )

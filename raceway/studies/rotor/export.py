@@ -1,40 +1,228 @@
-"""A sweep's coefficients for the rotor program ROSS, for Python and the command line alike: ``raceway.export_ross``."""
+"""A swept bearing's coefficients for rotor programs: ``raceway.export_ross``, ``raceway.export_coefficients``, and their answers."""
 
 from __future__ import annotations
 
 import json
+import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import attrs
+import numpy as np
+
 from raceway.cli.frame import slug
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door
+from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.doors import door, member
 from raceway.framework.registry import default_registry
+from raceway.framework.shown import Fact, Shown
+from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.pictures import given_axes
 from raceway.scene.changes import parse_value
 from raceway.scene.given import tidy
-from raceway.storage.tables import Tables
+from raceway.storage.files import write_whole
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.many.points import numbers_at
-from raceway.studies.rotor.coefficients import coefficients
-from raceway.studies.rotor.files import (
-    CoefficientFile,
-    ansys_notes,
-    ansys_text,
-    csv_text,
-    json_text,
-    nastran_notes,
-    nastran_text,
-    numbers_notes,
+from raceway.studies.rotor import files
+from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, unit
+from raceway.studies.rotor.ross_file import (
+    GENERATIONS,
+    NAMES,
+    check_name,
+    installed_generation,
+    ross_content,
+    ross_json,
+    ross_notes,
+    ross_toml,
+    through_points,
 )
-from raceway.studies.rotor.ross_table import GENERATIONS, RossTable, check_name, installed_generation, ross_file
 from raceway.studies.sweep.selection import parse_at, select
 from raceway.studies.sweep.store import open_store
 from raceway.studies.sweep.store_command import head
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from xarray import Dataset
 
-    from raceway.studies.sweep.selection import Selection
+PROGRAMS = {"nastran": "Nastran", "ansys": "Ansys", "csv": "CSV", "json": "JSON"}
+#: File endings of the kinds that have one of their own.
+ENDINGS = {".csv": "csv", ".json": "json"}
+_RPM = 30.0 / np.pi
+#: Cross terms of an isotropic bearing, and changes along an axis, below this part of the largest of their kind are rounding.
+_ROUNDING = 1e-9
+
+
+@attrs.frozen(eq=False, repr=False)
+class CoefficientFile(Shown):
+    """Coefficients of one bearing, written for one program.
+
+    Attributes
+    ----------
+    kind : "nastran", "ansys", "csv" or "json"; "ross" of a ``RossTable``
+    coefficients : ``speed``, ``frequency`` (n,) [rad/s], ``stiffness`` (..., 2, 2) [N/m], ``damping`` (..., 2, 2) [N s/m] over y, z,
+        and ``tangent``, ``tangent_damping`` (..., 5, 5) of the equilibria
+    tag : the bearing's name
+    notes : what the reader of the numbers has to know, a sentence each; the file begins with them
+    text : the file
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    >>> bearing = rw.export_coefficients(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}), kind="ansys", number=3)
+    >>> [line for line in bearing.text.splitlines() if line.startswith(("ET", "KEYOPT", "R,"))]
+    ['ET,3,COMBI214', 'KEYOPT,3,2,1', 'R,3,%K11_3%,%K22_3%,0,0,0,0']
+    """
+
+    kind: str
+    coefficients: Coefficients
+    tag: str
+    notes: tuple[str, ...]
+    text: str
+
+    @property
+    def program(self) -> str:
+        """The program that the file is for."""
+        return PROGRAMS[self.kind]
+
+    def to_dict(self) -> Tables:
+        """The numbers by our names, and the notes, as plain tables."""
+        return {"programs": [self.program], "tag": self.tag, **self.coefficients.to_dict(), "notes": list(self.notes)}
+
+    def write(self, path: str | Path) -> Path:
+        """Write the file, whole or not at all.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_whole(self.text.encode(), Path(path))
+
+    def to_xarray(self) -> Dataset:
+        """The nine coefficients [N/m, N s/m] over ``speed`` and ``frequency`` [rad/s].
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+        axes = self.coefficients.axes
+        columns = self.coefficients.columns().items()
+        variables = {name: (tuple(axes), values, {"units": unit(name)}) for name, values in columns}
+        coordinates = {name: (name, values, {"units": "rad/s"}) for name, values in axes.items()}
+        attributes = {"definition": self.coefficients.definition, "notes": "\n".join(self.notes)}
+        return labelled_dataset(variables, coordinates, attributes)
+
+    def plot(self, names: tuple[str, ...] = ("kyy", "kzz"), ax: Axes | None = None) -> Axes:
+        """Draw coefficients over the speed [r/min]; of a table over both, over the frequency at its first speed.
+
+        Parameters
+        ----------
+        names : of stiffnesses [N/µm], or of dampings [N s/m]; without their ending
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        panel, columns, ending = given_axes(ax), self.coefficients.columns(), self.coefficients.ending
+        axis, values = list(self.coefficients.axes.items())[-1]
+        for name in names:
+            column = columns[member("names", name.removesuffix(ending) + ending, columns)]
+            column = column if column.ndim == 1 else column[0]
+            panel.plot(_RPM * values, column * (1e-6 if name.startswith("k") else 1.0), marker="o", label=name)
+        panel.set_xlabel(f"{axis} [r/min]")
+        panel.set_ylabel("[N/µm]" if all(name.startswith("k") for name in names) else "[N s/m]")
+        panel.legend(frameon=False)
+        return panel
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        rows, constant = point_rows(self.to_dict())
+        over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
+        # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
+        notes = sorted(self.notes, key=lambda note: "next to nothing" not in note and "in these numbers" not in note)
+        facts = [*map(_point_fact, (rows[0], rows[-1])), *(("everywhere", "", text) for text in constant)]
+        return f"{self.tag}, coefficients for {self.program}\n{over}", [*facts, *(("note", "", text) for text in notes)]
+
+
+@attrs.frozen(eq=False, repr=False)
+class RossTable(CoefficientFile):
+    """Coefficients of one bearing for ROSS.
+
+    Attributes
+    ----------
+    coefficients, tag, notes : as of a ``CoefficientFile``;  text : the file as TOML
+    generation : of ROSS, 2 or 3
+    content : the keyword arguments of ``ross.BearingElement``
+    names : our coefficient -> ROSS's, whose X, Y, Z are y, z, x here
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    >>> left = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}), tag="left")
+    >>> left.tag, left.names["kyy"], left.to_xarray().kyy.attrs["units"]
+    ('left', 'kxx', 'N/m')
+    """
+
+    generation: int
+    content: Tables
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Our coefficient -> ROSS's."""
+        return {f"{ours}{self.coefficients.ending}": ross for ours, ross in NAMES.items()}
+
+    @property
+    def program(self) -> str:
+        """The program that the file is for."""
+        return f"ROSS {self.generation}"
+
+    def to_dict(self) -> Tables:
+        """The numbers by our names, and the notes, as plain tables."""
+        return {"ross": self.generation, **CoefficientFile.to_dict(self)}
+
+    def write(self, path: str | Path) -> Path:
+        """Write the TOML or JSON file that ``ross.BearingElement.load`` reads, by the ending.
+
+        Raises
+        ------
+        RacewayError
+            Another ending, or a folder that cannot be written.
+        """
+        path = Path(path)
+        check_name(path)
+        text = self.text if path.suffix.lower() == ".toml" else ross_json(self.tag, self.content, self.notes)
+        return write_whole(text.encode(), path)
+
+    def element(self, node: int | None = None) -> Any:
+        """The ``ross.BearingElement``, which passes through the points of the table in ROSS 2, too.
+
+        Parameters
+        ----------
+        node : of the rotor, which the element's tag then names, for a rotor on several; by default the table's own
+
+        Raises
+        ------
+        RacewayError
+            ROSS is missing.
+        """
+        try:
+            from ross import BearingElement
+        except ImportError as why:
+            raise RacewayError(f"an element needs ROSS: {extra('ross')} ({why})") from None
+        content = self.content if node is None else {**self.content, "n": node, "tag": f"{self.tag}, node {node}"}
+        with tempfile.TemporaryDirectory(prefix="raceway-ross-") as folder:
+            file = write_whole(ross_toml(self.tag, content, self.notes).encode(), Path(folder) / "bearing.toml")
+            return through_points(BearingElement.load(file))
+
+
+def ross_table(table: Coefficients, generation: int, tag: str, node: int, origin: tuple[str, ...]) -> RossTable:
+    """A table of coefficients for ROSS; ``origin``: sentences about where the numbers come from."""
+    content, notes = ross_content(table, generation, tag, node), (*origin, *ross_notes(table, generation))
+    return RossTable("ross", table, tag, notes, ross_toml(tag, content, notes), generation, content)
 
 
 @door
@@ -80,64 +268,23 @@ def export_ross(
 
     >>> import raceway as rw
     >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-    >>> found = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}))
-    >>> found.tag, (1e-6 * found.coefficients.stiffness[:, 0, 0]).round(1).tolist()  # kyy [N/um]
+    >>> bearing = rw.export_ross(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}))
+    >>> bearing.tag, (1e-6 * bearing.coefficients.stiffness[:, 0, 0]).round(1).tolist()  # kyy [N/um]
     ('B7206C', [238.2, 238.1, 236.8, 231.5, 218.9])
     """
     if path is not None:
         check_name(Path(path))
-    labelled = data_of(data)
-    found = select(labelled, chosen(at, labelled))
-    table = coefficients(found, source, damping)
-    name = slug(tag if tag is not None else name_of(found))
-    made = RossTable(table, ross_file(table, _generation(ross_version), name, node, head(found)))
+    table, tag, origin = _swept(data, at, source, damping, LEAST_POINTS, tag)
+    if ross_version is None:
+        generation = installed_generation() or GENERATIONS[-1]
+    elif str(ross_version) in map(str, GENERATIONS):
+        generation = int(ross_version)
+    else:
+        raise SceneError.at("ross_version", ross_version, f"must be one of {', '.join(map(str, GENERATIONS))}")
+    bearing = ross_table(table, generation, tag, node, origin)
     if path is not None:
-        made.write(path)
-    return made
-
-
-def chosen(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
-    """Key -> value, numbers in the units of the keys."""
-    if not isinstance(at, Mapping):
-        return parse_at(at)
-    given = {key: parse_value(value) if isinstance(value, str) else value for key, value in tidy(at).items()}
-    return numbers_at(json.loads(data.attrs["scene"]), given, default_registry())
-
-
-def data_of(data: Any) -> Dataset:
-    """The labelled results of a sweep, as such or in the folder of its store.
-
-    Raises
-    ------
-    RacewayError
-        Something else, or a folder without a store.
-    """
-    if isinstance(data, str | Path):
-        with open_store(data) as store:
-            return store.to_xarray()
-    if hasattr(data, "data_vars") and "scene" in data.attrs:
-        return data
-    raise RacewayError(f"{type(data).__name__} is no sweep: give what raceway.sweep returned, or the folder of its store")
-
-
-def name_of(found: Selection) -> str:
-    """The bearing's name: its preset, or the first line of the scene's title where it has none."""
-    preset = found.value("bearing.preset")
-    return str(preset) if preset else found.title.partition("\n")[0]
-
-
-def _generation(given: int | str | None) -> int:
-    if given is None:
-        return installed_generation() or GENERATIONS[-1]
-    if str(given) not in {str(one) for one in GENERATIONS}:
-        raise SceneError.at("ross_version", given, f"must be one of {', '.join(map(str, GENERATIONS))}")
-    return int(given)
-
-
-#: File endings that tell a kind by themselves.
-ENDINGS = {".csv": "csv", ".json": "json"}
-KINDS = ("nastran", "ansys", "csv", "json")
-_LEAST = 2
+        bearing.write(path)
+    return bearing
 
 
 @door
@@ -183,29 +330,25 @@ def export_coefficients(
     --------
     >>> import raceway as rw
     >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-    >>> found = rw.export_coefficients(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:3"}), kind="csv")
-    >>> found.text.splitlines()[len(found.notes)].split(",")[:3]
+    >>> bearing = rw.export_coefficients(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:3"}), kind="csv")
+    >>> bearing.text.splitlines()[len(bearing.notes)].split(",")[:3]
     ['speed [rad/s]', 'kyy [N/m]', 'kyz [N/m]']
     """
     kind = kind_of(kind, path)
-    labelled = data_of(data)
-    selection = select(labelled, chosen(at, labelled))
-    table = coefficients(selection, source, damping, _LEAST)
-    name = slug(tag if tag is not None else name_of(selection))
-    own = {"nastran": lambda: nastran_notes(table, number), "ansys": lambda: ansys_notes(table, number)}.get(
-        kind, numbers_notes
-    )()
-    notes = (*head(selection), table.definition, *own, *table.notes)
+    table, tag, origin = _swept(data, at, source, damping, 2, tag)
+    format_notes = {"nastran": files.nastran_notes, "ansys": files.ansys_notes}.get(kind)
+    about_format = files.NUMBERS_NOTES if format_notes is None else format_notes(table, number)
+    notes = (*origin, table.definition, *about_format, *table.notes)
     text = {
-        "nastran": lambda: nastran_text(table, notes, number, node),
-        "ansys": lambda: ansys_text(table, notes, number),
-        "csv": lambda: csv_text(table, notes),
-        "json": lambda: json_text(table, notes, name),
+        "nastran": lambda: files.nastran_text(table, notes, number, node),
+        "ansys": lambda: files.ansys_text(table, notes, number),
+        "csv": lambda: files.csv_text(table, notes),
+        "json": lambda: files.json_text(table, notes, tag),
     }[kind]()
-    made = CoefficientFile(kind, table, name, notes, text)
+    bearing = CoefficientFile(kind, table, tag, notes, text)
     if path is not None:
-        made.write(path)
-    return made
+        bearing.write(path)
+    return bearing
 
 
 def kind_of(kind: str | None, path: str | Path | None) -> str:
@@ -216,10 +359,83 @@ def kind_of(kind: str | None, path: str | Path | None) -> str:
     SceneError
         An unknown one.
     """
-    if kind is None and path is not None and Path(path).suffix.lower() not in ENDINGS:
-        raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(ENDINGS)}")
     if kind is None and path is not None:
         kind = ENDINGS.get(Path(path).suffix.lower())
-    if kind not in KINDS:
-        raise SceneError.at("kind", kind, f"must be one of {', '.join(KINDS)}")
+        if kind is None:
+            raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(ENDINGS)}")
+    if kind not in PROGRAMS:
+        raise SceneError.at("kind", kind, f"must be one of {', '.join(PROGRAMS)}")
     return kind
+
+
+def _swept(
+    data: Any, at: Mapping[str, Any] | Iterable[str], source: str | None, damping: float, least: int, tag: str | None
+) -> tuple[Coefficients, str, tuple[str, ...]]:
+    """Coefficients of a sweep, the bearing's name, and sentences on where they come from."""
+    dataset = _dataset(data)
+    selection = select(dataset, _values_at(at, dataset))
+    table = coefficients(selection, source, damping, least)
+    name = tag if tag is not None else str(selection.value("bearing.preset") or selection.title.partition("\n")[0])
+    return table, slug(name), head(selection)
+
+
+def _values_at(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
+    """Key -> value, numbers in the units of the keys."""
+    if not isinstance(at, Mapping):
+        return parse_at(at)
+    values = {key: parse_value(value) if isinstance(value, str) else value for key, value in tidy(at).items()}
+    return numbers_at(json.loads(data.attrs["scene"]), values, default_registry())
+
+
+def _dataset(data: Any) -> Dataset:
+    """The labelled results of a sweep, as such or in the folder of its store."""
+    if isinstance(data, str | Path):
+        with open_store(data) as store:
+            return store.to_xarray()
+    if hasattr(data, "data_vars") and "scene" in data.attrs:
+        return data
+    raise RacewayError(f"{type(data).__name__} is no sweep: give what raceway.sweep returned, or the folder of its store")
+
+
+def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
+    """Rows of a table over one axis, the corners of one over two, by name and unit; sentences on what does not vary.
+
+    Columns with the same text at all points are one, ``kyy = kzz``; stiffnesses in N/µm, speeds in r/min.
+    """
+    axes = {f"{name}\nr/min": _RPM * np.array(content[name]) for name in ("speed", "frequency") if content[name] is not None}
+    columns = {name: np.array(values) for name, values in content["coefficients"].items()}
+    bound = {
+        kind: _ROUNDING * max(float(np.max(np.abs(v))) for name, v in columns.items() if name[0] == kind) for kind in "kc"
+    }
+    zero = [name for name, values in columns.items() if np.max(np.abs(values)) <= bound[name[0]]]
+    alike: dict[tuple[str, ...], list[str]] = {}
+    for name, values in columns.items():
+        if name not in zero:
+            alike.setdefault((name[0], *(_text(name, value) for value in values.flat)), []).append(name)
+    constant, varying = [], {}
+    for name, *others in alike.values():
+        # What all names end with stands once.
+        title = " = ".join(word[:3] for word in (name, *others)) + name[3:].replace("_", " ")
+        unit_shown = "N/µm" if name[0] == "k" else "N s/m"
+        if np.ptp(columns[name]) <= bound[name[0]]:
+            constant.append(f"{title} = {_text(name, columns[name].flat[0])} {unit_shown} at all points")
+        else:
+            varying[f"{title}\n{unit_shown}"] = name
+    shape = tuple(len(values) for values in axes.values())
+    rows = []
+    for point in np.ndindex(shape):
+        if len(shape) == 1 or all(k in (0, size - 1) for k, size in zip(point, shape, strict=True)):
+            row = {title: f"{values[k]:.6g}" for (title, values), k in zip(axes.items(), point, strict=True)}
+            rows.append(row | {title: _text(name, columns[name][point]) for title, name in varying.items()})
+    return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
+
+
+def _text(name: str, value: float) -> str:
+    return f"{value * (1e-6 if name[0] == 'k' else 1.0):.5g}"
+
+
+def _point_fact(row: Mapping[str, str]) -> Fact:
+    """The speeds of a point, and its numbers."""
+    cells = [(*title.split("\n"), value) for title, value in row.items()]
+    speeds = ", ".join(f"{value} {unit}" for _, unit, value in cells if unit == "r/min")
+    return f"at {speeds}", "", ", ".join(f"{name} {value} {unit}" for name, unit, value in cells if unit != "r/min")

@@ -1,4 +1,24 @@
-"""A bearing's coefficients as a file, for programs that read text."""
+"""Coefficients of one bearing as a file: bulk data for Nastran, commands for Ansys, CSV and JSON of all numbers.
+
+Nastran
+    A bushing whose stiffness and damping depend on the frequency: PBUSH holds nominal values, PBUSHT the numbers of tables over the
+    frequency [Hz], TABLED1 the tables.  Fields as in the references of Autodesk Nastran (entries PBUSHT, TABLED1) and OptiStruct
+    (entries CBUSH, PBUSH, PBUSHT, TABLED1); large fields of 16 characters for real numbers.
+
+Ansys Mechanical APDL
+    The bearing element COMBI214 with real constants that are tables over OMEGS, the amplitude of the rotational velocity, in the
+    order of the element: K11, K22, K12, K21, C11, C22, C12, C21.  KEYOPT(2) = 1 lays the element in the YZ plane, so that 1, 2 are
+    y, z, and x is the axis.
+
+References
+----------
+https://help.autodesk.com/cloudhelp/2022/ENU/NSTRN-Reference/files/GUID-A544DE9B-E51F-45D5-99AB-DCA1D308A7FF.htm (PBUSHT)
+https://help.autodesk.com/cloudhelp/2022/DEU/NSTRN-Reference/files/GUID-F7947A2D-E28B-40DC-B721-37405D08ECE5.htm (TABLED1)
+https://help.altair.com/hwsolvers/os/topics/solvers/os/pbusht_bulk_r.htm
+Mechanical APDL, Rotordynamic Analysis Guide, 3.3.2.1, "User-Defined Stiffness and Damping Characteristics", and Theory Reference,
+13.214, "COMBI214"; command reference, *DIM (OMEGS takes positive values and applies to COMBI214 only).  The order of the constants and
+KEYOPT(3) = 1 as in another exporter, https://github.com/FE-Berserker/Baffalo (Bearingprint.m, Tableprint.m).
+"""
 
 from __future__ import annotations
 
@@ -7,175 +27,37 @@ import io
 import json
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 
-import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
-from raceway.framework.shown import Fact, Shown
-from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients
+from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients, unit
 from raceway.studies.sweep.variables import DOF
 
-
-@attrs.frozen(eq=False, repr=False)
-class CoefficientFile(Shown):
-    """Coefficients of one bearing, written for one program.
-
-    Attributes
-    ----------
-    kind : "nastran", "ansys", "csv" or "json"
-    coefficients : ``speed``, ``frequency`` (n,) [rad/s], ``stiffness`` (..., 2, 2) [N/m], ``damping`` (..., 2, 2) [N s/m] over y, z,
-        and ``tangent``, ``tangent_damping`` (..., 5, 5) of the equilibria
-    tag : the bearing's name
-    notes : what the reader of the numbers has to know, a sentence each; the file begins with them
-    text : the file
-
-    Examples
-    --------
-    >>> import raceway as rw
-    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-    >>> found = rw.export_coefficients(rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:20000:5"}), kind="ansys", number=3)
-    >>> [line for line in found.text.splitlines() if line.startswith(("ET", "KEYOPT", "R,"))]
-    ['ET,3,COMBI214', 'KEYOPT,3,2,1', 'R,3,%K11_3%,%K22_3%,0,0,0,0']
-    """
-
-    kind: str
-    coefficients: Coefficients
-    tag: str
-    notes: tuple[str, ...]
-    text: str
-
-    @property
-    def program(self) -> str:
-        """Whom the file is for."""
-        return {"nastran": "Nastran", "ansys": "Ansys"}.get(self.kind, self.kind.upper())
-
-    def to_dict(self) -> Tables:
-        """The numbers by our names, and the notes, as plain tables."""
-        return {"programs": [self.program], "tag": self.tag, **self.coefficients.to_dict(), "notes": list(self.notes)}
-
-    def write(self, path: str | Path) -> Path:
-        """Write the file, whole or not at all.
-
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
-        return write_whole(self.text.encode(), Path(path))
-
-    def _shown(self) -> tuple[str, list[Fact]]:
-        lines = self.text.count("\n")
-        return f"{self.tag}, coefficients for {self.program}\n{lines} lines", [("note", "", note) for note in self.notes]
-
-
-LINEAR = "linear: that the stiffness depends on the amplitude is left out"
+#: Numbers of a Nastran file: the property's, then its tables'; the next bearing's may begin behind them.
+NUMBERS = 13
+_LARGEST_PROPERTY = 99_999_999 - NUMBERS  # of a field of 8 characters
+_LARGEST_TYPE = 99_999
+_NASTRAN_COMMENT, _APDL_COMMENT = "$ ", "! "
+#: Units of Nastran's directions 1 to 3 and 4 to 6.
+_UNITS = {"K": ("N/m", "N m/rad"), "B": ("N s/m", "N m s/rad")}
+#: Ansys' real constants in their order -> our entries.
+CONSTANTS = {
+    "K11": "kyy", "K22": "kzz", "K12": "kyz", "K21": "kzy",
+    "C11": "cyy", "C22": "czz", "C12": "cyz", "C21": "czy",
+}  # fmt: skip
+#: Values of a line, which APDL assigns to successive rows; it takes up to ten.
+_VALUES = 4
+_LINEAR = "linear: that the stiffness depends on the amplitude is left out"
 #: Parts of the largest entry of its kind below which an entry is rounding.
-ROUNDING = 1e-9
+_ROUNDING = 1e-9
 #: Characters of a comment's line: bulk data has no more.
 _WIDTH = 72
 
 
-def comments(sentences: Iterable[str], sign: str) -> list[str]:
-    """Lines of ASCII, which is all that old readers take."""
-    plain = (one.replace("µ", "u").encode("ascii", "replace").decode() for one in sentences)
-    return [line for one in plain for line in textwrap.wrap(one, _WIDTH, initial_indent=sign, subsequent_indent=f"{sign}  ")]
-
-
-def cross_terms(table: Coefficients) -> str:
-    """Of the directions across the axis; empty where there are none."""
-    found = []
-    for letter, matrix in (("k", table.stiffness), ("c", table.damping)):
-        along = np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))
-        across = np.maximum(np.abs(matrix[..., 0, 1]), np.abs(matrix[..., 1, 0]))
-        share = float(np.max(across / np.where(along > 0.0, along, 1.0)))
-        if share > ROUNDING and along.any():
-            found.append(f"{letter}yz, {letter}zy (up to {share:.2g} of the diagonal)")
-    return f"left out: {' and '.join(found)}" if found else ""
-
-
-def tilt_coupling(table: Coefficients) -> str:
-    """Forces that a tilt makes, beside a diagonal with the tilt held; empty where there are none."""
-    matrix = table.tangent
-    if not matrix.any():
-        return ""
-    size = np.sqrt(np.abs(np.einsum("...ii->...i", matrix)))
-    share = np.abs(matrix[..., :3, 3:]) / (size[..., :3, None] * size[..., None, 3:])
-    largest = float(np.max(share))
-    return (
-        f"left out: the forces that a tilt makes, and the moments of a displacement, up to {largest:.2g} of the geometric mean of "
-        "their diagonal entries"
-        if largest > ROUNDING
-        else ""
-    )
-
-
-def csv_text(table: Coefficients, head: Sequence[str]) -> str:
-    """A line each point; the head's lines begin with #, and the line behind them names the columns and their units."""
-    axes = table.axes
-    points = np.meshgrid(*axes.values(), indexing="ij")
-    columns = {f"{name} [rad/s]": values for name, values in zip(axes, points, strict=True)}
-    columns |= {f"{name} [{'N/m' if name[0] == 'k' else 'N s/m'}]": values for name, values in table.columns().items()}
-    columns |= dict(_entries("K", table.tangent)) | dict(_entries("C", table.tangent_damping))
-    text = io.StringIO()
-    text.writelines(f"# {sentence}\n" for sentence in head)
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(values.ravel().tolist() for values in columns.values()), strict=True))
-    return text.getvalue()
-
-
-def json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
-    """The same as one object; the matrices are lists over points, rows and columns."""
-    content: Tables = {
-        "tag": tag,
-        "notes": list(head),
-        "source": table.source,
-        "definition": table.definition,
-        **{name: {"unit": "rad/s", "values": values.tolist()} for name, values in table.axes.items()},
-        "coefficients": {
-            name: {"unit": "N/m" if name[0] == "k" else "N s/m", "values": values.tolist()}
-            for name, values in table.columns().items()
-        },
-        "coordinates": list(DOF),
-        "K": {"unit": [[_unit("K", a, b) for b in DOF] for a in DOF], "values": table.tangent.tolist()},
-        "C": {"unit": [[_unit("C", a, b) for b in DOF] for a in DOF], "values": table.tangent_damping.tolist()},
-    }
-    return json.dumps(content, indent=1, allow_nan=False) + "\n"
-
-
-def numbers_notes() -> list[str]:
-    """What the reader of the file has to know."""
-    return [
-        "SI; coordinates x (the axis), y, z, tilt_y, tilt_z (about y, z) of the bearing",
-        "kyy ... czz, kxx: the tilts held, or, by their names, following; x as told; K, C: 5x5 of the contacts at the equilibrium, every other motion held: "
-        "small motions, without shaft, rotor and supports",
-    ]
-
-
-def _entries(letter: str, matrix: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
-    for i, a in enumerate(DOF):
-        for j, b in enumerate(DOF):
-            yield f"{letter} {a} {b} [{_unit(letter, a, b)}]", matrix[..., i, j]
-
-
-def _unit(letter: str, row: str, column: str) -> str:
-    """Of force or moment over displacement or tilt, or over their rates."""
-    force, over = ("N m" if "tilt" in row else "N"), ("rad" if "tilt" in column else "m")
-    return f"{force}{' s' if letter == 'C' else ''}/{over}"
-
-
-#: Numbers of a file: the property's, then its tables'; the next bearing's may begin behind them.
-NUMBERS = 13
-_LARGEST_PROPERTY = 99_999_999 - NUMBERS  # of a field of 8 characters
-_NASTRAN_COMMENT = "$ "
-
-
 def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: int) -> str:
-    """The file.
+    """Bulk data of Nastran.
 
     Parameters
     ----------
@@ -190,23 +72,30 @@ def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: in
     """
     if not 0 < number <= _LARGEST_PROPERTY:
         raise RacewayError(f"number {number}: Nastran numbers its properties from 1 to {_LARGEST_PROPERTY}")
-    hertz = _frequency(table)
+    if len(table.axes) > 1:
+        raise RacewayError(
+            f"PBUSHT has tables over one axis, the frequency (`{SPEED}`), and these coefficients go over the speed of the shaft "
+            f"(`{SPIN}`) as well: choose one with --at {SPIN}=..."
+        )
+    hertz = table.axis / (2.0 * np.pi)
     stiffness, damping = _diagonals(table)
     tables = {("K", k): stiffness[:, k] for k in range(6)} | {("B", k): damping[:, k] for k in range(6)}
-    numbers = {place: number + 1 + k if values.any() else 0 for k, (place, values) in enumerate(tables.items())}
-    lines = comments(head, _NASTRAN_COMMENT)
-    lines += _element(number, node)
+    numbers = {entry: number + 1 + k if values.any() else None for k, (entry, values) in enumerate(tables.items())}
+    element = [_small("CBUSH", [number, number, node or "GA", None if node else "GB", None, None, None, 0])]
+    if not node:
+        words = "the element, to complete: GA on the shaft, GB on the housing or blank for ground"
+        element = [*comments([words], _NASTRAN_COMMENT), _NASTRAN_COMMENT + element[0]]
+    lines = [*comments(head, _NASTRAN_COMMENT), *element]
     lines += _large("PBUSH", [number, "K", *stiffness[0], None, "B", *damping[0]])
-    lines += _property(number, numbers)
-    for place, values in tables.items():
-        if numbers[place]:
+    rows = [(letter, [numbers[letter, k] for k in range(6)]) for letter in "KB"]
+    for k, (letter, row) in enumerate((letter, row) for letter, row in rows if any(row)):
+        lines.append(_small("+" if k else "PBUSHT", [None if k else number, letter, *row]))
+    for (letter, k), values in tables.items():
+        if table_number := numbers[letter, k]:
             pairs = np.stack([hertz, values], axis=-1).ravel()
-            lines += [f"{_NASTRAN_COMMENT}{place[0]}{place[1] + 1} [{_UNITS[place[0]][place[1] // 3]}] over Hz"]
-            lines += _large("TABLED1", [numbers[place], *[None] * 7, *pairs, "ENDT"])
+            lines += [f"{_NASTRAN_COMMENT}{letter}{k + 1} [{_UNITS[letter][k // 3]}] over Hz"]
+            lines += _large("TABLED1", [table_number, *[None] * 7, *pairs, "ENDT"])
     return "\n".join(lines) + "\n"
-
-
-_UNITS = {"K": ("N/m", "N m/rad"), "B": ("N s/m", "N m s/rad")}
 
 
 def nastran_notes(table: Coefficients, number: int) -> list[str]:
@@ -230,7 +119,7 @@ def nastran_notes(table: Coefficients, number: int) -> list[str]:
         "PBUSH holds the values of the first point: normal modes and statics take them, frequency response takes the tables",
         "TABLED1: straight lines between the points, and beyond the ends",
         tilts,
-        *filter(None, [cross_terms(table), tilt_coupling(table) if with_tilts else "", LINEAR]),
+        *filter(None, [_cross_terms(table), _tilt_coupling(table) if with_tilts else "", _LINEAR]),
     ]
 
 
@@ -238,58 +127,48 @@ def _holds_tilts(table: Coefficients) -> bool:
     return table.source == "tangent" and table.tilt == "locked"
 
 
-def _frequency(table: Coefficients) -> np.ndarray:
-    """(n,) [Hz]."""
-    if table.speed is not None and table.frequency is not None:
-        raise RacewayError(
-            f"PBUSHT has tables over one axis, the frequency (`{SPEED}`), and these coefficients go over the speed of the shaft "
-            f"(`{SPIN}`) as well: choose one with --at {SPIN}=..."
-        )
-    axis = table.frequency if table.frequency is not None else table.speed
-    assert axis is not None
-    return axis / (2.0 * np.pi)
-
-
 def _diagonals(table: Coefficients) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and damping (n, 6) along and about x, y, z."""
     stiffness, damping = np.zeros((len(table.axial), 6)), np.zeros((len(table.axial), 6))
     stiffness[:, 0] = table.axial
-    for found, matrix in ((stiffness, table.stiffness), (damping, table.damping)):
-        found[:, 1:3] = np.einsum("nii->ni", matrix)
+    for diagonal, matrix in ((stiffness, table.stiffness), (damping, table.damping)):
+        diagonal[:, 1:3] = np.einsum("nii->ni", matrix)
     if _holds_tilts(table):
         stiffness[:, 4:] = np.einsum("nii->ni", table.tangent)[:, 3:]
         damping[:, [0, 4, 5]] = np.einsum("nii->ni", table.tangent_damping)[:, [0, 3, 4]]
     return stiffness, damping
 
 
-def _element(number: int, node: int) -> list[str]:
-    """CBUSH to ground in the basic system."""
-    if node:
-        return [_small("CBUSH", [number, number, node, None, None, None, None, 0])]
-    return [
-        *comments(["the element, to complete: GA on the shaft, GB on the housing or blank for ground"], _NASTRAN_COMMENT),
-        _NASTRAN_COMMENT + _small("CBUSH", [number, number, "GA", "GB", None, None, None, 0]),
-    ]
+def _cross_terms(table: Coefficients) -> str:
+    """Of the directions across the axis; empty where there are none."""
+    terms = []
+    for letter, matrix in (("k", table.stiffness), ("c", table.damping)):
+        along = np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))
+        across = np.maximum(np.abs(matrix[..., 0, 1]), np.abs(matrix[..., 1, 0]))
+        share = float(np.max(across / np.where(along > 0.0, along, 1.0)))
+        if share > _ROUNDING and along.any():
+            terms.append(f"{letter}yz, {letter}zy (up to {share:.2g} of the diagonal)")
+    return f"left out: {' and '.join(terms)}" if terms else ""
 
 
-def _property(number: int, numbers: dict[tuple[str, int], int]) -> list[str]:
-    lines, first = [], True
-    for letter in "KB":
-        row = [numbers[letter, k] or None for k in range(6)]
-        if any(row):
-            lines.append(_small("PBUSHT" if first else "+", [number if first else None, letter, *row]))
-            first = False
-    return lines
+def _tilt_coupling(table: Coefficients) -> str:
+    """Forces that a tilt makes, beside a diagonal with the tilt held; empty where there are none."""
+    if not table.tangent.any():
+        return ""
+    size = np.sqrt(np.abs(np.einsum("...ii->...i", table.tangent)))
+    largest = float(np.max(np.abs(table.tangent[..., :3, 3:]) / (size[..., :3, None] * size[..., None, 3:])))
+    words = f"left out: the forces that a tilt makes, and the moments of a displacement, up to {largest:.2g} of the geometric mean of "
+    return f"{words}their diagonal entries" if largest > _ROUNDING else ""
 
 
 def _small(name: str, fields: Sequence[object]) -> str:
     """One line of fields of 8 characters."""
-    return "".join([f"{name:8}", *(f"{'' if one is None else one!s:8}" for one in fields)]).rstrip()
+    return "".join([f"{name:8}", *(f"{'' if field is None else field!s:8}" for field in fields)]).rstrip()
 
 
 def _large(name: str, fields: Sequence[object]) -> list[str]:
     """Lines of four fields of 16 characters; an entry fills pairs of lines."""
-    texts = [_field(one) for one in fields]
+    texts = [_large_field(field) for field in fields]
     rows = [texts[k : k + 4] for k in range(0, len(texts), 4)]
     rows += [[""]] if len(rows) % 2 else []
     return [
@@ -298,25 +177,14 @@ def _large(name: str, fields: Sequence[object]) -> list[str]:
     ]
 
 
-def _field(value: object) -> str:
+def _large_field(value: object) -> str:
     if value is None:
         return ""
     return f"{float(value):.9E}" if isinstance(value, float | np.floating) else str(value)
 
 
-#: Real constants in their order -> our entries.
-CONSTANTS = {
-    "K11": "kyy", "K22": "kzz", "K12": "kyz", "K21": "kzy",
-    "C11": "cyy", "C22": "czz", "C12": "cyz", "C21": "czy",
-}  # fmt: skip
-_APDL_COMMENT = "! "
-#: Values of a line, which APDL assigns to successive rows; it takes up to ten.
-_VALUES = 4
-_LARGEST_TYPE = 99_999
-
-
 def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
-    """The file.
+    """Commands of Ansys.
 
     Parameters
     ----------
@@ -330,30 +198,33 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     """
     if not 0 < number <= _LARGEST_TYPE:
         raise RacewayError(f"number {number}: give an element type of Ansys from 1 to {_LARGEST_TYPE}")
-    speed = _speed(table)
+    if table.frequency is not None:
+        remedy = f"choose one with --at {SPEED}=..." if table.speed is not None else f"sweep over `{SPIN}` instead"
+        raise RacewayError(
+            f"tables of COMBI214 go over the speed of the shaft (`{SPIN}`), and these coefficients go over the frequency "
+            f"(`{SPEED}`): {remedy}"
+        )
     columns = table.columns()
     largest = {"K": float(np.max(np.abs(table.stiffness))), "C": float(np.max(np.abs(table.damping)))}
-    lines = comments(head, _APDL_COMMENT)
-    constants = []
-    for constant, ours in CONSTANTS.items():
-        ours += table.ending
-        values, name = columns[ours], f"{constant}_{number}"
-        unit = "N/m" if constant[0] == "K" else "N s/m"
-        there = bool(np.max(np.abs(values)) > ROUNDING * largest[constant[0]])
-        constants.append(f"%{name}%" if there else "0")
-        if there:
-            lines += [f"{_APDL_COMMENT}{constant}, {ours} [{unit}] over rad/s", f"*DIM,{name},TABLE,{len(speed)},1,1,OMEGS"]
-            lines += [*_assigned(name, 0, speed), *_assigned(name, 1, values)]
+    lines, constants = comments(head, _APDL_COMMENT), []
+    for constant, entry in CONSTANTS.items():
+        values, name = columns[entry + table.ending], f"{constant}_{number}"
+        if not np.max(np.abs(values)) > _ROUNDING * largest[constant[0]]:
+            constants.append("0")
+            continue
+        constants.append(f"%{name}%")
+        lines += [
+            f"{_APDL_COMMENT}{constant}, {entry}{table.ending} [{unit(entry)}] over rad/s",
+            f"*DIM,{name},TABLE,{len(table.axis)},1,1,OMEGS",
+            *_assigned(name, 0, table.axis),
+            *_assigned(name, 1, values),
+        ]
     lines += [f"ET,{number},COMBI214", f"KEYOPT,{number},2,1"]
-    if not _symmetric(table):
+    if not all(map(_symmetric, (table.stiffness, table.damping))):
         lines.append(f"KEYOPT,{number},3,1")
     lines += [f"R,{number},{','.join(constants[:6])}", f"RMORE,{','.join(constants[6:])}"]
-    lines += [
-        *comments(["the element, to complete: nodes on the shaft and on the housing"], _APDL_COMMENT),
-        f"{_APDL_COMMENT}TYPE,{number}",
-        f"{_APDL_COMMENT}REAL,{number}",
-        f"{_APDL_COMMENT}E,SHAFT,HOUSING",
-    ]
+    lines += comments(["the element, to complete: nodes on the shaft and on the housing"], _APDL_COMMENT)
+    lines += [f"{_APDL_COMMENT}{command}" for command in (f"TYPE,{number}", f"REAL,{number}", "E,SHAFT,HOUSING")]
     return "\n".join(lines) + "\n"
 
 
@@ -365,31 +236,77 @@ def ansys_notes(table: Coefficients, number: int) -> list[str]:
         f"element type {number}, real constants {number}, tables K11_{number} ... C21_{number} over OMEGS, the speed of the shaft",
         "COMBI214 carries y and z only: kxx, moments, and the coupling of x, y, z with tilts are left out; how the tilt is held "
         "belongs to the numbers",
-        LINEAR,
+        _LINEAR,
     ]
 
 
-def _speed(table: Coefficients) -> np.ndarray:
-    """(n,) [rad/s]."""
-    if table.frequency is None:
-        assert table.speed is not None
-        return table.speed
-    remedy = f"choose one with --at {SPEED}=..." if table.speed is not None else f"sweep over `{SPIN}` instead"
-    raise RacewayError(
-        f"tables of COMBI214 go over the speed of the shaft (`{SPIN}`), and these coefficients go over the frequency (`{SPEED}`): "
-        f"{remedy}"
-    )
-
-
-def _symmetric(table: Coefficients) -> bool:
+def _symmetric(matrix: np.ndarray) -> bool:
     """To rounding of the largest entry."""
-    return all(
-        bool(np.allclose(one, np.swapaxes(one, -1, -2), rtol=0.0, atol=ROUNDING * float(np.max(np.abs(one)))))
-        for one in (table.stiffness, table.damping)
-    )
+    bound = _ROUNDING * float(np.max(np.abs(matrix)))
+    return bool(np.allclose(matrix, np.swapaxes(matrix, -1, -2), rtol=0.0, atol=bound))
 
 
 def _assigned(name: str, column: int, values: np.ndarray) -> list[str]:
     """Rows 1 to n of a column; column 0 holds the speeds."""
     texts = [f"{float(value):.15g}" for value in values]
     return [f"{name}({k + 1},{column})={','.join(texts[k : k + _VALUES])}" for k in range(0, len(texts), _VALUES)]
+
+
+def comments(sentences: Iterable[str], sign: str) -> list[str]:
+    """Lines of ASCII, which is all that old readers take."""
+    ascii_only = (text.replace("µ", "u").encode("ascii", "replace").decode() for text in sentences)
+    return [
+        line
+        for text in ascii_only
+        for line in textwrap.wrap(text, _WIDTH, initial_indent=sign, subsequent_indent=f"{sign}  ")
+    ]
+
+
+def csv_text(table: Coefficients, head: Sequence[str]) -> str:
+    """A line per point; the head's lines begin with #, and the line behind them names the columns and their units."""
+    points = np.meshgrid(*table.axes.values(), indexing="ij")
+    columns = {f"{name} [rad/s]": values for name, values in zip(table.axes, points, strict=True)}
+    columns |= {f"{name} [{unit(name)}]": values for name, values in table.columns().items()}
+    columns |= dict(_entries("K", table.tangent)) | dict(_entries("C", table.tangent_damping))
+    text = io.StringIO()
+    text.writelines(f"# {sentence}\n" for sentence in head)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*(values.ravel().tolist() for values in columns.values()), strict=True))
+    return text.getvalue()
+
+
+def json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
+    """The same as one object; the matrices are lists over points, rows and columns."""
+    content: Tables = {
+        "tag": tag,
+        "notes": list(head),
+        "source": table.source,
+        "definition": table.definition,
+        **{name: {"unit": "rad/s", "values": values.tolist()} for name, values in table.axes.items()},
+        "coefficients": {name: {"unit": unit(name), "values": values.tolist()} for name, values in table.columns().items()},
+        "coordinates": list(DOF),
+        "K": {"unit": [[_entry_unit("K", a, b) for b in DOF] for a in DOF], "values": table.tangent.tolist()},
+        "C": {"unit": [[_entry_unit("C", a, b) for b in DOF] for a in DOF], "values": table.tangent_damping.tolist()},
+    }
+    return json.dumps(content, indent=1, allow_nan=False) + "\n"
+
+
+#: What the reader of CSV and JSON has to know.
+NUMBERS_NOTES = [
+    "SI; coordinates x (the axis), y, z, tilt_y, tilt_z (about y, z) of the bearing",
+    "kyy ... czz, kxx: the tilts held, or, by their names, following; x as told; K, C: 5x5 of the contacts at the equilibrium, every other motion held: "
+    "small motions, without shaft, rotor and supports",
+]
+
+
+def _entries(letter: str, matrix: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    for i, a in enumerate(DOF):
+        for j, b in enumerate(DOF):
+            yield f"{letter} {a} {b} [{_entry_unit(letter, a, b)}]", matrix[..., i, j]
+
+
+def _entry_unit(letter: str, row: str, column: str) -> str:
+    """Of force or moment over displacement or tilt, or over their rates."""
+    force, over = ("N m" if "tilt" in row else "N"), ("rad" if "tilt" in column else "m")
+    return f"{force}{' s' if letter == 'C' else ''}/{over}"

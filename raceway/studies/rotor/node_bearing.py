@@ -1,6 +1,6 @@
-"""A bearing as the node of a rotor meets it: Z of small motions, motion under a load, force of a displacement.
+"""A bearing at the node of a rotor: Z of small motions, motion under a load, force of a displacement, secant stiffness of a motion.
 
-Knows nothing of ROSS; x is the bearing's axis.
+Independent of ROSS; x is the bearing's axis.
 """
 
 from __future__ import annotations
@@ -24,40 +24,6 @@ from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
 from raceway.studies.shaft.bearing import harmonic_load
 
-
-def secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
-    """Real symmetric (n, n) K with K u = f, nearest to the tangent.
-
-    Parameters
-    ----------
-    tangent : (n, n) [N/m, N, N m/rad]
-    motion, load : (n,) complex amplitudes u, f of one harmonic
-    unit : (n,) length of a unit of each coordinate [1 for m, an arm in m for rad], which makes changes comparable
-
-    Notes
-    -----
-    With U = [Re u, Im u], R = [Re f, Im f] - K_t U and the pseudoinverse U+ the symmetric D of least Frobenius norm with D U = R is
-
-        D = R U+ + (R U+)' - (U+)' U'R U+
-
-    (the symmetric update of Powell for one vector, here for two).  It exists where U'R is symmetric: where the motion takes
-    no work from the ring in a turn.  On a circle it is the same change of kyy and kzz, without cross terms; along a line it
-    leaves the stiffness across as it was.
-
-    References
-    ----------
-    Dennis & Schnabel, Numerical Methods for Unconstrained Optimization and Nonlinear Equations, 1983, section 9.1 and
-    Schnabel, Quasi-Newton methods using multiple secant equations, 1983.
-    """
-    columns = np.column_stack([motion.real, motion.imag]) * unit[:, None]
-    rest = np.column_stack([load.real, load.imag]) / unit[:, None] - (tangent / np.outer(unit, unit)) @ columns
-    inverse = np.linalg.pinv(columns, rcond=1e-9)
-    work = columns.T @ rest
-    part = rest @ inverse
-    change = part + part.T - inverse.T @ (0.5 * (work + work.T)) @ inverse
-    return np.asarray(tangent + change * np.outer(unit, unit))
-
-
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3
 _MOST, _TOLERANCE = 50, 1e-10
@@ -76,14 +42,14 @@ class NodeBearing:
     Notes
     -----
     The node shares x, y, z with the ring, and its tilts where ``tilts`` says so.  ``supports.axial`` decides about x: under
-    "force" the axial load stays what it is (a spring), the ring finds its place on it, and kxx is a spring of the node beside
+    "force" the axial load is constant (a spring), the ring has its equilibrium on it, and kxx is a spring of the node beside
     the bearing; under "displacement" (spacers) the ring is the node's along x, too, and its load follows from the motion.
     """
 
     scene: Scene
     tilts: bool = False
     damping: float = 0.0
-    _rest: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
+    _equilibria: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
 
     def __deepcopy__(self, _memo: Any) -> NodeBearing:
         """Itself: it never changes, and ROSS copies rotors."""
@@ -96,42 +62,41 @@ class NodeBearing:
 
     @property
     def moving(self) -> list[int]:
-        """Coordinates whose amplitude counts: y, z, and tilts."""
+        """Coordinates of the synchronous motion: y, z, and tilts."""
         return list(range(1, self.size))
 
     def _inside(self, model: Model) -> list[int]:
-        """Coordinates of the ring that find their own equilibrium: x on a constant load, tilts that the node does not share."""
+        """Coordinates of the ring with an equilibrium of their own: x on a constant load, tilts that the node does not share."""
         first = [0] if self.scene.supports.axial == "force" else []
         return first + [i for i in range(self.size, 5) if model.system.free[i] > 0.0]
 
     def at_rest(self, speed: float) -> tuple[Model, Equilibrium]:
         """Model and equilibrium of the ring that turns with a speed [rad/s]."""
-        if speed not in self._rest:
-            self._rest.clear()  # one is asked for again and again; models of elastic bodies are large
+        if speed not in self._equilibria:
+            self._equilibria.clear()  # calls in a row are for one speed; models of elastic bodies are large
             kinematics = attrs.evolve(self.scene.kinematics, spin_speed_rpm=speed * 30.0 / pi)
             scene = attrs.evolve(self.scene, kinematics=kinematics)
             model = build_model(scene, make_plan(scene))
-            self._rest[speed] = model, settle(model)
-        return self._rest[speed]
+            self._equilibria[speed] = model, settle(model)
+        return self._equilibria[speed]
 
     def dynamic_stiffness(self, frequency: float, speed: float) -> np.ndarray:
         """Z = K + j w C (n, n) of small motions at w = frequency, the ring turning with a speed [rad/s]."""
         w = max(abs(frequency), _SLOW)
-        model, rest = self.at_rest(speed)
+        model, equilibrium = self.at_rest(speed)
         system = model.system
-        viscous = 0.5 * (
-            system.damping + system.damping.T
-        )  # the ring's gyroscopic moments are the rotor model's, as its mass
-        contacts = rest.stiffness + 1j * w * (rest.damping - rest.damping_rows_held)
-        contacts += system.viscous_stiffness_at(rest.displacement, rest.ball, w)
-        whole = contacts + system.stiffness + 1j * w * viscous
-        whole[:3, :3] += 1j * w * self.damping * np.eye(3)
+        # The ring's gyroscopic moments are the rotor model's, as its mass is.
+        viscous = 0.5 * (system.damping + system.damping.T)
+        contacts = equilibrium.stiffness + 1j * w * (equilibrium.damping - equilibrium.damping_rows_held)
+        contacts += system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
+        full = contacts + system.stiffness + 1j * w * viscous
+        full[:3, :3] += 1j * w * self.damping * np.eye(3)
         inside = self._inside(model)
-        seen = _condensed(whole, list(range(self.size)), [i for i in inside if i > 0])
+        at_node = _condensed(full, list(range(self.size)), [i for i in inside if i > 0])
         if 0 in inside:
-            seen[0, 1:] = seen[1:, 0] = 0.0
-            seen[1:, 1:] = _condensed(whole, self.moving, inside)
-        return seen
+            at_node[0, 1:] = at_node[1:, 0] = 0.0
+            at_node[1:, 1:] = _condensed(full, self.moving, inside)
+        return at_node
 
     def motion(self, speed: float, load: np.ndarray) -> np.ndarray:
         """Complex amplitudes of ``moving`` under a synchronous load (n,) on them, without inertia: what the contacts carry.
@@ -141,9 +106,9 @@ class NodeBearing:
         ConvergenceError
             A load that the bearing cannot carry.
         """
-        whole = np.zeros(5, dtype=complex)
-        whole[self.moving] = load
-        scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, whole))
+        full = np.zeros(5, dtype=complex)
+        full[self.moving] = load
+        scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, full))
         model = build_model(scene, make_plan(scene))
         record = simulate(model, settle(model)).record
         turning = np.exp(-1j * speed * record.time) * (2.0 / len(record.time))
@@ -169,30 +134,32 @@ class NodeBearing:
         Raises
         ------
         ConvergenceError
-            A displacement at which the balls, or what finds its own equilibrium, find no place.
+            A displacement at which the balls, or free coordinates of the ring, have no equilibrium.
         """
-        model, rest = self.at_rest(speed)
+        model, equilibrium = self.at_rest(speed)
         system, inside = model.system, self._inside(model)
         shared = self.moving if 0 in inside else [0, *self.moving]
-        q = rest.displacement.copy()
+        q = equilibrium.displacement.copy()
         q[shared] += displacement[shared]
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
         for _ in range(_MOST):
-            now = evaluate_following(model.scene, system, q, rest.ball)
-            left, tangent = now.force + system.stiffness @ q - system.load, now.stiffness + system.stiffness
-            if not inside or np.abs((left / size)[inside]).max() <= _TOLERANCE * np.abs(now.contact_force).max():
+            contacts = evaluate_following(model.scene, system, q, equilibrium.ball)
+            residual, tangent = contacts.force + system.stiffness @ q - system.load, contacts.stiffness + system.stiffness
+            if not inside or np.abs((residual / size)[inside]).max() <= _TOLERANCE * np.abs(contacts.contact_force).max():
                 break
-            q[inside] -= np.linalg.solve(tangent[np.ix_(inside, inside)], left[inside])
+            q[inside] -= np.linalg.solve(tangent[np.ix_(inside, inside)], residual[inside])
         else:
             where = np.array2string(displacement, precision=3)
             raise ConvergenceError(f"the ring finds no equilibrium at the node's displacement {where} m")
         force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
-        force[shared], slope[np.ix_(shared, shared)] = left[shared], _condensed(tangent, shared, inside)
-        if inside:  # what the iteration left
-            undone = np.linalg.solve(tangent[np.ix_(inside, inside)], left[inside])
-            force[shared] -= tangent[np.ix_(shared, inside)] @ undone
+        force[shared], slope[np.ix_(shared, shared)] = residual[shared], _condensed(tangent, shared, inside)
+        if inside:  # the residual of the iteration
+            correction = np.linalg.solve(tangent[np.ix_(inside, inside)], residual[inside])
+            force[shared] -= tangent[np.ix_(shared, inside)] @ correction
         if 0 in inside:
-            beside = _condensed(rest.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0])
+            beside = _condensed(
+                equilibrium.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0]
+            )
             slope[0, 0] = beside[0, 0]
             force[0] = slope[0, 0] * displacement[0]
         return force, slope
@@ -232,8 +199,8 @@ def node_bearing(
         With every mistake that was found.
     """
     scene = as_scene({"bearing": {"preset": bearing}} if _is_preset(bearing) else bearing)
-    said = {"load.axial": preload, "supports.tilt": "free" if tilt == "node" else tilt, "supports.axial": axial}
-    scene = as_scene(scene, {key: value for key, value in said.items() if value is not None})
+    changes = {"load.axial": preload, "supports.tilt": "free" if tilt == "node" else tilt, "supports.axial": axial}
+    scene = as_scene(scene, {key: value for key, value in changes.items() if value is not None})
     if not damping >= 0.0 or not np.isfinite(damping):
         raise SceneError.at("damping", damping, "must be a finite damping of at least 0 N s/m")
     if scene.contact.friction > 0.0:
@@ -252,3 +219,36 @@ def node_bearing(
 
 def _is_preset(bearing: Any) -> bool:
     return isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
+
+
+def secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Real symmetric (n, n) K with K u = f, nearest to the tangent.
+
+    Parameters
+    ----------
+    tangent : (n, n) [N/m, N, N m/rad]
+    motion, load : (n,) complex amplitudes u, f of one harmonic
+    unit : (n,) length of a unit of each coordinate [1 for m, an arm in m for rad], which makes changes comparable
+
+    Notes
+    -----
+    With U = [Re u, Im u], R = [Re f, Im f] - K_t U and the pseudoinverse U+ the symmetric D of least Frobenius norm with D U = R is
+
+        D = R U+ + (R U+)' - (U+)' U'R U+
+
+    (the symmetric update of Powell for one vector, here for two).  It exists where U'R is symmetric: where the motion takes
+    no work from the ring in a turn.  On a circle it is the same change of kyy and kzz, without cross terms; along a line it
+    leaves the stiffness across as it was.
+
+    References
+    ----------
+    Dennis & Schnabel, Numerical Methods for Unconstrained Optimization and Nonlinear Equations, 1983, section 9.1 and
+    Schnabel, Quasi-Newton methods using multiple secant equations, 1983.
+    """
+    columns = np.column_stack([motion.real, motion.imag]) * unit[:, None]
+    residual = np.column_stack([load.real, load.imag]) / unit[:, None] - (tangent / np.outer(unit, unit)) @ columns
+    inverse = np.linalg.pinv(columns, rcond=1e-9)
+    work = columns.T @ residual
+    part = residual @ inverse
+    change = part + part.T - inverse.T @ (0.5 * (work + work.T)) @ inverse
+    return np.asarray(tangent + change * np.outer(unit, unit))

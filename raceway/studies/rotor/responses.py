@@ -1,4 +1,4 @@
-"""Unbalance response in ROSS with the stiffness that each bearing has at the motion that the rotor makes there."""
+"""Responses in ROSS with the stiffness, or the nonlinear force, of its rolling bearings at the motion that the rotor makes there."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ from raceway.studies.rotor.node_bearing import NodeBearing
 from raceway.studies.shaft.bearing import find_root
 
 _HALVINGS = 6
+#: Options of ROSS's Newmark method that are handed on, with its own defaults.
+_OPTIONS: dict[str, Any] = {"gamma": 0.5, "beta": 0.25, "tol": None, "progress_interval": None}
+_MOST, _TOLERANCE, _SMALL = 40, 1e-10, 1e-15
 
 
 @attrs.frozen(eq=False)
@@ -28,7 +31,7 @@ class UnbalanceResponse:
     speed : (m,) [rad/s]
     stiffness, damping : tag of a bearing -> (m, n, n) over ROSS's x, y, z (alpha, beta) at each speed [N/m, N s/m]
     force : tag -> (m, n) complex amplitudes of the shaft's load on the ring along them [N, N m]
-    runs : (m,) how often the bearings were asked
+    runs : (m,) evaluations of the bearings
     """
 
     rotor: Any
@@ -43,7 +46,7 @@ class UnbalanceResponse:
 def run_unbalance_response(
     rotor: Any, node: Any, unbalance_magnitude: Any, unbalance_phase: Any, frequency: Any
 ) -> UnbalanceResponse:
-    """ROSS's unbalance response, each ``RollingBearing`` as stiff as the rotor's own motion there finds it.
+    """ROSS's unbalance response, each ``RollingBearing`` with its stiffness at the rotor's own motion.
 
     Parameters
     ----------
@@ -60,37 +63,50 @@ def run_unbalance_response(
 
     Notes
     -----
-    Loads f of the shaft on the rings are sought such that the rings' motion u(f), a series of equilibria of which the 1x line
-    counts, is the rotor's: u(f) = u_0 - H f with the response u_0 and the receptance H of the rotor without these
+    Loads f of the shaft on the rings are sought such that the rings' motion u(f), the synchronous (1x) component of a series of
+    equilibria, is the rotor's: u(f) = u_0 - H f with the response u_0 and the receptance H of the rotor without these
     bearings.  The search (Broyden) begins at small motions, at each speed anew, so that speeds do not depend on each other; of
     several motions at one speed it finds the one nearest to these.  At the end K is the smallest symmetric
-    change of the tangent that carries this motion (``raceway.studies.rotor.node_bearing``), C that of small motions.
+    change of the tangent that carries this motion (``raceway.studies.rotor.node_bearing.secant``), C that of small motions.
     """
-    bearings = [one for one in rotor.bearing_elements if isinstance(one, RollingBearing)]
-    if not bearings:
-        raise RacewayError("the rotor stands on no raceway.ross.RollingBearing: take rotor.run_unbalance_response")
+    bearings = _rolling_bearings(rotor, "run_unbalance_response")
     speeds = np.atleast_1d(np.asarray(getattr(frequency, "m_as", lambda _: frequency)("rad/s"), dtype=float))
     if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or not np.all(speeds > 0.0):
         raise RacewayError("`frequency`: speeds must be finite and greater than 0 rad/s")
-    found = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
-    held = {id(one): {w: z[k] for w, (_, z, _) in zip(speeds, found, strict=True)} for k, one in enumerate(bearings)}
-    twin = _with_bearings(rotor, [one.holding(held[id(one)]) if id(one) in held else one for one in rotor.bearing_elements])
+    balances = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
+    z = [np.array([matrices[k] for _, matrices, _ in balances]) for k in range(len(bearings))]
+    at_motion = {id(b): b.holding(dict(zip(speeds, z_k, strict=True))) for b, z_k in zip(bearings, z, strict=True)}
+    twin = _with_bearings(rotor, [at_motion.get(id(element), element) for element in rotor.bearing_elements])
     response = twin.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
     stiffness, damping, force = {}, {}, {}
-    for k, one in enumerate(bearings):
-        z = np.array([one.across(z[k]) for _, z, _ in found])
-        stiffness[one.tag], damping[one.tag] = z.real, z.imag / speeds[:, None, None]
-        force[one.tag] = np.array([one.frame[one.node_bearing.moving].T @ loads[k] for loads, _, _ in found])
-    return UnbalanceResponse(twin, response, speeds, stiffness, damping, force, np.array([runs for _, _, runs in found]))
+    for k, bearing in enumerate(bearings):
+        dynamic = np.array([bearing.across(matrix) for matrix in z[k]])
+        stiffness[bearing.tag], damping[bearing.tag] = dynamic.real, dynamic.imag / speeds[:, None, None]
+        across = bearing.frame[bearing.node_bearing.moving].T
+        force[bearing.tag] = np.array([across @ loads[k] for loads, _, _ in balances])
+    return UnbalanceResponse(twin, response, speeds, stiffness, damping, force, np.array([runs for *_, runs in balances]))
+
+
+def _rolling_bearings(rotor: Any, method: str) -> list[RollingBearing]:
+    bearings = [element for element in rotor.bearing_elements if isinstance(element, RollingBearing)]
+    if not bearings:
+        raise RacewayError(f"the rotor stands on no raceway.ross.RollingBearing: take rotor.{method}")
+    return bearings
 
 
 def _with_bearings(rotor: Any, bearings: list[Any]) -> Any:
-    """A copy of a rotor on other bearings at the same places, without the answers that ROSS keeps of the rotor."""
+    """A copy of a rotor on other bearings at the same nodes, without the results that ROSS caches."""
     twin = copy(rotor)
     for name in [name for name in vars(twin) if name.startswith("__wire|")]:  # of the package methodtools
         delattr(twin, name)
     twin.bearing_elements = bearings
     return twin
+
+
+def _blocks(sizes: list[int]) -> list[slice]:
+    """The bearings' coordinates among those of all."""
+    ends = np.cumsum([0, *sizes])
+    return [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
 
 
 @attrs.frozen(eq=False)
@@ -105,67 +121,61 @@ class _Balance:
     @classmethod
     def at(cls, rotor: Any, bearings: list[RollingBearing], w: float, unbalance: tuple[Any, Any, Any]) -> _Balance:
         dynamic = rotor.K(w) + 1j * w * (rotor.C(w) + w * rotor.G()) - w**2 * rotor.M(w)
-        places = np.zeros((0, rotor.ndof))
-        for one in bearings:
-            held, frame = one.node_bearing, one.frame[one.node_bearing.moving]
-            small = held.dynamic_stiffness(w, w)[np.ix_(held.moving, held.moving)]
-            dynamic[np.ix_(one.dofs, one.dofs)] -= frame.T @ small @ frame
-            mine = np.zeros((len(frame), rotor.ndof))
-            mine[:, one.dofs] = frame
-            places = np.vstack([places, mine])
+        rows = []
+        for bearing in bearings:
+            moving = bearing.node_bearing.moving
+            frame = bearing.frame[moving]
+            small = bearing.node_bearing.dynamic_stiffness(w, w)[np.ix_(moving, moving)]
+            dynamic[np.ix_(bearing.dofs, bearing.dofs)] -= frame.T @ small @ frame
+            rows.append(np.zeros((len(frame), rotor.ndof)))
+            rows[-1][:, bearing.dofs] = frame
+        selection = np.vstack(rows)
         force = np.zeros(rotor.ndof, dtype=complex)
         for node, magnitude, phase in zip(*(np.atleast_1d(_plain(value)) for value in unbalance), strict=True):
             turning = magnitude * w**2 * np.exp(1j * phase)
             force[rotor.number_dof * int(node) : rotor.number_dof * int(node) + 2] += turning, -1j * turning
-        answers = np.linalg.solve(dynamic, np.column_stack([force, places.T]))
-        return cls(w, [one.node_bearing for one in bearings], places @ answers[:, 0], places @ answers[:, 1:])
+        answers = np.linalg.solve(dynamic, np.column_stack([force, selection.T]))
+        return cls(w, [b.node_bearing for b in bearings], selection @ answers[:, 0], selection @ answers[:, 1:])
 
     def solved(self) -> tuple[list[np.ndarray], list[np.ndarray], int]:
         """Load and Z of each bearing, and the number of evaluations."""
-        gain = np.zeros_like(self.receptance)
-        for part, one in self._parts():
-            small = one.dynamic_stiffness(self.speed, self.speed)
-            gain[part, part] = np.linalg.inv(small[np.ix_(one.moving, one.moving)])
+        w, gain = self.speed, np.zeros_like(self.receptance)
+        for block, bearing in self._by_block():
+            gain[block, block] = np.linalg.inv(bearing.dynamic_stiffness(w, w)[np.ix_(bearing.moving, bearing.moving)])
         slope = gain + self.receptance
         start = np.linalg.solve(slope, self.response)
         load, runs = self._search(start, slope, self._size(gain @ start))
-        loads = [load[part] for part, _ in self._parts()]
-        z = [one.stiffness_on(self.speed, f, one.motion(self.speed, f)) for f, one in zip(loads, self.bearings, strict=True)]
+        loads = [load[block] for block, _ in self._by_block()]
+        z = [b.stiffness_on(w, f, b.motion(w, f)) for f, b in zip(loads, self.bearings, strict=True)]
         return loads, z, runs
 
     def _search(self, start: np.ndarray, slope: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, int]:
-        def apart(load: np.ndarray) -> np.ndarray:
-            motion = [one.motion(self.speed, load[part]) for part, one in self._parts()]
+        def difference(load: np.ndarray) -> np.ndarray:
+            motion = [bearing.motion(self.speed, load[block]) for block, bearing in self._by_block()]
             return np.concatenate(motion) - self.response + self.receptance @ load
 
         last = ConvergenceError()
         for half in range(_HALVINGS + 1):
             try:
-                return find_root(apart, 0.5**half * start, slope, size)
+                return find_root(difference, 0.5**half * start, slope, size)
             except ConvergenceError as why:
                 last = why
         raise ConvergenceError(f"at {30.0 / np.pi * self.speed:.6g} r/min: {last}", last.state)
 
-    def _parts(self) -> list[tuple[slice, NodeBearing]]:
-        ends = np.cumsum([0, *(len(one.moving) for one in self.bearings)])
-        return [(slice(int(a), int(b)), one) for a, b, one in zip(ends, ends[1:], self.bearings, strict=False)]
+    def _by_block(self) -> list[tuple[slice, NodeBearing]]:
+        return list(zip(_blocks([len(b.moving) for b in self.bearings]), self.bearings, strict=True))
 
     def _size(self, motion: np.ndarray) -> np.ndarray:
         """Of each coordinate's motion, for the tolerance: the largest of its bearing."""
-        out = np.empty(len(motion))
-        for part, one in self._parts():
-            units = one.units(self.speed)
-            out[part] = np.abs(motion[part] * units).max() / units
-        return out
+        size = np.empty(len(motion))
+        for block, bearing in self._by_block():
+            units = bearing.units(self.speed)
+            size[block] = np.abs(motion[block] * units).max() / units
+        return size
 
 
 def _plain(value: Any) -> Any:
     return value.to_base_units().magnitude if hasattr(value, "to_base_units") else value
-
-
-#: Options of ROSS's Newmark method that are handed on, with its own defaults.
-_OPTIONS: dict[str, Any] = {"gamma": 0.5, "beta": 0.25, "tol": None, "progress_interval": None}
-_MOST, _TOLERANCE, _SMALL = 40, 1e-10, 1e-15
 
 
 def run_time_response(rotor: Any, speed: float, F: np.ndarray, t: np.ndarray, **options: Any) -> Any:
@@ -196,9 +206,7 @@ def run_time_response(rotor: Any, speed: float, F: np.ndarray, t: np.ndarray, **
     these forces by the step's own matrix M + gamma dt C + beta dt^2 K, and Newton's method finds where both agree.  So a step
     is the implicit one of Newmark's method, of second order in dt.
     """
-    bearings = [one for one in rotor.bearing_elements if isinstance(one, RollingBearing)]
-    if not bearings:
-        raise RacewayError("the rotor stands on no raceway.ross.RollingBearing: take rotor.run_time_response")
+    bearings = _rolling_bearings(rotor, "run_time_response")
     if np.ndim(speed):
         raise RacewayError(
             "`speed`: nonlinear bearing forces are of one speed; for a run-up take rotor.run_time_response, whose bearings "
@@ -212,12 +220,12 @@ def run_time_response(rotor: Any, speed: float, F: np.ndarray, t: np.ndarray, **
         raise RacewayError(
             f"`F` has the shape {forces.shape}; one row a time and one column a degree of freedom make {(len(times), rotor.ndof)}"
         )
-    newmark = {name: options.get(name, value) for name, value in _OPTIONS.items()}
-    added = _Added(rotor, bearings, float(speed), forces, newmark["gamma"], newmark["beta"])
+    newmark = {**_OPTIONS, **options}
+    added = _NonlinearForce(rotor, bearings, float(speed), forces, newmark["gamma"], newmark["beta"])
     return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=added, **options)
 
 
-class _Added:
+class _NonlinearForce:
     """K q - f(q) (ndof,) at the end of a step, as ROSS's ``add_to_RHS``."""
 
     def __init__(
@@ -226,13 +234,12 @@ class _Added:
         self.bearings, self.speed, self.forces, self.gamma, self.beta = bearings, speed, forces, gamma, beta
         self.mass, self.stiffness = rotor.M(), rotor.K(speed)
         self.damping = rotor.C(speed) + speed * rotor.G()
-        ends = np.cumsum([0, *(one.node_bearing.size for one in bearings)])
-        self.parts = [slice(int(a), int(b)) for a, b in zip(ends, ends[1:], strict=False)]
-        self.places = np.zeros((int(ends[-1]), rotor.ndof))
-        self.small = np.zeros((int(ends[-1]),) * 2)
-        for part, one in zip(self.parts, bearings, strict=True):
-            self.places[part, one.dofs] = one.frame
-            self.small[part, part] = one.node_bearing.dynamic_stiffness(speed, speed).real
+        self.blocks = _blocks([bearing.node_bearing.size for bearing in bearings])
+        self.selection = np.zeros((self.blocks[-1].stop, rotor.ndof))
+        self.small = np.zeros((self.blocks[-1].stop,) * 2)
+        for block, bearing in zip(self.blocks, bearings, strict=True):
+            self.selection[block, bearing.dofs] = bearing.frame
+            self.small[block, block] = bearing.node_bearing.dynamic_stiffness(speed, speed).real
         self.dt, self.factors, self.receptance = 0.0, None, self.small
 
     def __call__(self, step: int, **state: Any) -> np.ndarray:
@@ -240,23 +247,23 @@ class _Added:
         dt, gamma, beta = float(state["time_step"]), self.gamma, self.beta
         if dt != self.dt:
             self.dt, self.factors = dt, lu_factor(self.mass + gamma * dt * self.damping + beta * dt**2 * self.stiffness)
-            self.receptance = beta * dt**2 * self.places @ lu_solve(self.factors, self.places.T)
+            self.receptance = beta * dt**2 * self.selection @ lu_solve(self.factors, self.selection.T)
         y, v, a = (np.asarray(state[f"{name}_resp"], dtype=float) for name in ("disp", "velc", "accl"))
         y, v = y + dt * v + (0.5 - beta) * dt**2 * a, v + (1.0 - gamma) * dt * a
-        rest = self.forces[step] - self.stiffness @ y - self.damping @ v
-        linear = self.places @ (y + beta * dt**2 * lu_solve(self.factors, rest))
-        return np.asarray(self.places.T @ self._agreed(linear))
+        residual = self.forces[step] - self.stiffness @ y - self.damping @ v
+        linear = self.selection @ (y + beta * dt**2 * lu_solve(self.factors, residual))
+        return np.asarray(self.selection.T @ self._solved(linear))
 
-    def _agreed(self, linear: np.ndarray) -> np.ndarray:
+    def _solved(self, linear: np.ndarray) -> np.ndarray:
         """K q - f(q) with q = q_linear + H (K q - f(q))."""
         q = linear.copy()
         slope = np.zeros_like(self.small)
         for _ in range(_MOST):
             extra = self.small @ q
-            for part, one in zip(self.parts, self.bearings, strict=True):
-                force, tangent = one.node_bearing.resistance(self.speed, q[part])
-                extra[part] -= force
-                slope[part, part] = self.small[part, part] - tangent
+            for block, bearing in zip(self.blocks, self.bearings, strict=True):
+                force, tangent = bearing.node_bearing.resistance(self.speed, q[block])
+                extra[block] -= force
+                slope[block, block] = self.small[block, block] - tangent
             change = np.linalg.solve(np.eye(len(q)) - self.receptance @ slope, linear + self.receptance @ extra - q)
             q = q + change
             if np.abs(change).max() <= _TOLERANCE * np.abs(q).max() + _SMALL:

@@ -23,12 +23,13 @@ if TYPE_CHECKING:
 DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
 MOST_ANISOTROPY = 0.01
-#: Share of kyy by which it differs from that of a run, from which on that is told.
+#: Share of kyy by which it differs from that of a run, from which on a note says so.
 _SOFTER = 1e-3
 #: Of ``_across``: squares that leave 1e-16 are 1e-8.
 _ROUNDING = 1e-7
 
-Found = tuple[np.ndarray, np.ndarray, np.ndarray, str, list[str]]
+#: Stiffness, damping, where it is resolved, definition, notes.
+Matrices = tuple[np.ndarray, np.ndarray, np.ndarray, str, list[str]]
 
 
 def refuse_without_motion(selection: Selection) -> None:
@@ -36,13 +37,9 @@ def refuse_without_motion(selection: Selection) -> None:
         raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
 
 
-def rotating(selection: Selection) -> Found:
+def rotating(selection: Selection) -> Matrices:
     """One complex number for both directions."""
     kind = selection.value("excitation.kind")
-    way_out = (
-        "Take the tangent of the equilibrium with --from tangent, or sweep a fixed force over both directions with "
-        f"excitation.kind = unidirectional and --grid {DIRECTION}=0,45,90"
-    )
     if kind == "unidirectional":
         raise RacewayError(
             "a force along one direction does not tell whether the bearing is the same in the other one. Sweep with "
@@ -50,12 +47,14 @@ def rotating(selection: Selection) -> Found:
             "of the equilibrium with --from tangent"
         )
     data = selection.dataset
-    parts = np.sort(np.stack([data["forward_amplitude"].values, data["backward_amplitude"].values]), axis=0)
-    share = float(np.max(parts[0] / parts[1]))
+    smaller, larger = np.sort(np.stack([data["forward_amplitude"].values, data["backward_amplitude"].values]), axis=0)
+    share = float(np.max(smaller / larger))
     if share > MOST_ANISOTROPY:
         raise RacewayError(
             f"the bearing is not isotropic: the orbit's counter-rotating part reaches {share:.1%} of the rotating one (at most "
-            f"{MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. {way_out}"
+            f"{MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. Take the tangent of the "
+            "equilibrium with --from tangent, or sweep a fixed force over both directions with excitation.kind = unidirectional "
+            f"and --grid {DIRECTION}=0,45,90"
         )
     identity = np.eye(2)
     stiffness = data["equivalent_stiffness"].values[..., None, None] * identity
@@ -69,7 +68,7 @@ def rotating(selection: Selection) -> Found:
     return stiffness, damping, np.broadcast_to(resolved[..., None, None], damping.shape), words, notes
 
 
-def directions(selection: Selection) -> Found:
+def directions(selection: Selection) -> Matrices:
     """Receptances along 0, 90 and 45 deg, inverted as a matrix.
 
     Notes
@@ -79,10 +78,9 @@ def directions(selection: Selection) -> Found:
     (|x_y|^2 + |x_z|^2) / 2; so the part that gyroscopic moments of the ring make antisymmetric on free tilts,
     |A|^2 = (|Hyz|^2 + |Hzy|^2) / 2 - |Hyz + Hzy|^2 / 4, is an error of the cross terms.  An error dH of H moves Z = H^-1 by at most |Z| |dH| |Z|.
     """
-    given = selection.axes[DIRECTION]
-    missing = [angle for angle in (0, 90) if angle not in given]
-    if missing or not all(is_number(angle) and angle in (0, 45, 90) for angle in given):
-        raise SceneError.at(DIRECTION, None, f"has {listed(given)} deg; both columns take 0 and 90, cross terms 45, too")
+    angles = selection.axes[DIRECTION]
+    if not {0, 90} <= set(angles) or not all(is_number(angle) and angle in (0, 45, 90) for angle in angles):
+        raise SceneError.at(DIRECTION, None, f"has {listed(angles)} deg; both columns take 0 and 90, cross terms 45, too")
     if selection.value("rotor.polar_inertia", 0.0) and selection.value("supports.tilt") != "locked":
         raise RacewayError(
             "gyroscopic moments (rotor.polar_inertia with free tilts) make the matrix unsymmetric, which forces along fixed "
@@ -92,16 +90,16 @@ def directions(selection: Selection) -> Found:
     z = data["z_real"].values + 1j * data["z_imag"].values
     w = 2.0 * np.pi * data["frequency"].values
     antisymmetric = np.zeros(z.shape[:-1])
-    h = dict(zip(given, np.moveaxis(1.0 / z, -1, 0), strict=True))
-    across = _across(data, given, h)
+    h = dict(zip(angles, np.moveaxis(1.0 / z, -1, 0), strict=True))
+    across = _across(data, angles, h)
     widest = max(0.0, float(np.max(list(across.values()))) - _ROUNDING)
-    if 45 in given:
+    if 45 in angles:
         cross = h[45] - 0.5 * (h[0] + h[90])
-        told = "cross terms from the force along 45 deg, the matrix taken as symmetric"
+        note = "cross terms from the force along 45 deg, the matrix taken as symmetric"
         if selection.value("supports.tilt", "locked") != "locked":
             power = 0.5 * sum((across[angle] * np.abs(h[angle])) ** 2 for angle in (0, 90))
             antisymmetric = np.sqrt(np.maximum(power - np.abs(cross) ** 2, 0.0))
-            told += (
+            note += (
                 f"; the ring's gyroscopic moments add {np.max(antisymmetric / np.abs(h[0])):.1e} of H, counted as its error"
             )
     else:
@@ -111,21 +109,15 @@ def directions(selection: Selection) -> Found:
                 f"directions do not tell them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
             )
         cross = np.zeros_like(h[0])
-        told = f"no cross terms: a force along one direction moves the ring across by at most {widest:.1e} of its motion"
+        note = f"no cross terms: a force along one direction moves the ring across by at most {widest:.1e} of its motion"
     dynamic = np.linalg.inv(_symmetric(h[0], cross, h[90]))
-    off = {angle: _errors(data)[..., k] * np.abs(h[angle]) for k, angle in enumerate(given)}
-    apart = antisymmetric + (off[45] + 0.5 * (off[0] + off[90]) if 45 in given else 0.0)
-    error = np.abs(dynamic) @ _symmetric(off[0], apart, off[90]) @ np.abs(dynamic)
+    errors = {angle: _errors(data)[..., k] * np.abs(h[angle]) for k, angle in enumerate(angles)}
+    cross_error = antisymmetric + (errors[45] + 0.5 * (errors[0] + errors[90]) if 45 in angles else 0.0)
+    error = np.abs(dynamic) @ _symmetric(errors[0], cross_error, errors[90]) @ np.abs(dynamic)
     w, mass = w[..., 0, None, None], data["mass"].values[..., 0, None, None]
     stiffness = dynamic.real + mass * w**2 * np.eye(2)
-    notes = [told, *_common(selection)]
-    return (
-        stiffness,
-        dynamic.imag / w,
-        np.abs(dynamic.imag) > error,
-        f"{_kind_words(selection)} under forces along fixed directions, {_tilt_words(selection)}",
-        notes,
-    )
+    words = f"{_kind_words(selection)} under forces along fixed directions, {_tilt_words(selection)}"
+    return stiffness, dynamic.imag / w, np.abs(dynamic.imag) > error, words, [note, *_common(selection)]
 
 
 def _symmetric(first: np.ndarray, cross: np.ndarray, last: np.ndarray) -> np.ndarray:
@@ -140,23 +132,23 @@ def _errors(data: Dataset) -> np.ndarray:
     return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 
-def _across(data: Dataset, given: list[float], h: dict[Hashable, np.ndarray]) -> dict[int, np.ndarray]:
+def _across(data: Dataset, angles: list[float], h: dict[Hashable, np.ndarray]) -> dict[int, np.ndarray]:
     """Motion across a force along y (0) and z (90) over the motion along it."""
-    found = {}
+    across = {}
     for angle in (0, 90):
-        k = given.index(angle)
+        k = angles.index(angle)
         turning = data["forward_amplitude"].values[..., k] ** 2 + data["backward_amplitude"].values[..., k] ** 2
         along = (data["force_amplitude"].values[..., k] * np.abs(h[angle])) ** 2
-        found[angle] = np.sqrt(np.maximum(2.0 * turning / along - 1.0, 0.0))
-    return found
+        across[angle] = np.sqrt(np.maximum(2.0 * turning / along - 1.0, 0.0))
+    return across
 
 
-def tangent(selection: Selection) -> Found:
+def tangent(selection: Selection) -> Matrices:
     """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out.
 
     Notes
     -----
-    With x = T r of the motions kept, r, and those that follow them without force, K becomes T' K T and, to first order in the
+    With x = T r of the retained motions r, and those that follow them without force, K becomes T' K T and, to first order in the
     frequency, C becomes T' C T.
     """
     if "stiffness" not in selection.dataset:
@@ -164,12 +156,12 @@ def tangent(selection: Selection) -> Found:
     matrix = reduced(selection)
     coupling = np.abs(matrix[..., 0, 1:])
     follow = _following_tilts(selection)
-    kept = follow[..., 1:]
+    transformation = follow[..., 1:]
     notes = []
     radial = matrix[..., 1:, 1:]
     if selection.value("supports.axial") == "force":
         radial = radial - matrix[..., 1:, :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
-        kept = kept - follow[..., :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
+        transformation = transformation - follow[..., :1] * matrix[..., :1, 1:] / matrix[..., :1, :1]
         softer = 1.0 - float((np.diagonal(radial, 0, -2, -1) / np.diagonal(matrix, 0, -2, -1)[..., 1:]).min())
         runs = f"; x follows: up to {softer:.1%} below kyy and kzz of a run, which hold it" if softer >= _SOFTER else ""
         notes.append(f"kyy ... kzz at constant axial force (supports.axial), kxx with the radial motions held{runs}")
@@ -183,7 +175,8 @@ def tangent(selection: Selection) -> Found:
         notes.append("rows on the spring follow without friction; kxx with these rows held, as in a motion, is larger")
     damping = np.zeros_like(radial)
     if "damping" in selection.dataset:
-        damping = np.swapaxes(kept, -1, -2) @ np.array(selection.dataset["damping"].values, dtype=float) @ kept
+        full = np.array(selection.dataset["damping"].values, dtype=float)
+        damping = np.swapaxes(transformation, -1, -2) @ full @ transformation
     damped = bool(damping.any())
     notes.insert(
         0,
@@ -192,8 +185,12 @@ def tangent(selection: Selection) -> Found:
         if damped
         else "the tangent of an equilibrium has no damping",
     )
-    resolved = np.broadcast_to(damped, radial.shape)
-    return radial, damping, resolved, f"tangent of the equilibrium, {_tilt_words(selection)}", notes
+    words = f"tangent of the equilibrium, {_tilt_words(selection)}"
+    return radial, damping, np.broadcast_to(damped, radial.shape), words, notes
+
+
+#: What coefficients are taken from.
+SOURCES = {"rotating": rotating, "directions": directions, "tangent": tangent}
 
 
 def _following_tilts(selection: Selection) -> np.ndarray:
@@ -249,28 +246,29 @@ def _kind_words(selection: Selection) -> str:
 
 
 def _common(selection: Selection) -> list[str]:
+    """Notes on the rotor's mass, its other properties, and the force's amplitude."""
     return [*_mass(selection), *_rotor(selection), *_amplitude(selection)]
 
 
 def _rotor(selection: Selection) -> list[str]:
     """What the swept rotor brought besides its mass, and a rotor model brings again."""
-    found = []
+    notes = []
     inertias = [key for key in ("rotor.transverse_inertia", "rotor.polar_inertia") if selection.value(key, 0.0)]
     if inertias and selection.value("supports.tilt", "locked") != "locked":
-        found.append(
+        notes.append(
             f"{' and '.join(inertias)} resist the free tilt in these numbers, and do so again in a rotor model: sweep with 0"
         )
     if selection.value("rotor.damping", 0.0):
-        found.append("rotor.damping is part of cyy and czz")
-    return found
+        notes.append("rotor.damping is part of cyy and czz")
+    return notes
 
 
 def _mass(selection: Selection) -> list[str]:
-    used = selection.dataset["mass"].values
-    if not np.any(used):
+    mass = selection.dataset["mass"].values
+    if not np.any(mass):
         return ["K = Re Z: the motion has no inertia (quasi-static)"]
     return [
-        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(used)):.4g} kg, is taken out; a rotor model brings its own, "
+        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is taken out; a rotor model brings its own, "
         "with the inner ring's where its shaft does not include it"
     ]
 
