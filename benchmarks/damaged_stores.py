@@ -16,8 +16,7 @@ from typing import Any
 
 from benchmarks.children import in_child
 from raceway.errors import RacewayError
-from raceway.studies.sweep import open_store
-from raceway.studies.sweep.store import POINTS, SCHEMA
+from raceway.points.store import POINTS, SCHEMA, open_store
 from validation import harm
 from validation.sweeps import SCENE, rows_of
 

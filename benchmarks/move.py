@@ -53,7 +53,7 @@ class Part:
                 else:
                     imports.append(piece)
         body = "".join(line for k, line in enumerate(lines) if k not in taken).strip("\n") + "\n"
-        needs = {node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+        needs = {node.module or "" for node in tree.body if isinstance(node, ast.ImportFrom)}
         return cls(name, docstring, imports, body, frozenset(defined(tree)), frozenset(needs))
 
 

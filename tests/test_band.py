@@ -9,8 +9,8 @@ import pytest
 import raceway as rw
 from raceway import SceneError, scene_from_dict
 from raceway.pipeline.gradient import limits
+from raceway.points.band import design, indices
 from raceway.scene.tolerance import tolerances_of
-from raceway.studies.band.sobol import design, indices
 from raceway.testing import b7206c
 from validation.command_line import invoke
 

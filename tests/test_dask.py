@@ -11,7 +11,7 @@ import pytest
 from raceway import PluginError
 from raceway.plugins.dask import Dask
 from raceway.plugins.processes import Serial
-from raceway.studies.sweep import sweep
+from raceway.points.sweep import fill_store
 from validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
 from validation.command_line import invoke
 
@@ -38,7 +38,7 @@ def cluster(tmp_path_factory, plugin):
 @pytest.mark.slow
 def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(cluster, tmp_path):
     """Same bits as in one process: every worker runs the same chains of points with the same kernels."""
-    alone = sweep(prepared(tmp_path / "serial"), Serial())  # first, so that kernels are compiled once
+    alone = fill_store(prepared(tmp_path / "serial"), Serial())  # first, so that kernels are compiled once
     killed = []
 
     def kill_one(_what, done, total):
@@ -47,7 +47,9 @@ def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(clus
 
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        found = sweep(prepared(tmp_path / "dask"), Dask(scheduler=cluster.address, patience=START_S), on_progress=kill_one)
+        found = fill_store(
+            prepared(tmp_path / "dask"), Dask(scheduler=cluster.address, patience=START_S), on_progress=kill_one
+        )
     with found, alone:
         ((name, done),) = killed
         assert name in ("first", "second")
@@ -66,7 +68,7 @@ def test_workers_of_another_version_are_refused_by_name(cluster, tmp_path):
     wanted = {**found.facts["identity"], "raceway": "9.9"}
     with warnings.catch_warnings(), pytest.raises(PluginError) as told:
         warnings.simplefilter("ignore")
-        sweep(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
+        fill_store(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
     assert "no dask worker can compute these points: tcp://127.0.0.1:" in str(told.value)
     assert "raceway 0.1.0 instead of 9.9" in str(told.value)
     assert not (tmp_path / "store").exists()  # nothing was computed, and nothing stands in the way of another try
@@ -81,7 +83,7 @@ def test_a_scheduler_that_does_not_answer(tmp_path, listens):
             door.listen()
         # That the patience is kept in seconds is a row of ``python -m benchmarks.checks dask``.
         with pytest.raises(PluginError) as told:
-            sweep(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
+            fill_store(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
     assert f"no dask scheduler answers at `{address}` within 1 s" in str(told.value)
     assert "dask scheduler" in str(told.value) and ": ." not in str(told.value)  # every failure has a word
 

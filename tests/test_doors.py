@@ -16,8 +16,8 @@ import pytest
 import raceway as rw
 import raceway.core
 from raceway.framework.doors import door
+from raceway.points.store import open_store
 from raceway.storage.files import write_whole
-from raceway.studies.sweep import open_store
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 SOFT = {"preset": "B7206C", "balls": {"young": 1e6}}

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raceway.studies.compare.effects import Factorial, factorial_effects, trend, whole_part
+from raceway.points.effects import Factorial, factorial_effects, trend, whole_part
 
 ROUNDING = 1e-13  # a few additions of numbers of order 1
 

@@ -6,8 +6,8 @@ import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.plugins.processes import Processes, Serial
-from raceway.studies.many.engine import Item, work_through
-from raceway.studies.many.row_store import RowStore
+from raceway.points.engine import Item, work_through
+from raceway.points.store import RowStore
 from raceway.testing import Registry, default_registry
 
 REGISTRY = default_registry()

@@ -17,22 +17,21 @@ import raceway
 from raceway import scene_from_dict
 from raceway.bodies.elastic.subsurface import below_contacts
 from raceway.plugins import pictures
+from raceway.points import band as band_picture
+from raceway.points import compare_picture as comparison
 from raceway.points import follow_picture as followed
 from raceway.points import law_picture
+from raceway.points import plot as store_picture
+from raceway.points import precision_picture as precision
+from raceway.points import sensitivities as bars
 from raceway.points.law import law
+from raceway.points.plot import layout, select
 from raceway.studies.article import figures as article
-from raceway.studies.band import picture as band_picture
 from raceway.studies.catalogue import section as drawing
-from raceway.studies.compare import picture as comparison
 from raceway.studies.fit import picture as fits
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.synchronous import synchronous
-from raceway.studies.precision import picture as precision
 from raceway.studies.rig import page as rig
-from raceway.studies.sensitivities import picture as bars
-from raceway.studies.sweep import picture as store_picture
-from raceway.studies.sweep.plotting import layout
-from raceway.studies.sweep.selection import select
 from raceway.studies.view import pictures as view_pictures
 from raceway.studies.view import stress
 from raceway.studies.view.bodies import Bearing

@@ -18,7 +18,7 @@ from raceway.cli.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.joblib import Joblib
-from raceway.studies.sweep import open_store
+from raceway.points.store import open_store
 from validation.command_line import ARTICLE, MINIMAL, python, raceway
 from validation.sessions import left, members
 

@@ -8,7 +8,7 @@ import pytest
 import raceway as rw
 from raceway.cli.run_screen import model_rows
 from raceway.framework.estimate import Estimate
-from raceway.studies.sweep.variables import values_of
+from raceway.points.dataset import values_of
 from validation.command_line import EXAMPLES
 
 STATIC = {"bearing": {"preset": "7014A"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 5000.0}}

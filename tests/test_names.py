@@ -11,9 +11,9 @@ import xarray
 
 import raceway as rw
 from raceway.pipeline.settle import race_of
-from raceway.studies.sweep.dataset import write_netcdf
-from raceway.studies.sweep.selection import select
-from raceway.studies.sweep.store import open_store
+from raceway.points.dataset import write_netcdf
+from raceway.points.plot import select
+from raceway.points.store import open_store
 from tests.stores import as_list
 from validation.command_line import invoke
 

@@ -13,11 +13,12 @@ import pytest
 
 from raceway import RacewayError, SceneError
 from raceway.plugins.processes import Serial
+from raceway.points.axes import grid
+from raceway.points.plot import select
+from raceway.points.sweep import fill_store, prepare
 from raceway.studies.rotor.coefficients import Coefficients, coefficients
 from raceway.studies.rotor.export import ross_table
 from raceway.studies.rotor.ross_file import NAMES, smoothed, through_points
-from raceway.studies.sweep import grid, prepare, sweep
-from raceway.studies.sweep.selection import select
 from raceway.testing import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 
@@ -208,7 +209,7 @@ def test_forces_along_three_directions_find_the_tangent_of_a_loaded_bearing(tmp_
         integrator={"kind": "quasi_static"},
     )
     plan = prepare(scene, grid(["excitation.speed_rpm=1000:9000:5", f"{DIRECTION}=0,45,90"]), tmp_path / "sweep")
-    with sweep(plan, Serial()) as store:
+    with fill_store(plan, Serial()) as store:
         data = store.to_xarray()
     secant, tangent = table(data), table(data, {DIRECTION: 0}, "tangent")
     assert (secant.source, tangent.source) == ("directions", "tangent")

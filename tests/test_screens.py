@@ -206,7 +206,7 @@ def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
 
 
 def test_a_precision_study_says_how_well_its_reference_is_known():
-    from raceway.studies.precision.screen import precision_screen
+    from raceway.points.commands import precision_screen
 
     words = [
         "reference: steady orbit to 1e-10; confirmed by two methods, each extrapolated; relative bound 1e-10",

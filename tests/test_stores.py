@@ -11,10 +11,8 @@ import pytest
 import xarray
 
 from raceway.errors import RacewayError, SceneError
+from raceway.points.plot import LIST, draw, keys_of, layout, parse_at, select
 from raceway.studies.rotor import ross_file
-from raceway.studies.sweep.picture import draw
-from raceway.studies.sweep.plotting import layout
-from raceway.studies.sweep.selection import LIST, keys_of, parse_at, select
 from tests.stores import SPEEDS, as_list, made, stiffness
 from validation.command_line import invoke
 

@@ -23,15 +23,13 @@ from raceway.framework.contracts import Lost, Refused
 from raceway.plugins.dask import Dask
 from raceway.plugins.joblib import Joblib
 from raceway.plugins.processes import Serial
+from raceway.points.axes import Design, design_file, grid, parse_axes, point_list, points, tables_at
+from raceway.points.dataset import values_of
+from raceway.points.engine import Work
+from raceway.points.store import facts_digest, open_store, written
+from raceway.points.sweep import Chain, prepare
+from raceway.points.sweep import fill_store as study
 from raceway.scene.file import read_toml
-from raceway.studies.many.axes import parse_axes, points
-from raceway.studies.many.points import tables_at
-from raceway.studies.many.work import Work
-from raceway.studies.sweep import Design, design_file, grid, open_store, point_list, prepare
-from raceway.studies.sweep import sweep as study
-from raceway.studies.sweep.store import facts_digest, written
-from raceway.studies.sweep.variables import values_of
-from raceway.studies.sweep.work import Chain
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
 from validation.command_line import ARTICLE, EXAMPLES, invoke
@@ -166,7 +164,7 @@ def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
     assert all(data[name].attrs.get("long_name") for name in data.variables if name not in ("dof", "dof2"))
     assert json.loads(data.attrs["scene"])["rotor"]["mass"] == 2.0
     assert json.loads(data.attrs["plugins"])["integrator:periodic"].startswith("raceway ")
-    from raceway.studies.sweep.dataset import write_netcdf
+    from raceway.points.dataset import write_netcdf
 
     with open_store(tmp_path / "s") as store, xarray.open_dataset(write_netcdf(store)) as read:
         assert read.equals(data) and read.attrs["program"] == data.attrs["program"]

@@ -10,10 +10,10 @@ from raceway import load_scene, scene_from_dict
 from raceway.cli.frame import slug
 from raceway.out.page import Page
 from raceway.plugins.pictures import ball_loads
+from raceway.points.commands import head
+from raceway.points.plot import select
+from raceway.points.store import row_key
 from raceway.scene.changes import parse_change, titled
-from raceway.studies.many.row_store import row_key
-from raceway.studies.sweep.selection import select
-from raceway.studies.sweep.store_command import head
 from raceway.testing import b7206c, default_registry, run
 from tests.stores import SPEEDS, made
 from validation.command_line import EXAMPLES, invoke

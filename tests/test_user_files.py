@@ -20,12 +20,12 @@ from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.mesh_files import File
+from raceway.points import axes as design
+from raceway.points.axes import point_list
 from raceway.storage import number_table
 from raceway.storage.number_table import read_numbers
 from raceway.storage.user_files import memory_for, told
 from raceway.studies.fit.signals import signals_of
-from raceway.studies.sweep import design
-from raceway.studies.sweep.design import point_list
 from raceway.testing import b7206c
 from validation.cubes import block
 

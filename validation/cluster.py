@@ -13,8 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from raceway.studies.many import work
-from raceway.studies.sweep import Store, Sweep, grid, prepare
+from raceway.points import engine as work
+from raceway.points.axes import grid
+from raceway.points.store import Store
+from raceway.points.sweep import Sweep, prepare
 from raceway.testing import b7206c
 from validation.command_line import install
 

@@ -19,12 +19,13 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.plugins.processes import Serial
+from raceway.points.axes import grid, tables_at
+from raceway.points.store import open_store
+from raceway.points.sweep import fill_store as study
+from raceway.points.sweep import prepare
 from raceway.scene.changes import with_value
 from raceway.scene.file import load_scene, read_toml
 from raceway.scene.reading import scene_from_dict
-from raceway.studies.many.points import tables_at
-from raceway.studies.sweep import grid, open_store, prepare
-from raceway.studies.sweep import sweep as study
 from validation.sessions import left
 
 SCENE = Path(__file__).parents[1] / "examples" / "b7206.toml"

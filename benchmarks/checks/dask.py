@@ -15,7 +15,7 @@ from benchmarks.checks import Row, below
 from raceway.errors import PluginError
 from raceway.plugins.dask import Dask
 from raceway.plugins.processes import Serial
-from raceway.studies.sweep import sweep
+from raceway.points.sweep import fill_store
 from validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from validation.cluster import rows as rows_of
 
@@ -40,7 +40,7 @@ def rows() -> list[Row]:
 
 def _kills(cluster: Cluster, folder: Path) -> list[Row]:
     """A worker with points in flight is killed after a random number of points; another one takes its place."""
-    with sweep(prepared(folder / "serial"), Serial()) as alone:
+    with fill_store(prepared(folder / "serial"), Serial()) as alone:
         wanted = rows_of(alone)
     chance = random.Random(_SEED)
     cluster.worker("worker-0")
@@ -57,7 +57,7 @@ def _kills(cluster: Cluster, folder: Path) -> list[Row]:
                 moments.append(done)
                 cluster.worker(f"worker-{k + 2}")
 
-        with sweep(
+        with fill_store(
             prepared(folder / f"sweep-{k}"), Dask(scheduler=cluster.address, patience=START_S), on_progress=kill
         ) as store:
             complete += store.status()["done"] == POINTS
@@ -82,7 +82,7 @@ def _unfit(cluster: Cluster, folder: Path) -> list[Row]:
     cluster.wait_for_workers(3)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        with sweep(prepared(folder / "unfit"), Dask(scheduler=cluster.address, patience=START_S)) as store:
+        with fill_store(prepared(folder / "unfit"), Dask(scheduler=cluster.address, patience=START_S)) as store:
             done = store.status()["done"]
             pids = {int(row["cost"]["worker"].rpartition(":")[2]) for row in store.rows()}
     words = [str(one.message) for one in told if "elsewhere" in str(one.message)]
@@ -93,7 +93,7 @@ def _unfit(cluster: Cluster, folder: Path) -> list[Row]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            sweep(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
+            fill_store(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
         version = "computed all the same"
     except PluginError as error:
         version = str(error).partition(": tcp")[0] + ": " + str(error).rpartition(": ")[2]
@@ -122,7 +122,7 @@ def _silent(folder: Path) -> Row:
         door.listen()
         start = time.monotonic()
         try:
-            sweep(
+            fill_store(
                 prepared(folder / "silent"), Dask(scheduler=f"tcp://127.0.0.1:{door.getsockname()[1]}", patience=_PATIENCE_S)
             )
         except PluginError:

@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 
 #: Commands that are imported when they are asked for: module, where the command has the name of its words, and short help.
 _LATER = {
-    "compare": ("raceway.studies.compare.command", "One scene, some keys varied, everything else the same."),
+    "compare": ("raceway.points.commands", "One scene, some keys varied, everything else the same."),
     "verify": ("raceway.studies.verify.command", "Compute the reference cases."),
-    "precision": ("raceway.studies.precision.command", "Error against run time: which setting is good enough."),
+    "precision": ("raceway.points.commands", "Error against run time: which setting is good enough."),
     "stability": ("raceway.studies.stability.command", "Stiff and extreme cases: what must hold, holds."),
-    "band": ("raceway.studies.band.command", "The range of an answer over the tolerances of its scene."),
-    "sensitivities": ("raceway.studies.sensitivities.command", "How much each number of a scene changes the answer."),
-    "sweep": ("raceway.studies.sweep.command", "One scene at thousands of points, kept in a store; parallel, resumable."),
+    "band": ("raceway.points.commands", "The range of an answer over the tolerances of its scene."),
+    "sensitivities": ("raceway.points.commands", "How much each number of a scene changes the answer."),
+    "sweep": ("raceway.points.commands", "One scene at thousands of points, kept in a store; parallel, resumable."),
     "follow": (
         "raceway.points.follow_command",
         "K as a curve over speed or any continuous key: folds, stability, special points.",
     ),
     "study": ("raceway.studies.command", "Whole studies that end in a page, and others' studies."),
-    "plot": ("raceway.studies.sweep.store_command", "Draw a sweep: curves, maps, surfaces."),
+    "plot": ("raceway.points.commands", "Draw a sweep: curves, maps, surfaces."),
     "export": ("raceway.studies.rotor.command", "Write a sweep's coefficients for a rotor program."),
     "infer": ("raceway.studies.catalogue.infer_command", "Balls and grooves of a bearing from what its maker prints."),
     "catalogue": ("raceway.studies.catalogue.command", "List, search and draw the bearings of the catalogue."),

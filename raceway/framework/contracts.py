@@ -411,7 +411,7 @@ class Study(attrs.AttrsInstance, Protocol):
     1. ``help``: what it is about, one line.
     2. ``command()``: a ``click.Command`` whose name is ``name``, with ``--json``; it is imported here, and numba, scipy or
        matplotlib not before it runs.  It returns its exit code: 0, or 1 where numbers failed.
-    3. Mistakes are ``RacewayError``; Ctrl-C passes through.  ``raceway.studies.many.engine`` keeps what is finished.
+    3. Mistakes are ``RacewayError``; Ctrl-C passes through.  ``raceway.points.engine`` keeps what is finished.
     """
 
     name: ClassVar[str]

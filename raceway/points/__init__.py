@@ -1,5 +1,13 @@
-"""One scene at many points: branches of steady orbits over a key, and one contact's law over approaches.
+"""One scene at many points, and one engine that computes them: in, rows out as they finish, kept and resumed, by any executor.
 
+axes        values along keys of a scene, lists and grids of points;  survey: mistakes, plug-ins and files in them
+engine      items of work, runs with their cost, versions and plug-ins that decide a row
+store       rows and states on disk;  dataset: labelled results, NetCDF and CSV
+sweep       ``raceway.sweep``;  plot: its pictures
+compare     ``raceway.compare``;  effects: two-level factorial analysis and findings in words
+precision   ``raceway.precision``: error against run time;  settings: what is run, and the reference it is compared with
+band        ``raceway.band``;  sensitivities: derivatives by every number of a scene
 follow, continuation, parameter, branch, attractor    ``raceway.follow``: the branch of steady orbits over a continuous key
-law    ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'
+law         ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'
+commands    the commands of sweeps, comparisons, precision, bands and derivatives
 """

@@ -10,6 +10,7 @@ from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import ShowProgress, telling
+from raceway.points.axes import numbers_at
 from raceway.points.branch import Followed
 from raceway.points.continuation import FollowInterrupt, Rule
 from raceway.points.continuation import follow as study
@@ -20,7 +21,6 @@ from raceway.scene.given import Change, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
-from raceway.studies.many.points import numbers_at
 
 POINTS, AIM = 1000, 1e-3
 _FORM = "must have the form table.key=first:last, for instance excitation.speed_rpm=500:30000"

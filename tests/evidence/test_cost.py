@@ -21,9 +21,8 @@ from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
 from raceway.pipeline.settle import settle
+from raceway.points.precision import EXACT, measure_settings
 from raceway.scene.file import read_toml
-from raceway.studies.precision.result import EXACT
-from raceway.studies.precision.study import precision
 from validation import fused_loop, left_out, plan_time
 from validation.command_line import ARTICLE, python, raceway
 
@@ -33,7 +32,7 @@ pytestmark = pytest.mark.night
 @cache
 def studied():
     """Reference and rows of the scene's own model, by the default design of `raceway precision`."""
-    content = precision(read_toml(ARTICLE), repeats=5).to_dict()
+    content = measure_settings(read_toml(ARTICLE), repeats=5).to_dict()
     return content["reference"], [row for row in content["rows"] if row["base"] and row["error"] is not None]
 
 

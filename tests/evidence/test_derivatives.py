@@ -15,12 +15,10 @@ from raceway.pipeline.gradient import SteadyOrbit
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.pipeline.static_gradient import WEIGHTS, NoDerivative, derivative, static_gradient
+from raceway.points.band import band, design, indices
+from raceway.points.sensitivities import sensitivities, sensitivities_of
 from raceway.scene.catalogue import single_presets
 from raceway.scene.continuous import continuous_keys, with_number
-from raceway.studies.band.front import band
-from raceway.studies.band.sobol import design, indices
-from raceway.studies.sensitivities.front import sensitivities
-from raceway.studies.sensitivities.sensitivities import sensitivities_of
 
 pytestmark = pytest.mark.night
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from raceway.framework.registry import registry_with
-from raceway.studies.many.row_store import RowStore
+from raceway.points.store import RowStore
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import PROCESSES, measured, stability
 

@@ -13,7 +13,7 @@ import pytest
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
-from raceway.studies.many.reference import reference_cases
+from raceway.points.engine import reference_cases
 from raceway.studies.verify.cases import impact_of, measure, transient_integrators
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")

@@ -13,11 +13,10 @@ import numpy as np
 
 from raceway.errors import SceneError, Status
 from raceway.framework.registry import Registry
+from raceway.points.axes import Axis, parse_axis, points, tables_at
 from raceway.scene.changes import with_value
 from raceway.scene.file import read_toml
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.many.axes import Axis, parse_axis, points
-from raceway.studies.many.points import tables_at
 
 DIRECTIONS = ("unidirectional", "bidirectional")
 AMPLITUDES = ("constant", "unbalance")

@@ -20,16 +20,14 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
+from raceway.points.axes import tables_at
+from raceway.points.engine import Item, local, reference_cases, reset_peak, work_through
+from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import CLAIMED, FRICTION
-from raceway.studies.many.engine import Item, local, work_through
-from raceway.studies.many.measured_run import reset_peak
-from raceway.studies.many.points import tables_at
-from raceway.studies.many.reference import reference_cases
-from raceway.studies.many.row_store import RowStore, row_key
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result

@@ -14,9 +14,9 @@ import attrs
 import numpy as np
 from scipy.special import stdtrit
 
+from raceway.points.effects import trend
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_WORDS, TILT_WORDS
-from raceway.studies.compare.effects import trend
 
 #: A change below this over the whole range neither rises nor falls.
 LEVEL = 0.005

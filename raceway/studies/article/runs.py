@@ -21,12 +21,12 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Instead, from_rest, instead_of
+from raceway.points.engine import Item, local, work_through
+from raceway.points.store import RowStore, program_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import AMPLITUDES, DIRECTIONS, TILTS, Curves, Design, Setting, article_tables
-from raceway.studies.many.engine import Item, local, work_through
-from raceway.studies.many.row_store import RowStore, program_key
 
 Row = Tables
 #: Turns of the motion that is integrated where no ring stays on a steady one; half of them are judged.
@@ -115,7 +115,7 @@ def work(
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
 ) -> tuple[list[list[Row]], int]:
-    """Rows of every task, in order, and how many tasks were taken from the store; see ``raceway.studies.many.engine``."""
+    """Rows of every task, in order, and how many tasks were taken from the store; see ``raceway.points.engine``."""
     program = program_key(registry)
     items = [Item(task.key(program), task.name, task) for task in tasks]
     done, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)

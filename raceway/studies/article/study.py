@@ -13,6 +13,8 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.simulate import OnProgress
+from raceway.points.engine import processor_time, reference_cases
+from raceway.points.store import RowStore
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.studies.article import runs
@@ -20,9 +22,6 @@ from raceway.studies.article.claims import verdicts
 from raceway.studies.article.design import ANSWERED, ROTATING, TILTS, Curves, Design, Setting
 from raceway.studies.article.rules import Verdict
 from raceway.studies.article.runs import Row, Task, curve, work
-from raceway.studies.many.engine import processor_time
-from raceway.studies.many.reference import reference_cases
-from raceway.studies.many.row_store import RowStore
 from raceway.studies.verify import study as verification
 
 PROCESSES = 2

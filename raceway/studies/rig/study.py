@@ -12,6 +12,8 @@ import attrs
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import without_nan
+from raceway.points.engine import Item, local, work_through
+from raceway.points.store import RowStore, row_key
 from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -19,8 +21,6 @@ from raceway.studies.fit.identify import Identified, identify_recording
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.signals import Recording, write_recording
 from raceway.studies.fit.synchronous import slow_roll
-from raceway.studies.many.engine import Item, local, work_through
-from raceway.studies.many.row_store import RowStore, row_key
 from raceway.studies.rig.signals import (
     Cause,
     Reading,

@@ -20,11 +20,11 @@ import numpy as np
 from raceway.cli.run_screen import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.doors import member
+from raceway.points.axes import shown
+from raceway.points.plot import LIST, Selection, listed, only_axes
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
-from raceway.studies.many.axes import shown
 from raceway.studies.rotor.sources import DIRECTION, SOURCES, reduced, refuse_without_motion, tilt_note
-from raceway.studies.sweep.selection import LIST, Selection, listed, only_axes
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 #: Entries by name: row and column of the 2x2 matrix over (y, z).

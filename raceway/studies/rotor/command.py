@@ -10,9 +10,9 @@ import click
 from raceway.cli.console import warn
 from raceway.cli.frame import PATH, attempt, common, show
 from raceway.errors import SceneError
+from raceway.points.commands import at_option, store_argument
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.sweep.store_command import at_option, store_argument
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

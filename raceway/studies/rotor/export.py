@@ -18,11 +18,14 @@ from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
 from raceway.plugins.labelled import labelled_dataset
 from raceway.plugins.pictures import given_axes
+from raceway.points.axes import numbers_at
+from raceway.points.commands import head
+from raceway.points.plot import parse_at, select
+from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.scene.given import tidy
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.many.points import numbers_at
 from raceway.studies.rotor import files
 from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, unit
 from raceway.studies.rotor.ross_file import (
@@ -36,9 +39,6 @@ from raceway.studies.rotor.ross_file import (
     ross_toml,
     through_points,
 )
-from raceway.studies.sweep.selection import parse_at, select
-from raceway.studies.sweep.store import open_store
-from raceway.studies.sweep.store_command import head
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -31,9 +31,9 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from raceway.errors import RacewayError
+from raceway.points.dataset import DOF
 from raceway.storage.tables import Tables
 from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients, unit
-from raceway.studies.sweep.variables import DOF
 
 #: Numbers of a Nastran file: the property's, then its tables'; the next bearing's may begin behind them.
 NUMBERS = 13

@@ -12,8 +12,8 @@ import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.shown import tilt_words
-from raceway.studies.many.axes import is_number
-from raceway.studies.sweep.selection import Selection, listed
+from raceway.points.axes import is_number
+from raceway.points.plot import Selection, listed
 
 if TYPE_CHECKING:
     from collections.abc import Hashable

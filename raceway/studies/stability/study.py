@@ -20,10 +20,10 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.points.engine import Item, local, processor_time, work_through
+from raceway.points.store import RowStore, program_key
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.many.engine import Item, local, processor_time, work_through
-from raceway.studies.many.row_store import RowStore, program_key
 
 if TYPE_CHECKING:
     from raceway.pipeline.simulate import OnProgress

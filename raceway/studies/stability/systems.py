@@ -26,11 +26,11 @@ from raceway.framework.duties import reach_of, renews
 from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
+from raceway.points.axes import tables_at
 from raceway.scene.changes import without
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables
-from raceway.studies.many.points import tables_at
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import ContactLaw, Integrator

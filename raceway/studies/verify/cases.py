@@ -28,10 +28,10 @@ from raceway.framework.registry import Entry, Registry
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
+from raceway.points.engine import Case, Number
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
-from raceway.studies.many.reference import Case, Number
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Excitation, Integrator

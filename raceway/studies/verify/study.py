@@ -10,8 +10,8 @@ import attrs
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.points.engine import BASES, Case, Number, reference_cases
 from raceway.storage.tables import Tables
-from raceway.studies.many.reference import BASES, Case, Number, reference_cases
 from raceway.studies.verify.cases import (
     article_pressures,
     ellipse_table,

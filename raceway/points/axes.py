@@ -1,0 +1,514 @@
+"""The axes of a study: ``KEY=a,b,c``, ``KEY=start:stop:count``, or keys with their values; checked before anything is run."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import Mistake, PluginError, SceneError
+from raceway.framework.registry import Registry
+from raceway.scene.changes import parse_value, value_at, with_value
+from raceway.scene.file import read_toml
+from raceway.scene.given import tidy
+from raceway.scene.reading import numbers_only, scene_from_dict
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.scene.units import is_quantity
+from raceway.scene.unused import without_inherited
+from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.user_files import size_of, why_unreadable
+
+MOST_POINTS = 10_000
+_FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"
+
+
+@attrs.frozen
+class Axis:
+    """One key of the scene and the values it takes, in the order given."""
+
+    key: str
+    values: tuple[Any, ...]
+
+    @property
+    def numeric(self) -> bool:
+        return all(is_number(v) for v in self.values)
+
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        return self.values[0], self.values[-1]
+
+    def to_dict(self) -> Tables:
+        return {"key": self.key, "values": list(self.values)}
+
+
+def is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def shown(value: object) -> str:
+    """A value as people write it in a scene file, without quotes."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def parse_axes(
+    given: Iterable[str] | Mapping[str, Any], option: str = "--vary", most: int = MOST_POINTS
+) -> tuple[Axis, ...]:
+    """The axes of the texts of an option, or of a mapping.
+
+    Parameters
+    ----------
+    given : texts ``KEY=...``; or key -> values: a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
+    most : points of all axes together
+
+    Raises
+    ------
+    SceneError
+        With every mistake: a malformed or doubled axis, an empty list, a bad range, too many points.
+    """
+    axes: list[Axis] = []
+    mistakes: list[Mistake] = []
+    pairs = given.items() if isinstance(given, Mapping) else ((text, None) for text in given)
+    for text, values in pairs:
+        try:
+            axis = parse_axis(text, option, most) if values is None else axis_of(text, values, option, most)
+        except SceneError as error:
+            mistakes += error.mistakes
+            continue
+        for other in axes:
+            if axis.key == other.key:
+                mistakes.append(Mistake(axis.key, None, "is varied twice: put all its values into one axis"))
+            elif f"{axis.key}.".startswith(f"{other.key}.") or f"{other.key}.".startswith(f"{axis.key}."):
+                mistakes.append(Mistake(axis.key, None, f"overlaps with the axis `{other.key}`: vary one of them"))
+        axes.append(axis)
+    if not axes and not mistakes:
+        raise SceneError.at(option, None, f"nothing is varied; an axis {_FORM}, in Python {{'load.axial': [400, 1000]}}")
+    total = math.prod(len(axis.values) for axis in axes)
+    if total > most:
+        sizes = " x ".join(str(len(axis.values)) for axis in axes)
+        where = max(axes, key=lambda axis: len(axis.values)).key
+        mistakes.append(Mistake(where, None, f"{sizes} = {total} runs are more than {most}: give fewer values"))
+    if mistakes:
+        raise SceneError(mistakes)
+    return tuple(axes)
+
+
+def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
+    """One axis.
+
+    Raises
+    ------
+    SceneError
+        Naming the axis and the rule.
+    """
+    key, sign, values = text.partition("=")
+    key = key.strip()
+    if not sign or not key or not all(part.strip() for part in key.split(".")):
+        raise SceneError.at(key or option, text, f"{_FORM}, for instance load.axial=400,1000")
+    items = _split(values)
+    if items == [""]:
+        raise SceneError.at(key, None, f"has no values: it {_FORM}")
+    if "" in items:
+        raise SceneError.at(key, values, "has an empty place in its list: remove the comma")
+    ranges = [item for item in items if ":" in item and isinstance(parse_value(item), str) and item[0] not in "\"'"]
+    if ranges and len(items) > 1:
+        raise SceneError.at(key, values, "mixes a list and a range: give one of them")
+    return _axis(key, _range(key, items[0], most) if ranges else [parse_value(item) for item in items])
+
+
+def axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
+    """One axis of a mapping.
+
+    Parameters
+    ----------
+    values : a list, an array (n,), a range, an iterator, one value, or the text "a,b,c" or "start:stop:count"
+
+    Raises
+    ------
+    SceneError
+        Naming the axis and the rule.
+    """
+    if isinstance(values, str):
+        return parse_axis(f"{key}={values}", option, most)
+    found = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
+    if not isinstance(found, list):
+        found = [found]
+    if not found:
+        raise SceneError.at(key, None, "has no values: give at least one")
+    return _axis(key, found)
+
+
+def _axis(key: str, found: Sequence[Any]) -> Axis:
+    """An axis whose values are all different."""
+    names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in found]
+    for place, name in enumerate(names):
+        if name in names[:place]:
+            raise SceneError.at(key, found[place], "stands twice in the axis: each value once")
+    return Axis(key, tuple(found))
+
+
+def _split(text: str) -> list[str]:
+    """Parts between commas that stand outside brackets and quotes, stripped."""
+    parts, depth, quote = [""], 0, ""
+    for letter in text:
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "\"'":
+            quote = letter
+        depth += (letter in "[{") - (letter in "]}") if not quote else 0
+        if letter == "," and depth <= 0 and not quote:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
+def _range(key: str, text: str, most: int) -> list[Any]:
+    """Equidistant values, both ends included; whole numbers stay whole, because some keys take nothing else."""
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) != 3:
+        raise SceneError.at(key, text, "is not a range: write start:stop:count, for instance 10980:15000:5")
+    start, stop, count = (parse_value(part) for part in parts)
+    for name, value in (("start", start), ("stop", stop)):
+        if not is_number(value) or not math.isfinite(value):
+            raise SceneError.at(
+                key, text, f"the {name} of a range must be a finite number, not {shown(value) or 'nothing'!r}"
+            )
+    if not is_number(count) or not isinstance(count, int) or count < 1:
+        raise SceneError.at(key, text, f"the count of a range must be a whole number of at least 1, not {shown(count)!r}")
+    if count > most:
+        raise SceneError.at(key, text, f"the count of a range must be at most {most}")
+    if count == 1:
+        return [start]
+    values = [start + (stop - start) * k / (count - 1) for k in range(count)]
+    values[-1] = stop
+    if isinstance(start, int) and isinstance(stop, int) and all(float(v).is_integer() for v in values):
+        return [int(v) for v in values]
+    return [float(v) for v in values]
+
+
+def points(axes: Sequence[Axis]) -> Iterator[Tables]:
+    """Every combination, the last axis running fastest."""
+    for values in itertools.product(*(axis.values for axis in axes)):
+        yield dict(zip((axis.key for axis in axes), values, strict=True))
+
+
+def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
+    """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each.
+
+    Keys of the scene that the point takes their effect from are left out without a word.
+    """
+    changed = dict(tables)
+    # Kinds first: what another axis sets must not be taken for an option of the old kind.
+    for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
+        name, _, last = key.rpartition(".")
+        if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
+            for option in _strange_options(changed, name, value, registry):
+                given = changed[name][option]
+                changed[name] = {k: v for k, v in changed[name].items() if k != option}
+                note = f"{name}.{option} = {shown(given)} is left out for kind '{value}', which does not know it"
+                if notes is not None and note not in notes:
+                    notes.append(note)
+        changed = with_value(changed, key, value)
+    return without_inherited(tables, changed, point, registry)
+
+
+def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tables:
+    """A point whose values with a unit as text are numbers in the unit of their key."""
+    texts = [key for key, value in point.items() if isinstance(value, str) and is_quantity(value)]
+    if not texts:
+        return dict(point)
+    changed = numbers_only(tables_at(tables, point, registry), registry)
+    return {**point, **{key: value_at(changed, key) for key in texts}}
+
+
+def axes_of(given: Iterable[str] | Mapping[str, Any], tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
+    """``parse_axes`` with values in the units of the scene's keys."""
+    return tuple(in_units(axis, tables, registry) for axis in parse_axes(given))
+
+
+def in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
+    """An axis whose values with a unit as text are numbers in the unit of the key."""
+    return Axis(axis.key, tuple(numbers_at(tables, {axis.key: value}, registry)[axis.key] for value in axis.values))
+
+
+def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
+    """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
+    table = tables.get(name)
+    role, default = PLUGIN_TABLES[name]
+    if not isinstance(table, dict):
+        return []
+    words = (str(table.get("kind", default)), kind)
+    try:
+        old, new = ({field.name for field in attrs.fields(registry.find(role, word).plugin)} for word in words)
+    except PluginError:
+        return []  # the scene's own check names the unknown kind
+    core = {field.name for field in attrs.fields(TABLES[name])} if name in TABLES else set()
+    return [option for option in table if option in old - new - core]
+
+
+def refuse_mistakes(tables: ReadTables, axes: tuple[Axis, ...], registry: Registry) -> str:
+    """Check the first point whole, and each further value as far as it concerns an axis; the scene's title."""
+    first = {axis.key: axis.values[0] for axis in axes}
+    title = scene_from_dict(tables_at(tables, first, registry), registry).title
+    keys = {axis.key for axis in axes}
+    mistakes = []
+    for axis in axes:
+        for value in axis.values[1:]:
+            try:
+                scene_from_dict(tables_at(tables, {**first, axis.key: value}, registry), registry)
+            except SceneError as error:
+                # What two axes refuse together may run at other points: such a point is kept as refused.
+                mistakes += [m for m in error.mistakes if m.path in keys]
+    if mistakes:
+        raise SceneError(mistakes)
+    return title
+
+
+#: Most points of a sweep: beyond it, files of results are no longer something to open.
+MOST_SWEEP_POINTS = 1_000_000
+#: Bytes of a list of them at most: 256 for each.
+_LONGEST = 256 * MOST_SWEEP_POINTS
+#: Values of an axis that a message names one by one.
+_MOST_SHOWN = 9
+_FILE_FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
+
+
+@attrs.frozen
+class Design:
+    """Points of a sweep.
+
+    Attributes
+    ----------
+    axes : of a grid, the last one running fastest in the numbering of points; empty for a list
+    listed : the points of a list, all with the same keys; empty for a grid
+    """
+
+    axes: tuple[Axis, ...] = ()
+    listed: tuple[Tables, ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(len(axis.values) for axis in self.axes) if self.axes else (len(self.listed),)
+
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(axis.key for axis in self.axes) if self.axes else tuple(self.listed[0])
+
+    def point(self, number: int) -> Tables:
+        """Key -> value of one point."""
+        if not self.axes:
+            return dict(self.listed[number])
+        found = {}
+        for axis in reversed(self.axes):
+            number, place = divmod(number, len(axis.values))
+            found[axis.key] = axis.values[place]
+        return {axis.key: found[axis.key] for axis in self.axes}
+
+    def points(self) -> Iterator[Tables]:
+        return (self.point(number) for number in range(self.size))
+
+    def chains(self, length: int) -> Iterator[list[int]]:
+        """Numbers of points, cut into chains of neighbours of at most ``length``.
+
+        Notes
+        -----
+        Chains run along the axis of numbers with the most values, so that a point differs least from the one before.
+        They depend on the design alone: a sweep that is resumed computes the same ones.
+        """
+        along = self._along()
+        sizes = self.shape
+        strides = [math.prod(sizes[k + 1 :]) for k in range(len(sizes))]
+        others = [range(size) if k != along else range(1) for k, size in enumerate(sizes)]
+        for place in itertools.product(*others):
+            first = sum(i * stride for i, stride in zip(place, strides, strict=True))
+            for start in range(0, sizes[along], length):
+                yield [first + strides[along] * k for k in range(start, min(start + length, sizes[along]))]
+
+    def _along(self) -> int:
+        if not self.axes:
+            return 0
+        return max(range(len(self.axes)), key=lambda k: (self.axes[k].numeric, len(self.axes[k].values), k))
+
+    def to_dict(self) -> Tables:
+        if self.axes:
+            return {"axes": [axis.to_dict() for axis in self.axes]}
+        return {"points": list(self.listed)}
+
+    @classmethod
+    def from_dict(cls, tables: ReadTables) -> Design:
+        axes = tuple(Axis(one["key"], tuple(one["values"])) for one in tables.get("axes", ()))
+        return cls(axes, tuple(tables.get("points", ())))
+
+    def differences(self, other: Design) -> list[str]:
+        """In words what this design has and the other one has not: axes with their values, or listed points."""
+        if self == other:
+            return []
+        if not self.axes or not other.axes:
+            changed = [k for k, (a, b) in enumerate(zip(self.listed, other.listed, strict=False), 1) if a != b]
+            if self.keys != other.keys or self.size != other.size or not changed:
+                return [f"{self.in_words()} there, {other.in_words()} here"]
+            first, k = changed[0], changed[0] - 1
+            return [f"point {first}: {point_words(self.listed[k])} there, {point_words(other.listed[k])} here"]
+        old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, other))
+        words = []
+        for key in [*old, *(key for key in new if key not in old)]:
+            if key not in new:
+                words.append(f"{key} = {_few(old[key])} there, no axis here")
+            elif key not in old:
+                words.append(f"{key} = {_few(new[key])} here, no axis there")
+            elif old[key] != new[key]:
+                words.append(f"{key}: {_few(old[key])} there, {_few(new[key])} here")
+        return words or [f"axes {', '.join(old)} there, {', '.join(new)} here"]
+
+    def in_words(self) -> str:
+        if not self.axes:
+            return f"{self.size} listed points over {', '.join(self.keys)}"
+        return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
+
+
+def _few(values: Sequence[object]) -> str:
+    """Values of an axis; of a long one the ends and how many."""
+    if len(values) <= _MOST_SHOWN:
+        return ", ".join(shown(value) for value in values)
+    return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
+
+
+def grid(given: Iterable[str] | Mapping[str, Any]) -> Design:
+    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
+
+    Raises
+    ------
+    SceneError
+        With every mistake in them.
+    """
+    return Design(axes=parse_axes(given, "--grid", MOST_SWEEP_POINTS))
+
+
+def listed_points(points: Iterable[Mapping[str, Any]]) -> Design:
+    """A list of points, each a mapping of the same keys to their values.
+
+    Raises
+    ------
+    SceneError
+        No points, or other keys in one of them.
+    """
+    return _listed("points", tidy(list(points)))
+
+
+def point_list(path: Path) -> Design:
+    """The points of a file: CSV with keys in its first line, JSON (a list of objects), or TOML (tables [[points]]).
+
+    Raises
+    ------
+    SceneError
+        A file that cannot be read, or points that do not have the same keys.
+    """
+    readers = {".csv": _csv_points, ".json": _json_points, ".toml": lambda p: read_toml(p).get("points")}
+    if path.suffix.lower() not in readers:
+        raise SceneError.at(str(path), None, f"must end in one of {', '.join(readers)}")
+    return _listed(path, readers[path.suffix.lower()](path))
+
+
+def design_file(path: Path) -> Design:
+    """A grid or a list from a TOML file: table ``[grid]`` with ``"key" = [values]`` or ``"start:stop:count"``, or ``[[points]]``.
+
+    Raises
+    ------
+    SceneError
+        A file of another form, or mistakes in its axes.
+    """
+    tables = read_toml(path)
+    strange = sorted(set(tables) - {"grid", "points"})
+    if strange or ("grid" in tables) == ("points" in tables):
+        raise SceneError.at(str(path), None, f"{_FILE_FORM}{', not both' if not strange else ', not ' + strange[0]}")
+    if "points" in tables:
+        return _listed(path, tables["points"])
+    given = tables["grid"]
+    if not isinstance(given, dict):
+        raise SceneError.at(f"{path}: grid", given, _FILE_FORM)
+    words = (
+        (key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)]) for key, value in _dotted(given)
+    )
+    return grid(f"{key}={','.join(values)}" for key, values in words)
+
+
+def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
+    """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _dotted(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def _csv_points(path: Path) -> list[Tables]:
+    text = _text(path)
+    rows = list(csv.reader(line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")))
+    if not rows:
+        return []
+    keys = [key.strip() for key in rows[0]]
+    mistakes = [
+        Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} values for {len(keys)} keys")
+        for k, row in enumerate(rows[1:], 1)
+        if len(row) != len(keys)
+    ]
+    if mistakes:
+        raise SceneError(mistakes[:10])
+    return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
+
+
+def _json_points(path: Path) -> object:
+    try:
+        return json.loads(_text(path))
+    except ValueError as why:
+        raise SceneError.at(str(path), None, f"is not valid JSON: {why}") from None
+
+
+def _text(path: Path) -> str:
+    try:
+        size_of(path, _LONGEST)
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
+    except OSError as why:
+        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as why:
+        raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
+
+
+def _listed(path: Path | str, points: object) -> Design:
+    if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
+        raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
+    points = [dict(_dotted(point)) for point in points]
+    if not points or not points[0]:
+        raise SceneError.at(str(path), None, "has no points: nothing to sweep")
+    if len(points) > MOST_SWEEP_POINTS:
+        raise SceneError.at(str(path), None, f"has {len(points)} points, more than {MOST_SWEEP_POINTS}")
+    keys = list(points[0])
+    for number, point in enumerate(points, 1):
+        if set(point) != set(keys):
+            odd = sorted(set(point) ^ set(keys))
+            raise SceneError.at(
+                f"{path}, point {number}", None, f"all points need the same keys; not in all: {', '.join(odd)}"
+            )
+    bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
+    if bad:
+        raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")
+    return Design(listed=tuple({key: point[key] for key in keys} for point in points))
+
+
+def point_words(point: ReadTables, keys: Sequence[str] | None = None) -> str:
+    return ", ".join(f"{key} = {shown(point[key])}" for key in keys or point)

@@ -1,0 +1,397 @@
+"""The band of a scene, for Python: ``raceway.band``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import build_model
+from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.framework.doors import door
+from raceway.framework.registry import Registry, default_registry
+from raceway.framework.shown import Fact, Shown, number, read_in
+from raceway.out.progress import telling
+from raceway.pipeline.gradient import UNITS, Gradients, definitions, described, values
+from raceway.pipeline.result import without_nan, write_json
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import OnProgress
+from raceway.planning.plan import make_plan
+from raceway.plugins.pictures import new_figure
+from raceway.points.engine import Item, local, work_through
+from raceway.points.store import RowStore, row_key
+from raceway.scene.continuous import with_number
+from raceway.scene.given import as_scene, leaves
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+from raceway.scene.tolerance import Tolerance, tolerances_of
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from raceway.out.progress import ShowProgress
+
+
+@attrs.frozen(eq=False)
+class Indices:
+    """First-order and total Sobol indices, each (quantities, d)."""
+
+    first: np.ndarray
+    total: np.ndarray
+
+
+def design(count: int, dimensions: int, seed: int) -> np.ndarray:
+    """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n a power of 2.
+
+    Parameters
+    ----------
+    count : n;  dimensions : d
+    """
+    from scipy.stats import qmc
+
+    both = qmc.Sobol(2 * dimensions, seed=seed).random(count)
+    a, b = both[:, :dimensions], both[:, dimensions:]
+    mixed = [np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]
+    return np.vstack([a, b, *mixed])
+
+
+def indices(values: np.ndarray, dimensions: int) -> Indices:
+    """Sobol indices of quantities (q, (d + 2) n) at the samples of ``design``."""
+    from scipy.stats import sobol_indices
+
+    count = values.shape[1] // (dimensions + 2)
+    parts = values.reshape(len(values), dimensions + 2, count)
+    centred = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
+    func = {"f_A": centred[:, 0], "f_B": centred[:, 1], "f_AB": np.moveaxis(centred[:, 2:], 1, 0)}
+    found = sobol_indices(func=func, n=count)
+    shape = len(values), dimensions  # scipy leaves out axes of length 1
+    return Indices(np.reshape(found.first_order, shape), np.reshape(found.total_order, shape))
+
+
+_SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
+
+
+def draw(content: ReadTables) -> Figure:
+    """A column a quantity: histogram of its samples, and bars of Sobol indices where they are known."""
+    quantities, keys = content["quantities"], [one["key"] for one in content["tolerances"]]
+    known = any(one["total"] is not None for one in quantities.values())
+    wide, high = 2.0 + 2.9 * len(quantities), 3.2 + (1.2 + 0.35 * len(keys) if known else 0.0)
+    figure = new_figure(wide, high)
+    rows = figure.subplots(
+        2 if known else 1, len(quantities), squeeze=False, height_ratios=[2.2, 0.8 + 0.35 * len(keys)] if known else [1.0]
+    )
+    for k, (name, one) in enumerate(quantities.items()):
+        _draw_histogram(rows[0, k], name, one)
+        if known:
+            _indices(rows[1, k], one, keys, named=k == 0)
+    if known:
+        handles, labels = rows[1, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower right", ncols=2, fontsize=8, frameon=False)
+    rows[0, 0].set_ylabel("samples", fontsize=9)
+    figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
+    return figure
+
+
+def _draw_histogram(axes: Axes, name: str, one: ReadTables) -> None:
+    (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
+    edges = [read_in(edge, one["unit"])[0] for edge in one["histogram"]["edges"]]
+    axes.stairs(one["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+    for end in (low, high):
+        axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2)
+    axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--")
+    axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
+    axes.set_xlabel(unit, fontsize=9)
+    axes.tick_params(labelsize=8)
+    axes.locator_params(axis="x", nbins=4)
+
+
+def _indices(axes: Axes, one: ReadTables, keys: list[str], named: bool) -> None:
+    places = np.arange(len(keys))
+    axes.set_xlim(0.0, 1.05)
+    axes.set_ylim(len(keys) - 0.4, -0.6)
+    axes.set_yticks(places, keys if named else [""] * len(keys), fontsize=8)
+    axes.set_xlabel("Sobol' index", fontsize=9)
+    axes.tick_params(axis="x", labelsize=8)
+    # Estimates of small indices scatter about 0, those of a single cause about 1.
+    total, first = (np.clip(one[what] or np.zeros(len(keys)), 0.0, 1.0) for what in ("total", "first_order"))
+    axes.barh(places, total, color=_TOTAL, height=0.7, label="total")
+    axes.barh(places, first, color=_FIRST, height=0.3, label="first order")
+
+
+#: Samples of a piece of work, which is what a killed worker loses; limits of the band.
+_CHUNK, _LIMITS = 256, (0.025, 0.975)
+#: Bins of a histogram.
+_BINS = 24
+#: By so much a Sobol index of few samples may lie beyond 0 and 1 before that is told.
+_ROUGH = 0.05
+
+
+@attrs.frozen(eq=False, repr=False)
+class Band(Shown):
+    """95 % of the samples of each quantity, and what causes their spread.
+
+    Attributes
+    ----------
+    nominal, low, high : quantity -> number, SI;  definitions : quantity -> what it is, at the nominal;  tolerances : what was varied
+    first, total : quantity -> Sobol indices (d,) of the tolerances
+    histograms : quantity -> edges of bins (b + 1,), SI, and samples in them (b,)
+    samples : that were computed;  lost : of them without an answer;  why : of the first of these
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.band({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}}, ["load.axial=±10 %"], count=4)
+    >>> found.samples, found.lost
+    (12, 0)
+    """
+
+    title: str
+    tolerances: tuple[Tolerance, ...]
+    nominal: dict[str, float]
+    definitions: dict[str, str]
+    low: dict[str, float]
+    high: dict[str, float]
+    first: dict[str, list[float]]
+    total: dict[str, list[float]]
+    histograms: dict[str, tuple[list[float], list[int]]]
+    samples: int
+    lost: int
+    why: str
+
+    @property
+    def remarks(self) -> list[str]:
+        """Where band or indices must not be taken at their word."""
+        far = [name for name, value in self.nominal.items() if not self.low[name] <= value <= self.high[name]]
+        found = []
+        if far:
+            found.append(
+                f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances, to another motion or other "
+                "contacts; raceway follow shows where"
+            )
+        shares = [one for some in (self.first, self.total) for name in some for one in some[name]]
+        if any(abs(one - 0.5) > 0.5 + _ROUGH for one in shares):
+            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take a larger --count")
+        return found
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        rows = [
+            (name, number(value, UNITS[name]), f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}")
+            for name, value in self.nominal.items()
+        ]
+        return self.title, rows
+
+    def to_dict(self) -> Tables:
+        """Plain tables: quantities with their band and indices, tolerances, samples."""
+        quantities = {
+            name: {
+                **described(name, value, self.definitions),
+                "low": self.low[name],
+                "high": self.high[name],
+                "first_order": self.first.get(name),
+                "total": self.total.get(name),
+                "histogram": dict(zip(("edges", "counts"), self.histograms[name], strict=True)),
+            }
+            for name, value in self.nominal.items()
+        }
+        varied = [
+            {"key": one.key.path, "value": one.key.value, "unit": one.key.unit, "low": one.low, "high": one.high}
+            for one in self.tolerances
+        ]
+        content = {"title": self.title, "quantities": quantities, "tolerances": varied}
+        return dict(
+            without_nan(
+                content | {"samples": self.samples, "lost": self.lost, "why_lost": self.why, "remarks": self.remarks}
+            )
+        )
+
+    def save(self, folder: Path) -> Path:
+        """Write band.json.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.to_dict(), folder / "band.json")
+
+    def picture(self, folder: Path) -> Path:
+        """Draw band.png: histograms with their limits, and Sobol indices.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+
+        return save_figure(draw(self.to_dict()), folder / "band.png", 100)
+
+
+def band_of(
+    scene: Scene,
+    tolerances: Sequence[Tolerance],
+    count: int,
+    seed: int,
+    registry: Registry,
+    processes: int = 0,
+    kept: Path | None = None,
+    plugins: Sequence[Path] = (),
+    on_progress: OnProgress | None = None,
+) -> Band:
+    """The band by (d + 2) ``count`` samples, d the number of tolerances.
+
+    Parameters
+    ----------
+    kept : file of finished chunks, read and added to
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        The scene itself has no answer.
+    ConvergenceError
+        No sample has one.
+    """
+    nominal, words = _answer(scene)
+    unit = design(count, len(tolerances), seed)
+    low, high = (np.array([getattr(one, end) for one in tolerances]) for end in ("low", "high"))
+    numbers = low + unit * (high - low)
+    paths = [one.key.path for one in tolerances]
+    chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
+    key = row_key(scene, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
+    items = [Item(f"{key} {k}", "samples", (scene.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
+    done, _ = work_through(sampled, items, RowStore(kept), local(registry, processes), registry, plugins, on_progress)
+    rows = [row for chunk in done for row in chunk["rows"]]
+    return _summary(scene.title, tuple(tolerances), nominal, words, rows, len(tolerances))
+
+
+def sampled(given: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
+    """Answers at some points: quantity -> number each, or the reason why there is none.
+
+    A worker reads the scene itself: classes of one-off plug-ins can not be sent to it.
+    """
+    tables, paths, points = given
+    scene = scene_from_dict(tables, registry)
+    return {"rows": [_row(scene, paths, point) for point in points]}
+
+
+def _row(scene: Scene, paths: list[str], point: list[float]) -> Tables:
+    try:
+        for path, value in zip(paths, point, strict=True):
+            scene = with_number(scene, path, value)
+        return dict(_answer(scene)[0])
+    except (RacewayError, ValueError) as why:
+        return {"why": str(why)}
+
+
+def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
+    """Numbers, and what they are."""
+    model = build_model(scene, make_plan(scene))
+    equilibrium = settle(model)
+    return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
+
+
+def _summary(
+    title: str, tolerances: tuple[Tolerance, ...], nominal: dict[str, float], words: dict[str, str], rows: list[Tables], dimensions: int
+) -> Band:  # fmt: skip
+    lost = [row["why"] for row in rows if "why" in row]
+    names = [name for name in nominal if all(name in row for row in rows if "why" not in row)]
+    if len(lost) == len(rows):
+        raise ConvergenceError(f"no sample has an answer: {lost[0]}")
+    table = np.array([[row.get(name, np.nan) for row in rows] for name in names])
+    ends = table[:, : 2 * (len(rows) // (dimensions + 2))]  # A and B: the rest repeats their numbers
+    low, high = np.nanquantile(ends, _LIMITS, axis=1)
+    first: dict[str, list[float]] = {}
+    total: dict[str, list[float]] = {}
+    if not lost:
+        varied = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
+        found = indices(table[varied], dimensions) if varied else Indices(np.empty((0, 0)), np.empty((0, 0)))
+        for place, k in enumerate(varied):
+            first[names[k]], total[names[k]] = found.first[place].tolist(), found.total[place].tolist()
+    return Band(
+        title,
+        tolerances,
+        {name: nominal[name] for name in names},
+        words,
+        dict(zip(names, low.tolist(), strict=True)),
+        dict(zip(names, high.tolist(), strict=True)),
+        first,
+        total,
+        {name: _histogram(values) for name, values in zip(names, ends, strict=True)},
+        len(rows),
+        len(lost),
+        lost[0] if lost else "",
+    )
+
+
+def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
+    counts, edges = np.histogram(values[np.isfinite(values)], _BINS)
+    return edges.tolist(), counts.tolist()
+
+
+@door
+def band(
+    scene: Any,
+    tolerances: Mapping[str, str] | Iterable[str] = (),
+    *,
+    count: int = 512,
+    seed: int = 1,
+    processes: int = 0,
+    kept: str | Path | None = None,
+    progress: ShowProgress = None,
+    plugins: Iterable[str | Path] = (),
+) -> Band:
+    """The range of stiffness, displacement and ball loads over tolerances of a scene, and which of them causes it.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    tolerances : key -> text, such as {"load.axial": "±10 %", "bearing.contact_angle_deg": "±1 deg"}; or texts KEY=TEXT; none: the
+        scene's table [tolerances]
+    count : n, a power of 2: (d + 2) n samples for d tolerances;  seed : of the samples
+    processes : that work at a time; 0: in this one
+    kept : file of finished samples, read and added to
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+    plugins : files of one-off plug-ins that the scene uses
+
+    Returns
+    -------
+    Band
+
+    Raises
+    ------
+    SceneError
+        With every mistake of the scene; a tolerance that is none.
+    ConvergenceError
+        The scene, or every sample of it, has no answer.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.band({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}}, {"load.axial": "±10 %"}, count=64)
+    >>> round((found.high["kxx"] / found.low["kxx"] - 1.0) * 100.0, 1)  # 95 % of an even 20 %, to a power near 1/2 [%]
+    10.9
+    """
+    read = as_scene(scene, plugins=plugins)
+    if count < 2 or count & (count - 1):
+        raise SceneError.at(
+            "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
+        )
+    chosen = tolerances_of(read, tolerances or dict(leaves(read.source.get("tolerances", {}))))
+    with telling(progress) as told:
+        return band_of(
+            read,
+            chosen,
+            count,
+            seed,
+            default_registry(),
+            processes,
+            None if kept is None else Path(kept),
+            [Path(one) for one in plugins],
+            told,
+        )

@@ -1,0 +1,354 @@
+"""One scene with some keys varied, for Python and the command line alike: ``raceway.compare``."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.doors import door, member
+from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.framework.shown import Fact, Shown, number_within
+from raceway.out.progress import ShowProgress, telling
+from raceway.pipeline.result import write_json
+from raceway.pipeline.run import run
+from raceway.pipeline.simulate import OnProgress
+from raceway.plugins.labelled import labelled_dataset, labels
+from raceway.points.axes import Axis, axes_of, points, refuse_mistakes, shown, tables_at
+from raceway.points.dataset import axis_labels
+from raceway.points.effects import MOVING, Findings, Quantity, Row, explain, in_few_words
+from raceway.points.engine import Item, local, work_through
+from raceway.points.store import RowStore, row_key, tables_key
+from raceway.scene.given import plain_tables
+from raceway.scene.reading import scene_from_dict
+from raceway.storage.files import writable
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
+
+
+@attrs.frozen(eq=False, slots=False, repr=False)
+class Comparison(Shown, Findings):
+    """One scene with some keys varied: the numbers, their effects, and both in words.
+
+    Attributes
+    ----------
+    title : of the scene;  axes : keys that were varied, with their values
+    rows : one a run, ``point`` and ``result`` (content of result.json, or status and reason), the last axis running fastest
+    effects, trends : of each key and of two together on K and |Z|;  words : all of it in sentences
+    fault : why finished runs could not be kept
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> force = {"kind": "bidirectional", "speed_rpm": 12000, "amplitude": "constant", "force": "100 N"}
+    >>> scene = {"bearing": {"preset": "B7206C"}, "excitation": force, "integrator": {"kind": "quasi_static"}}
+    >>> found = rw.compare(scene, {"load.axial": ["0.5 kN", "1 kN"]})
+    >>> found.effects[0]["term"], round(found.effects[0]["percent"])  # of K [%]
+    (('load.axial',), 27)
+    """
+
+    fault: RacewayError | None = None
+
+    @cached_property
+    def words(self) -> list[str]:
+        """The effects and trends, a sentence each."""
+        return explain(self)
+
+    @cached_property
+    def short_words(self) -> list[str]:
+        """Those of the words that a screen shows."""
+        return in_few_words(self)
+
+    def to_dict(self) -> Tables:
+        """Everything, as plain tables for JSON."""
+        return {
+            "title": self.title,
+            "axes": [axis.to_dict() for axis in self.axes],
+            "rows": [{"point": row.point, "result": row.result, "doubt": row.doubt} for row in self.rows],
+            "effects": self.effects,
+            "held": self.held,
+            "trends": self.trends,
+            "words": self.words,
+        }
+
+    def to_xarray(self) -> Dataset:
+        """The numbers over the keys that were varied, NaN where a run gave none.
+
+        Returns
+        -------
+        xarray.Dataset
+            equivalent_stiffness and its error, dynamic_stiffness |Z| [N/m], equivalent_damping [N s/m], NaN where it is not
+            resolved, and status, a dimension for each key
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+
+        return labelled(self)
+
+    def plot(self, quantity: str | None = None, ax: Axes | None = None) -> Axes:
+        """Draw one quantity over the axis of numbers with most values; without one, a dot for each run.
+
+        Parameters
+        ----------
+        quantity : "equivalent_stiffness" (default) or "dynamic_stiffness"; of static scenes "kxx" (default), "kyy" or "x"
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        from raceway.points.compare_picture import draw_on
+
+        quantity = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
+        return draw_on(self.to_dict(), quantity, ax)
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
+        label = about.label.removesuffix("(w)")
+        changes = [
+            (
+                " x ".join(names[key] for key in one["term"]),
+                f"{one['percent']:+.3g} %",
+                f"of {label} on average" if one["order"] == 1 else f"interaction on {label}",
+            )
+            for one in self.effects
+            if one["quantity"] == first
+        ]
+        runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_number_of(row)) for row in self.rows]
+        words: Fact = ("words", "", f"{len(self.words)} sentences in .words")
+        return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]
+
+    def table(self) -> list[dict[str, str]]:
+        """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
+        names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
+        return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
+
+    def picture(self, folder: Path) -> list[Path]:
+        """Draw all quantities into a folder; the files written.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder that cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+        from raceway.points.compare_picture import draw
+
+        return [save_figure(draw(self.to_dict()), folder / "comparison.png", 100)]
+
+
+def _number_of(row: Row) -> tuple[str, str]:
+    """The first quantity with its error, and what is to be known of it."""
+    name, about = next(iter(row.quantities.items()))
+    value, z = row.value(name), row.value("dynamic_stiffness")
+    if value is None:
+        return "-", row.doubt or ""
+    doubt = f"; in doubt: {row.doubt}" if row.doubt else ""
+    if z is None:
+        return f"{about.label} {about.scale * value:.4g} {about.unit}", about.words + doubt
+    error = about.scale * row.error * z
+    known = f"+- {error:.2g} {about.unit}" if row.estimated else "error not known"
+    return f"K {number_within(about.scale * value, error, about.unit)}", known + doubt
+
+
+def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
+    text = {name: shown(row.point[key]) for key, name in names.items()}
+    for name, about in quantities.items():
+        value = row.value(name)
+        text[f"{about.label.removesuffix('(w)')} {about.unit}"] = "" if value is None else f"{about.scale * value:.3f}"
+    if quantities is MOVING:
+        text["C N s/m"] = row.damping_words
+        text["error %"] = "" if row.value("dynamic_stiffness") is None else f"{100.0 * row.error:.2g}"
+    if noted:
+        text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
+    return text
+
+
+def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
+    """Key -> its last part, or the whole key where two axes share that part: a table has to fit a screen."""
+    last = [axis.key.rpartition(".")[2] for axis in axes]
+    return {axis.key: name if last.count(name) == 1 else axis.key for axis, name in zip(axes, last, strict=True)}
+
+
+def labelled(found: Findings) -> Dataset:
+    """Numbers and states of all runs, a dimension for each key.
+
+    Raises
+    ------
+    RacewayError
+        xarray is missing.
+    """
+    keys = [axis.key for axis in found.axes]
+    shape = tuple(len(axis.values) for axis in found.axes)
+    moving = found.quantities is MOVING
+    extra_words = {
+        "equivalent_stiffness_error": ("N/m", "estimated error of K"),
+        "equivalent_damping": ("N s/m", "C = Im Z / w"),
+    }
+    words = {name: (one.si, one.words) for name, one in found.quantities.items()} | (extra_words if moving else {})
+    numbers = {name: np.full(shape, np.nan) for name in words}
+    status = np.full(shape, "waiting", dtype=object)
+    for row in found.rows:
+        place = tuple(axis.values.index(row.point[axis.key]) for axis in found.axes)
+        status[place] = row.result["status"] if row.failed else "done"
+        values = {name: row.value(name) for name in found.quantities}
+        if moving:
+            z = values["dynamic_stiffness"] if row.estimated else None
+            values |= {"equivalent_damping": row.damping, "equivalent_stiffness_error": None if z is None else row.error * z}
+        for name, value in values.items():
+            numbers[name][place] = np.nan if value is None else value
+    variables = {name: (keys, values, labels(name, *words[name])) for name, values in numbers.items()}
+    coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in found.axes}
+    return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})
+
+
+class StudyInterrupt(KeyboardInterrupt):
+    """Ctrl-C in a study; ``partial``: the comparison of the runs that are finished."""
+
+    def __init__(self, partial: Comparison) -> None:
+        super().__init__()
+        self.partial = partial
+
+
+def compare_points(
+    scene_tables: ReadTables,
+    vary: Iterable[str] | Mapping[str, Any],
+    registry: Registry | None = None,
+    on_progress: OnProgress | None = None,
+    store: Path | None = None,
+) -> Comparison:
+    """Run a scene at every combination of the axes' values.
+
+    Parameters
+    ----------
+    scene_tables : plain tables of a TOML scene
+    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values
+    on_progress : called as ``on_progress(what, done, total)`` after each run; an exception stops the study
+    store : file that finished runs are kept in and taken from
+
+    Raises
+    ------
+    SceneError
+        A mistake in an axis or in the scene; nothing has been run.
+    StudyInterrupt
+        On Ctrl-C, with the finished rows; they are in ``store``, too.
+
+    Notes
+    -----
+    A point that is refused or that fails is kept with its reason, and the study goes on.
+    """
+    registry = registry or default_registry()
+    axes = axes_of(vary, scene_tables, registry)
+    notes: list[str] = []
+    title = refuse_mistakes(scene_tables, axes, registry)
+    kept, places = RowStore(store), list(points(axes))
+    items = [_item(tables_at(scene_tables, point, registry, notes), registry) for point in places]
+    try:
+        work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
+    except KeyboardInterrupt as stop:
+        raise StudyInterrupt(_comparison(title, axes, places, items, kept, notes)) from stop
+    return _comparison(title, axes, places, items, kept, notes)
+
+
+def _comparison(
+    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], kept: RowStore, notes: list[str]
+) -> Comparison:
+    """Of the points that are finished."""
+    found = [(point, kept.get(item.key)) for point, item in zip(places, items, strict=True)]
+    rows = tuple(Row(point, result) for point, result in found if result is not None)
+    return Comparison(title, axes, rows, tuple(notes), kept.fault)
+
+
+def _item(tables: ReadTables, registry: Registry) -> Item:
+    try:
+        key = row_key(scene_from_dict(tables, registry), registry, "compare")
+    except SceneError:  # refused as it is run
+        key = tables_key(tables, registry, "compare")
+    return Item(key, "runs", tables)
+
+
+def _result(tables: ReadTables, registry: Registry) -> Tables:
+    try:
+        return run(scene_from_dict(tables, registry), registry).to_dict()
+    except RacewayError as error:
+        return {"status": error.status, "reason": str(error)}
+
+
+#: Finished runs, and the answer, in the folder of the results.
+ROWS, CONTENT = "compare-rows.jsonl", "compare.json"
+
+
+@door
+def compare(
+    scene: Any,
+    vary: Mapping[str, Any] | Iterable[str],
+    *,
+    out: str | Path | None = None,
+    kept: str | Path | None = None,
+    plugins: Iterable[str | Path] = (),
+    progress: ShowProgress = None,
+) -> Comparison:
+    """Vary some keys of a scene, all else the same, and say which of them causes what.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    vary : key of the scene -> its values (list, array (n,), or the text "a,b,c" or "start:stop:count"); every combination is run
+    out : folder in which finished runs are kept and reused, and compare.json is written; None: nothing is written
+    kept : file of the finished runs instead of that in ``out``
+    plugins : files of one-off plug-ins that the scene uses
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+
+    Returns
+    -------
+    Comparison
+        ``rows`` with the numbers of each run, ``effects`` of each key and of two together, ``words`` that explain them
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene or in a value; nothing has been run.
+    RacewayError
+        A folder that cannot be written.
+
+    Notes
+    -----
+    A run that is refused or fails is kept with its reason, and the others go on.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = {
+    ...     "bearing": {"preset": "B7206C"},
+    ...     "load": {"axial": 1000.0},
+    ...     "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "amplitude": "constant", "force": 100.0},
+    ...     "integrator": {"kind": "quasi_static"},
+    ... }
+    >>> found = rw.compare(scene, {"supports.tilt": ["locked", "free"]})
+    >>> (1e-6 * found.to_xarray().equivalent_stiffness).round(0).values.tolist()  # K [N/um]
+    [235.0, 31.0]
+    """
+    registry = registry_with(plugins)
+    folder = None if out is None else writable(Path(out))
+    kept = folder / ROWS if folder is not None and kept is None else kept
+    tables = plain_tables(scene, registry=registry)
+    with telling(progress) as told:
+        found = compare_points(tables, vary, registry, told, None if kept is None else Path(kept))
+    if found.fault is not None:
+        warnings.warn(str(found.fault), stacklevel=3)
+    if folder is not None:
+        write_json(found.to_dict(), folder / CONTENT)
+    return found

@@ -1,0 +1,651 @@
+"""Two-level full factorial analysis: what each axis does, alone and together with others.
+
+Notes
+-----
+With y = ln(quantity) at the 2^k corners (first or last value of each of k axes), s_i = -1 at the first and +1 at the last
+value of axis i, the effect of a set T of axes is
+
+    e_T = 2^(1 - k) * sum over corners of y * product of s_i, i in T.
+
+For one axis this is the mean of y at the last value minus the mean at the first; exp(e) is the factor by which the quantity
+changes on average (geometric mean), and effects of independent causes multiply.  For two axes it is half the difference
+between the effect of one at the last and at the first value of the other: with e_A and e_AB the factor of A is
+exp(e_A + e_AB) at the last value of B and exp(e_A - e_AB) at its first.  The effects are a change of basis, so that
+y = mean + 1/2 sum_T e_T product of s_i holds at every corner.  The share of a term is e_T^2 over the sum of all squares.
+
+A quantity with a relative error r lies within y -+ d, d = -ln(1 - r).  No e_T is off by more than 2^(1 - k) times the sum of all d;
+an effect above that bound is resolved.
+
+References
+----------
+Box, Hunter, Hunter, Statistics for Experimenters (2nd ed., 2005), chapter 5 (definitions of effects and interactions).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from itertools import combinations, product
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.framework.doors import member
+from raceway.points.axes import Axis, shown
+from raceway.storage.tables import Tables
+
+
+def factorial_effects(values: np.ndarray) -> np.ndarray:
+    """Effects of a two-level factorial.
+
+    Parameters
+    ----------
+    values : (2,) * k array, y at the corners; index 0 is the first value of an axis, 1 the last
+
+    Returns
+    -------
+    effects : (2,) * k array; index 1 in the places of the axes of T holds e_T, [0, ..., 0] the mean
+    """
+    out = np.asarray(values, dtype=float)
+    for place in range(out.ndim):
+        first, last = np.take(out, 0, axis=place), np.take(out, 1, axis=place)
+        out = np.stack([0.5 * (first + last), 0.5 * (last - first)], axis=place)
+    out = 2.0 * out
+    out[(0,) * out.ndim] *= 0.5
+    return out
+
+
+@attrs.frozen
+class Effect:
+    """One term.
+
+    Attributes
+    ----------
+    term : keys of its axes;  log_change : e_T;  percent : 100 (exp(e_T) - 1)
+    difference : mean at the last minus mean at the first value [N/m], main effects only
+    share : of the variation of ln(quantity);  resolved : whether it exceeds what the corners' errors can make
+    """
+
+    term: tuple[str, ...]
+    log_change: float
+    percent: float
+    difference: float | None
+    share: float
+    resolved: bool
+
+
+@attrs.frozen(eq=False, slots=False)
+class Factorial:
+    """One quantity at all corners.
+
+    Attributes
+    ----------
+    keys : (k,) axes;  corners : (2,) * k, positive [N/m]
+    errors : (2,) * k, the corners' relative errors, below 1; default: none
+    """
+
+    keys: tuple[str, ...]
+    corners: np.ndarray
+    errors: np.ndarray = attrs.field(default=attrs.Factory(lambda self: np.zeros(self.corners.shape), takes_self=True))
+
+    @property
+    def error(self) -> float:
+        """Largest shift of any effect by the corners' errors."""
+        return float(2.0 * self._log_errors.mean())
+
+    @cached_property
+    def _log_errors(self) -> np.ndarray:
+        return -np.log1p(-self.errors)
+
+    @cached_property
+    def effects(self) -> list[Effect]:
+        """All terms, the largest first."""
+        found = factorial_effects(np.log(self.corners))
+        squares = float((found**2).sum() - found[(0,) * found.ndim] ** 2)
+        terms = []
+        for order in range(1, len(self.keys) + 1):
+            for places in combinations(range(len(self.keys)), order):
+                e = float(found[tuple(int(k in places) for k in range(len(self.keys)))])
+                difference = None
+                if order == 1:
+                    first, last = (float(np.take(self.corners, end, axis=places[0]).mean()) for end in (0, 1))
+                    difference = last - first
+                share = e * e / squares if squares > 0.0 else 0.0
+                term = tuple(self.keys[k] for k in places)
+                terms.append(Effect(term, e, 100.0 * float(np.expm1(e)), difference, share, abs(e) > self.error))
+        return sorted(terms, key=lambda effect: -abs(effect.log_change))
+
+    def log_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
+        """Mean change of ln(quantity) along one axis, the axes in ``given`` held at an end (0 first, 1 last)."""
+        first, last = (self._mean(np.log(self.corners), {**(given or {}), key: end}) for end in (0, 1))
+        return last - first
+
+    def log_error(self, key: str, given: Mapping[str, int] | None = None) -> float:
+        """Largest shift of that change by the corners' errors."""
+        return sum(self._mean(self._log_errors, {**(given or {}), key: end}) for end in (0, 1))
+
+    def resolved_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
+        """That change, or 0 where errors can make it."""
+        change = self.log_change(key, given)
+        return change if abs(change) > self.log_error(key, given) else 0.0
+
+    def _mean(self, values: np.ndarray, given: Mapping[str, int]) -> float:
+        index: list[int | slice] = [slice(None)] * len(self.keys)
+        for name, level in given.items():
+            index[self.keys.index(name)] = level
+        return float(values[tuple(index)].mean())
+
+
+def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
+    """The largest factorial without holes: for each axis None (both ends) or the end it must be held at.
+
+    Parameters
+    ----------
+    usable : (2,) * k of bool
+
+    Notes
+    -----
+    As few axes as possible are held, and of those the last ones: people name what matters most first.  None when no two
+    neighbouring corners are usable.
+    """
+    k = usable.ndim
+    for held in range(k):
+        for places in sorted(combinations(range(k), held), reverse=True):
+            for ends in product((0, 1), repeat=held):
+                chosen: list[int | None] = [None] * k
+                for place, end in zip(places, ends, strict=True):
+                    chosen[place] = end
+                if usable[tuple(slice(None) if end is None else end for end in chosen)].all():
+                    return tuple(chosen)
+    return None
+
+
+def trend(values: Sequence[float], errors: Sequence[float]) -> str:
+    """ "rises", "falls", "level" or "not monotonic" of a series; differences within both ends' relative errors do not count."""
+    y, e = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
+    off = np.abs(y) * e
+    change, allowed = y[None, :] - y[:, None], off[None, :] + off[:, None]
+    later = np.triu(np.ones(change.shape, dtype=bool), 1)
+    up, down = bool((change > allowed)[later].any()), bool((change < -allowed)[later].any())
+    return {(False, False): "level", (True, False): "rises", (False, True): "falls", (True, True): "not monotonic"}[up, down]
+
+
+@attrs.frozen
+class Quantity:
+    """What is explained: label, its place in result.json, unit on the screen with the factor to it, SI unit and words."""
+
+    label: str
+    path: tuple[Any, ...]
+    unit: str
+    scale: float
+    si: str
+    words: str
+
+
+#: Of runs with an excitation, and of static ones.
+MOVING = {
+    "equivalent_stiffness": Quantity(
+        "K(w)", ("identification", "equivalent_stiffness"), "N/µm", 1e-6, "N/m", "K = Re Z + m w^2"
+    ),
+    "dynamic_stiffness": Quantity(
+        "|Z|", ("identification", "dynamic_stiffness", "abs"), "N/µm", 1e-6, "N/m", "size of Z = F/x"
+    ),
+}
+STATIC = {
+    "kxx": Quantity("kxx", ("equilibrium", "stiffness", 0, 0), "N/µm", 1e-6, "N/m", "axial tangent stiffness, tilts held"),
+    "kyy": Quantity("kyy", ("equilibrium", "stiffness", 1, 1), "N/µm", 1e-6, "N/m", "radial tangent stiffness, tilts held"),
+    "x": Quantity("x", ("equilibrium", "displacement", "x"), "µm", 1e6, "m", "axial displacement"),
+}
+#: A row whose error is as large as its value, or whose motion is less 1x than other, is no basis for an explanation.
+MOST_ERROR, MOST_RESIDUAL = 1.0, 1.0
+#: Terms of third and higher order are listed from this size on.
+LEAST_HIGH_ORDER = 0.005
+
+
+@attrs.frozen
+class Row:
+    """One point: the values of the axes, and result.json or ``{"status", "reason"}``."""
+
+    point: Tables
+    result: Tables
+
+    @property
+    def failed(self) -> bool:
+        return "reason" in self.result
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """``STATIC`` of a scene without excitation, else ``MOVING``."""
+        return STATIC if not self.failed and self.result.get("identification") is None else MOVING
+
+    def value(self, quantity: str) -> float | None:
+        """One of ``quantities`` in SI; None where the run has none."""
+        value: Any = self.result
+        for step in (MOVING | STATIC)[quantity].path:
+            if value is not None:
+                value = value[step] if isinstance(value, list) else value.get(step)
+        return value
+
+    @property
+    def damping(self) -> float | None:
+        """C [N s/m]; None where the run has none, and where it is below its error.  Of a band the low end."""
+        found = self.result.get("identification") or {}
+        value, error = found.get("equivalent_damping"), found.get("equivalent_damping_error")
+        return None if value is None or (error is not None and abs(value) <= error) else float(value)
+
+    @property
+    def damping_words(self) -> str:
+        """C [N s/m] in short: one number, both ends of a band, or that it is not resolved."""
+        found = self.result.get("identification") or {}
+        if found.get("equivalent_damping") is None:
+            return ""
+        if found.get("band"):
+            return " to ".join(f"{value:.4g}" for value in found["band"]["equivalent_damping"])
+        return "not resolved" if self.damping is None else f"{self.damping:.4g}"
+
+    @property
+    def error(self) -> float:
+        """Estimated relative error of Z, 0 where none was estimated."""
+        return float((self.result.get("error") or {}).get("total") or 0.0)
+
+    def error_of(self, quantity: str) -> float:
+        """Relative error of a quantity: of K that of Z over its own size, since m w^2 has none; 0 of static ones, solved to rounding."""
+        own, z = self.value(quantity), self.value("dynamic_stiffness")
+        return self.error * (z or 0.0) / own if own and quantity in MOVING else 0.0
+
+    @property
+    def estimated(self) -> bool:
+        """Whether the run has estimated its error."""
+        return (self.result.get("error") or {}).get("total") is not None
+
+    @property
+    def doubt(self) -> str | None:
+        """Why the row is left out of the explanation; None when it is not."""
+        if self.failed:
+            return f"{self.result['status']}: {self.result['reason']}"
+        for name, quantity in self.quantities.items():
+            value = self.value(name)
+            if value is None or not math.isfinite(value) or (value <= 0.0 and quantity.si == "N/m"):
+                return f"{quantity.label} is not positive"
+            if self.error_of(name) >= MOST_ERROR:
+                return f"the estimated error of {quantity.label} is as large as its value"
+        if ((self.result.get("identification") or {}).get("residual") or 0.0) > MOST_RESIDUAL:
+            return "the motion is larger at other frequencies than at the excitation's"
+        return None
+
+
+@attrs.frozen(eq=False, slots=False)
+class Findings:
+    """Findings of a comparison.
+
+    Attributes
+    ----------
+    title : of the scene;  axes, rows : in the order given, the last axis running fastest
+    notes : options that were left out, and the like
+    """
+
+    title: str
+    axes: tuple[Axis, ...]
+    rows: tuple[Row, ...]
+    notes: tuple[str, ...] = ()
+
+    def axis(self, key: str) -> Axis:
+        """The axis of a key that was varied."""
+        axes = {axis.key: axis for axis in self.axes}
+        return axes[member("key", key, axes)]
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """What is compared: of the first run that gave an answer."""
+        return next((row.quantities for row in self.rows if not row.failed), MOVING)
+
+    @property
+    def varied(self) -> list[Axis]:
+        """Axes with more than one value."""
+        return [axis for axis in self.axes if len(axis.values) > 1]
+
+    @cached_property
+    def held(self) -> Tables:
+        """Axes that the effects hold at one end, because corners of the other end cannot be used."""
+        part = self._whole_part
+        if part is None:
+            return {}
+        held = zip(self.varied, part, strict=True)
+        return {axis.key: axis.ends[end] for axis, end in held if end is not None}
+
+    @cached_property
+    def factorials(self) -> dict[str, Factorial]:
+        """For each quantity its corners; empty when there is nothing to analyse."""
+        part = self._whole_part
+        if part is None or all(end is not None for end in part):
+            return {}
+        index = tuple(slice(None) if end is None else end for end in part)
+        keys = tuple(axis.key for axis, end in zip(self.varied, part, strict=True) if end is None)
+        corners = self._corners[index]
+        found = {}
+        for name in self.quantities:
+            values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
+            if (values > 0.0).all():  # x may have either sign: then it has no logarithm
+                found[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+        return found
+
+    @cached_property
+    def _corners(self) -> np.ndarray:
+        """Rows (2,) * k at the ends of the k axes with more than one value; None where a run is missing."""
+        corners = np.full((2,) * len(self.varied), None, dtype=object)
+        for row in self.rows:
+            ends = [[i for i in (0, 1) if _same(row.point[axis.key], axis.ends[i])] for axis in self.varied]
+            if all(ends):
+                corners[tuple(end[0] for end in ends)] = row
+        return corners
+
+    @cached_property
+    def _whole_part(self) -> tuple[int | None, ...] | None:
+        if not self.varied:
+            return None
+        usable = [row is not None and row.doubt is None for row in self._corners.flat]
+        return whole_part(np.array(usable).reshape(self._corners.shape))
+
+    @cached_property
+    def effects(self) -> list[Tables]:
+        """Main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
+        found = []
+        for quantity, factorial in self.factorials.items():
+            for effect in factorial.effects:
+                if len(effect.term) <= 2 or abs(effect.log_change) >= LEAST_HIGH_ORDER:
+                    plain = attrs.asdict(effect)
+                    found.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
+        return found
+
+    @cached_property
+    def trends(self) -> list[Tables]:
+        """Trend of each quantity along each axis of three or more numbers, for every combination of the others."""
+        found = []
+        for axis in self.varied:
+            if not axis.numeric or len(axis.values) < 3:
+                continue
+            series: dict[tuple[str, ...], list[Row]] = {}
+            others = [other.key for other in self.axes if other is not axis]
+            for row in self.rows:
+                series.setdefault(tuple(repr(row.point[key]) for key in others), []).append(row)
+            for rows in series.values():
+                at = {key: rows[0].point[key] for key in others}
+                good = sorted((row for row in rows if row.doubt is None), key=lambda row: row.point[axis.key])
+                if axis.values[0] > axis.values[-1]:
+                    good.reverse()
+                for quantity in self.factorials or self.quantities:
+                    found.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
+        return found
+
+
+def _same(a: object, b: object) -> bool:
+    return isinstance(a, bool) == isinstance(b, bool) and a == b
+
+
+def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> Tables:
+    values = [row.value(quantity) or 0.0 for row in good]
+    reaches = (
+        len(good) > 1
+        and min(values) > 0.0
+        and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
+    )
+    return {
+        "trend": trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown",
+        "percent": 100.0 * (values[-1] / values[0] - 1.0) if reaches else None,
+        "doubtful": len(rows) - len(good),
+    }
+
+
+#: A change of less than half a percent "hardly matters".
+HARDLY = math.log(1.005)
+_MOST_INTERACTIONS = 5
+
+
+def explain(comparison: Findings) -> list[str]:
+    """The ranking of main effects first, then doubts, interactions, and how numbers run along an axis where others change that."""
+    words = in_few_words(comparison)
+    for quantity in list(comparison.factorials)[1:]:
+        words += [*_main_effects(comparison, quantity), *_interactions(comparison, quantity)]
+    if comparison.factorials:
+        words += [*_courses(comparison), *_inertia(comparison)]
+    return [*words, _what_was_run(comparison)]
+
+
+def in_few_words(comparison: Findings) -> list[str]:
+    """Effects on the first quantity, the largest first, doubts and its interactions: for a screen; ``explain`` has the rest."""
+    notes = [*_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
+    if not comparison.factorials:
+        return [_why_no_effects(comparison), *notes]
+    first = next(iter(comparison.factorials))
+    ranking, *further = _main_effects(comparison, first)
+    return [ranking, *further, *notes, *_interactions(comparison, first)]
+
+
+def percent(log_change: float) -> str:
+    """A change of ln(quantity) in percent, signed."""
+    value = 100.0 * math.expm1(log_change)
+    return f"{value:+.1f} %" if abs(value) >= 1.0 else f"{value:+.2f} %"
+
+
+def _span(log_changes: Iterable[float]) -> str:
+    changes = list(log_changes)
+    low, high = percent(min(changes)), percent(max(changes))
+    return low if low == high else f"{low} to {high}"
+
+
+def _listed(parts: Sequence[str]) -> str:
+    """``a, b and c``."""
+    return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
+
+
+def _step(axis: Axis) -> str:
+    return f"{axis.key} from {shown(axis.ends[0])} to {shown(axis.ends[1])}"
+
+
+def _settings(point: Tables) -> str:
+    """``a = 1 and b = 2``."""
+    return _listed([f"{key} = {shown(value)}" for key, value in point.items()])
+
+
+def _courses(comparison: Findings) -> list[str]:
+    """How the first quantity runs along each axis of numbers, at each value of the axis that changes this most."""
+    quantity, factorial = next(iter(comparison.factorials.items()))
+    label, words = comparison.quantities[quantity].label, []
+    for axis in (axis for axis in comparison.varied if axis.numeric and axis.key in factorial.keys):
+        trends = [
+            t for t in comparison.trends if (t["axis"], t["quantity"]) == (axis.key, quantity) and t["percent"] is not None
+        ]
+        changes = [math.log1p(t["percent"] / 100.0) for t in trends]
+        if len(trends) < 2 or max(changes) - min(changes) < HARDLY:
+            continue
+        others = [key for key in factorial.keys if key != axis.key]
+        partner = comparison.axis(max(others, key=lambda key: _together(factorial, axis.key, key)))
+        for value in partner.values:
+            here = [t for t in trends if t["at"][partner.key] == value]
+            parts = []
+            for kind in ("rises", "falls", "level", "not monotonic"):
+                part = [math.log1p(t["percent"] / 100.0) for t in here if t["trend"] == kind]
+                verb = kind if kind in ("rises", "falls") else f"is {kind}"
+                parts += [f"{verb} in {len(part)} of {len(here)} settings ({_span(part)})"] if part else []
+            left_out = sum(t["doubtful"] for t in here)
+            note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
+            if parts:
+                words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_listed(parts)}{note}.")
+    return words
+
+
+def _together(factorial: Factorial, one: str, other: str) -> float:
+    """Size of the interaction of two axes."""
+    return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {one, other}), default=0.0)
+
+
+def _inertia(comparison: Findings) -> list[str]:
+    """By how much |Z| is less than K, with the mass that was used."""
+    runs = [row.result["identification"] for row in comparison.rows if row.doubt is None]
+    if not all(runs):
+        return []
+    masses = [run["mass_used_kg"] for run in runs]
+    force = [m * (2.0 * math.pi * run["frequency_hz"]) ** 2 for m, run in zip(masses, runs, strict=True)]
+    mass = f"{min(masses):.3f}" if max(masses) - min(masses) < 5e-4 else f"{min(masses):.3f} to {max(masses):.3f}"
+    return [
+        f"|Z| is K(w) less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
+    ]
+
+
+def _what_was_run(comparison: Findings) -> str:
+    axes = [f"{axis.key} ({', '.join(shown(v) for v in _few(axis))})" for axis in comparison.axes]
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_listed(axes)}."
+    if not comparison.factorials:
+        return text
+    one, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
+    text += f" The effects compare the first with the last value of each axis ({one.corners.size} runs)"
+    text += ", as geometric means over the other settings"
+    text += f", at {_settings(comparison.held)}" if comparison.held else ""
+    text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
+    unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
+    return text + (f" Of {unknown} runs no error was estimated: they count as exact." if unknown else "")
+
+
+def _few(axis: Axis) -> Sequence[object]:
+    return axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1])
+
+
+def _doubts(comparison: Findings) -> list[str]:
+    reasons: dict[str, list[str]] = {}
+    for row in comparison.rows:
+        if row.doubt is not None:
+            point = ", ".join(shown(row.point[axis.key]) for axis in comparison.axes)
+            reasons.setdefault(row.doubt, []).append(f"({point})")
+    words = []
+    for reason, found in reasons.items():
+        points = ", ".join(found[:4]) + (f" and {len(found) - 4} more" if len(found) > 4 else "")
+        words.append(
+            f"Left out of the explanation, {len(found)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
+        )
+    if comparison.held and words:
+        words.append(
+            f"Some of them stand at the ends of the axes, so the effects hold for {_settings(comparison.held)} only."
+        )
+    return words
+
+
+def _why_no_effects(comparison: Findings) -> str:
+    if not comparison.varied:
+        return "No effects: every axis has one value."
+    return "No effects: too many of the runs at the ends of the axes cannot be used."
+
+
+def _main_effects(comparison: Findings, quantity: str) -> list[str]:
+    factorial, about = comparison.factorials[quantity], comparison.quantities[quantity]
+    label, unit = about.label, about.unit
+    values = [about.scale * (row.value(quantity) or 0.0) for row in comparison.rows if row.doubt is None]
+    beyond = {key: span for key in factorial.keys if (span := _between(comparison, quantity, comparison.axis(key)))}
+    main = [e for e in factorial.effects if len(e.term) == 1]
+    parts, hidden, weak, inert = [], [], [], []
+    largest = factorial.effects[0]
+    for effect in sorted(main, key=lambda e: -max(map(abs, (e.log_change, *beyond.get(e.term[0], ("", []))[1])))):
+        key = effect.term[0]
+        if key in beyond or (effect.resolved and abs(effect.log_change) >= HARDLY):
+            if key in beyond:
+                share = f"; to {beyond[key][0]} by {_span(beyond[key][1])}"
+            elif beyond:  # shares are those of the ends
+                share = ""
+            elif effect is not largest and largest.share > 0.9:
+                share = f"; {100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
+            else:
+                share = f"; {100.0 * effect.share:.3g} % of the variation"
+            mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
+            change = f"{percent(effect.log_change)} ({about.scale * (effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
+            parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
+        elif abs(effect.log_change) + factorial.error >= HARDLY and not effect.resolved:
+            hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
+        elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < HARDLY:
+            inert.append(f"{key} ({percent(effect.log_change)})")
+        else:
+            weak.append(f"{key} ({percent(effect.log_change)})")
+    none = "no axis is seen to move it" if hidden else "no axis moves it"
+    order = "On average" if len(parts) < 2 else "On average, the strongest first:"
+    words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
+    if hidden:
+        words.append(
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_listed(hidden)}."
+        )
+    if weak:
+        words.append(
+            f"{label} on average hardly depends on {_listed(weak)}, but does so together with other axes (see below)."
+        )
+    if inert:
+        words.append(f"{label} hardly depends on {_listed(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
+    return words
+
+
+def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list[float]] | None:
+    """The value amid an axis that is farthest beyond what its ends span, with ln of its changes from the first; None without one."""
+    lines: dict[str, dict[str, float]] = {}
+    for row in comparison.rows:
+        if row.doubt is None and (value := row.value(quantity) or 0.0) > 0.0:
+            others = repr([number for key, number in row.point.items() if key != axis.key])
+            lines.setdefault(others, {})[repr(row.point[axis.key])] = math.log(value)
+    first, *amid, last = map(repr, axis.values)
+    farthest, least = None, HARDLY + comparison.factorials[quantity].error
+    for value, name in zip(axis.values[1:-1], amid, strict=True):
+        changes = [
+            (one[name] - one[first], one[last] - one[first]) for one in lines.values() if {first, name, last} <= one.keys()
+        ]
+        if (far := max((max(to - max(end, 0.0), min(end, 0.0) - to) for to, end in changes), default=0.0)) > least:
+            farthest, least = (shown(value), [to for to, _ in changes]), far
+    return farthest
+
+
+def _mixed(factorial: Factorial, key: str) -> bool:
+    """Whether an axis raises the quantity at some value of another axis and lowers it at the other."""
+    return any(
+        factorial.resolved_change(key, {other: 0}) * factorial.resolved_change(key, {other: 1}) < 0.0
+        for other in factorial.keys
+        if other != key
+    )
+
+
+def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str:
+    """At which end of another axis the change along one is resolved although its mean is not."""
+    words = []
+    for other in (name for name in factorial.keys if name != key):
+        for end in (0, 1):
+            if change := factorial.resolved_change(key, {other: end}):
+                words.append(f"with {other} = {shown(comparison.axis(other).ends[end])} {percent(change)}")
+    return "".join(f"; {text}" for text in words)
+
+
+def _interactions(comparison: Findings, quantity: str) -> list[str]:
+    factorial, label = comparison.factorials[quantity], comparison.quantities[quantity].label
+    large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY and e.resolved]
+    words = []
+    for effect in large[:_MOST_INTERACTIONS]:
+        given, moved = _ordered(comparison, factorial, effect)
+        changes = [factorial.log_change(moved.key, {given.key: end}) for end in (0, 1)]
+        words.append(
+            f"{label}, interaction of {given.key} and {moved.key}: with {given.key} = {shown(given.ends[0])}, "
+            f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
+        )
+    high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= HARDLY and e.resolved]
+    if high:
+        terms = "; ".join(f"{' x '.join(e.term)} ({percent(e.log_change)})" for e in high[:3])
+        words.append(f"{label}, three or more axes together: {terms}.")
+    if not large and not high and len(factorial.keys) > 1:
+        most = max(abs(e.log_change) for e in factorial.effects if len(e.term) > 1)
+        if most + factorial.error < HARDLY:
+            words.append(f"{label} has no interaction above 0.5 %: the axes act independently.")
+        else:
+            words.append(
+                f"{label}: no interaction is resolved from the runs' errors (the largest would be {percent(most)})."
+            )
+    return words
+
+
+def _ordered(comparison: Findings, factorial: Factorial, effect: Effect) -> tuple[Axis, Axis]:
+    """(the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two."""
+    own = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
+    a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -own[axis.key]))
+    return a, b

@@ -1,0 +1,422 @@
+"""Many runs of a study: items in, rows out as they finish, kept, resumed, by any executor.
+
+A study says what one item is and what is done with it; what is finished outlives Ctrl-C, a kill and a full disk.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import resource
+import sys
+import threading
+import time
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import closing
+from functools import cache
+from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway import __version__
+from raceway.errors import PluginError, RacewayError
+from raceway.framework.contracts import Answer, Batch, Lost, Refused
+from raceway.framework.registry import Registry
+from raceway.points.store import RowStore, program_key, row_key
+from raceway.scene.scene import Scene
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
+    from raceway.pipeline.simulate import OnProgress
+
+
+def plugins_of(scene: Scene) -> list[tuple[str, str]]:
+    """(kind, name) of every plug-in that a scene uses."""
+    found = [
+        ("contact_law", scene.contact.kind),
+        ("integrator", scene.integrator.kind),
+        ("identifier", scene.identifier.kind),
+    ]
+    found += [("excitation", scene.excitation.name)] if scene.excitation is not None else []
+    return found + ([("mesher", scene.mesh.name)] if scene.mesh is not None else [])
+
+
+def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
+    """Versions, hash of all sources, and those of the used (kind, name) that this process has, as plain values."""
+    there = sorted(pair for pair in used if len(registry.entries.get(pair, [])) == 1)
+    entries = [registry.find(*pair) for pair in there]
+    return {
+        "raceway": __version__,
+        "python": platform.python_version(),
+        "numpy": version("numpy"),
+        "numba": version("numba"),
+        "scipy": version("scipy"),
+        "program": program_key(registry, there),
+        "plugins": {f"{e.kind}:{e.name}": f"{e.distribution} {e.version}" for e in entries},
+    }
+
+
+def used_by(wanted: ReadTables) -> list[tuple[str, str]]:
+    """(kind, name) of the plug-ins of an identity."""
+    return [(kind, name) for kind, _, name in (text.partition(":") for text in wanted["plugins"])]
+
+
+def differences(wanted: ReadTables, there: ReadTables) -> list[str]:
+    """In words what is there instead of what is wanted; empty where nothing differs."""
+    words = []
+    for text, owner in wanted["plugins"].items():
+        kind, _, name = text.partition(":")
+        plugin, has = f"{kind.replace('_', ' ')} '{name}'", there["plugins"].get(text)
+        if has is None:
+            words.append(f"{plugin} of {owner} is missing")
+        elif has != owner:
+            words.append(f"{plugin} is of {has} instead of {owner}")
+    for name in ("raceway", "python", "numpy", "numba", "scipy"):
+        if wanted[name] != there[name]:
+            words.append(f"{name} {there[name]} instead of {wanted[name]}")
+    if not words and wanted["program"] != there["program"]:
+        words.append("the sources of raceway or of a plug-in differ, under the same version")
+    return words
+
+
+#: Where the numbers of a case come from: what a document tells numbers of a source from.
+BASES = {
+    "published": "published numbers",
+    "closed form": "numbers of closed forms",
+    "own": "numbers of this program by two ways",
+}
+
+
+@attrs.frozen
+class Case:
+    """One case, in the units of its source (they are part of each key: ``Dw_mm``).
+
+    Attributes
+    ----------
+    basis : where ``outputs`` come from, a key of ``BASES``
+    inputs, outputs : what the source states and what it gives
+    rel_tol : relative agreement asked for, one number or one for each group of outputs
+    conventions : frame, signs and normalisation of the source, in words
+    source : where it was published
+    role : "check...", or "information..." for what this program need not compute
+    """
+
+    id: str
+    kind: str
+    basis: str
+    title: str
+    inputs: Tables
+    outputs: Tables
+    rel_tol: Any
+    conventions: str
+    source: str
+    role: str
+
+    @property
+    def checked(self) -> bool:
+        """Whether ``raceway verify`` computes it."""
+        return self.role.startswith("check")
+
+
+@attrs.frozen
+class Number:
+    """One computed number beside that of the case, both in the source's unit, with the largest relative error allowed.
+
+    ``computed`` is None when ``note`` says why there is none.
+    """
+
+    quantity: str
+    reference: float
+    computed: float | None
+    tolerance: float
+    note: str = ""
+
+
+@cache
+def reference_cases() -> dict[str, Case]:
+    """All cases by id, in the file's order."""
+    text = files("raceway").joinpath("data/cases.json").read_text(encoding="utf-8")
+    return {case["id"]: Case(**case) for case in json.loads(text)["cases"]}
+
+
+#: One at a time in a process: kernels may be compiling, and a run's cost is the process's.
+_ONE = threading.Lock()
+_OWN: dict[tuple[str, ...], Registry] = {}
+_FAULTS: dict[tuple[str, ...], str | None] = {}
+
+
+@attrs.frozen
+class Work:
+    """Callable on a list of what ``function`` takes; answers with a list of what it gives, or ``Refused``.
+
+    Attributes
+    ----------
+    function : called as ``function(given, registry)``
+    plugins : one-off plug-in files, which each process loads
+    wanted : identity that a process must have; None where all are of this machine
+    own : registry in the process that the work was made in; others have one of their own
+    """
+
+    function: Callable[[Any, Registry], Any]
+    plugins: tuple[str, ...] = ()
+    wanted: Tables | None = None
+    own: Registry | None = None
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Work, (self.function, self.plugins, self.wanted)
+
+    def fault(self) -> str | None:
+        """Why this process is not fit for the work; None where it is."""
+        if self.wanted is None:
+            return None
+        mark = (json.dumps(self.wanted, sort_keys=True), *self.plugins)
+        if mark not in _FAULTS:
+            try:
+                there = identity(registry_of(self.plugins), used_by(self.wanted))
+                _FAULTS[mark] = "; ".join(differences(self.wanted, there)) or None
+            except PluginError as why:
+                _FAULTS[mark] = str(why)
+        return _FAULTS[mark]
+
+    def __call__(self, some: list[Any]) -> Any:
+        with _ONE:
+            fault = self.fault()
+            if fault is not None:
+                return Refused(worker(), fault)
+            registry = self.own or registry_of(self.plugins)
+            return [self.function(one, registry) for one in some]
+
+
+def registry_of(files: tuple[str, ...]) -> Registry:
+    """The plug-ins of this process and of one-off files, loaded once."""
+    if files not in _OWN:
+        registry = Registry()
+        for file in files:
+            registry.load_file(Path(file))
+        _OWN[files] = registry
+    return _OWN[files]
+
+
+@cache
+def worker() -> str:
+    """Name of this process."""
+    return f"{platform.node()}:{os.getpid()}"
+
+
+@attrs.frozen
+class Item:
+    """A piece of work.
+
+    Attributes
+    ----------
+    key : of its row: a hash of all that decides it;  name : for people
+    given : what the study's function takes; plain values, or what can be pickled
+    """
+
+    key: str
+    name: str
+    given: Any
+
+
+def work_through(
+    function: Callable[[Any, Registry], Tables],
+    items: Sequence[Item],
+    store: RowStore,
+    executor: Executor,
+    registry: Registry,
+    plugins: Sequence[Path] = (),
+    on_progress: OnProgress | None = None,
+    lost: Callable[[Item, str], Tables] | None = None,
+) -> tuple[list[Tables], int]:
+    """Rows of all items, in their order, and how many of them were kept from before.
+
+    Parameters
+    ----------
+    function : called as ``function(item.given, registry)``, here or in another process: a row, plain values
+    store : of finished rows, read and added to;  executor : follows ``raceway.framework.contracts.Executor``
+    plugins : one-off plug-in files, which each process loads
+    on_progress : called as ``on_progress(name, done, total)`` after each item; an exception stops the study
+    lost : row of an item that took its process down, which is not kept, from the item and the reason
+
+    Raises
+    ------
+    RacewayError
+        An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: what is finished is kept.
+    """
+    found = {place: row for place, item in enumerate(items) if (row := store.get(item.key)) is not None}
+    reused = len(found)
+    work = Work(function, tuple(str(file.resolve()) for file in plugins), own=registry)
+    batches = ((place, [item.given]) for place, item in enumerate(items) if place not in found)
+    with closing(answers(executor, work, batches)) as finished:
+        for place, answer in finished:
+            item = items[place]
+            if isinstance(answer, Lost):
+                found[place] = _lost(item, answer, lost)
+            else:
+                found[place] = answer[0]
+                store.put(item.key, answer[0])
+            if on_progress is not None:
+                on_progress(item.name, len(found), len(items))
+    return [found[place] for place in range(len(items))], reused
+
+
+def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
+    if lost is None:
+        raise RacewayError(
+            f"{item.name}: {answer.reason}, perhaps for want of memory; what is finished is kept: run the command again, with "
+            "--processes 1"
+        )
+    return lost(item, answer.reason)
+
+
+def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generator[Answer, None, None]:
+    """Number and answer of each batch as it is finished; nothing is left at work, whatever ends it.
+
+    Raises
+    ------
+    PluginError
+        A worker that is not fit for the work, or an executor that cannot work.
+    """
+    found = executor.compute(work, batches)
+    try:
+        for number, answer in found:
+            if isinstance(answer, Refused):
+                raise PluginError(f"worker {answer.worker} cannot compute these points: {answer.reason}")
+            yield number, answer
+    finally:
+        close = getattr(found, "close", None)  # an iterator that is no generator has none
+        if close is not None:
+            close()
+
+
+def local(registry: Registry, processes: int, **options: Any) -> Executor:
+    """The executor of ``--processes``: so many at a time, with these options; 0: this process."""
+    if processes == 0:
+        return registry.find("executor", "serial").plugin()
+    return registry.find("executor", "processes").plugin(workers=processes, **options)
+
+
+def processor_time() -> float:
+    """Of this process and of those that it has ended [s]."""
+    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(one.ru_utime + one.ru_stime for one in used)
+
+
+#: No further repeat is begun once a setting has taken this long [s].
+PATIENCE_S = 10.0
+_PROCESS = Path("/proc/self")
+
+
+def quantities(result: Tables) -> dict[str, float]:
+    """What a study compares, as far as a result.json has it.
+
+    Returns
+    -------
+    quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N] and pressure [Pa], of both races
+    """
+    found: dict[str, float] = {}
+    known, motion = result["identification"], result["motion"]
+    if known is not None:
+        z = known["dynamic_stiffness"]
+        found |= {"z_real": z["real"], "z_imag": z["imag"], "equivalent_stiffness": known["equivalent_stiffness"]}
+    if motion is not None:
+        found |= {"axial_displacement": motion["axial_displacement_m"], "peak_ball_load": motion["peak_ball_load_n"]}
+        return found | {"p0": motion["peak_pressure_pa"]}
+    still = result["equilibrium"]
+    found |= {"axial_displacement": still["displacement"]["x"], "peak_ball_load": still["largest_ball_load_n"]}
+    return found | {"p0": still["largest_pressure_pa"]}
+
+
+def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
+    """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
+
+    In this process, with nothing beside it: times are what is asked for.
+    """
+    item = Item(row_key(scene, registry, extra), scene.title, (scene, repeats))
+    (row,), reused = work_through(_measured, [item], store, local(registry, 0), registry)
+    return row, reused == 1
+
+
+def _measured(given: tuple[Scene, int], registry: Registry) -> Tables:
+    scene, repeats = given
+    return measured(scene, registry, repeats)
+
+
+def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
+    """Run a scene: status, quantities, its own error estimate, cost; a failure with its reason.
+
+    Notes
+    -----
+    Times are the least of the repeats.  Compiling is apart: a first run that compiled is not among the repeats, because its
+    processor time cannot be told from the compiler's.  ``time_s``, by which settings are compared, is the time of the processor,
+    or with several threads the wall time.
+    The peak of memory is the process's, counted anew for each setting where the system lets a process do so.
+    """
+    from raceway.pipeline.run import run
+
+    begun, compiling = time.perf_counter(), 0.0
+    runs: list[dict[str, float]] = []
+    own_peak, cold = reset_peak(), True
+    while len(runs) < repeats and (not runs or time.perf_counter() - begun - compiling < PATIENCE_S):
+        cpu = time.process_time()
+        try:
+            found = run(scene, registry)
+            cpu = time.process_time() - cpu
+            result = found.to_dict()
+        except RacewayError as error:
+            return {
+                "status": error.status,
+                "reason": str(error).splitlines()[0],
+                "quantities": {},
+                "own_error": None,
+                "cost": None,
+            }
+        cost = result["cost"]
+        compiling += cost["compile_s"]
+        if cold and cost["compile_s"] > 0.0:
+            own_peak, cold = reset_peak(), False
+            continue
+        times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
+        # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
+        runs.append({"cpu_s": cpu if cost["compile_s"] == 0.0 else max(cpu - cost["compile_s"], cost["solve_s"]), **times})
+    scale = 1 if sys.platform == "darwin" else 1024
+    times = {name: min(one[name] for one in runs) for name in runs[0]}
+    return {
+        "status": "completed",
+        "reason": "",
+        "quantities": quantities(result),
+        "own_error": _without_mesh(result["error"]),
+        "transient_error": result["error"]["transient"],
+        "warnings": result["warnings"],
+        "cost": {
+            **times,
+            # Other programs on the machine stretch the wall time, not the work; threads share the work.
+            "time_s": times["cpu_s"] if cost["threads"] == 1 else times["wall_s"],
+            "wall_spread_s": max(one["wall_s"] for one in runs) - times["wall_s"],
+            "compile_s": compiling,
+            "steps": cost["steps"],
+            "iterations": cost["newton_iterations"],
+            "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
+            "peak_memory_of": "setting" if own_peak else "process so far",
+            "repeats": len(runs),
+        },
+    }
+
+
+def _without_mesh(error: Tables) -> float | None:
+    """The run's own estimate, less its bodies': rows on one mesh are held against a reference on the same."""
+    return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
+
+
+def reset_peak() -> bool:
+    """Let the system count the peak of memory of this process anew (Linux); whether it does."""
+    try:
+        (_PROCESS / "clear_refs").write_bytes(b"5")
+    except OSError:
+        return False
+    return True

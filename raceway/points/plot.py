@@ -1,0 +1,658 @@
+"""Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import Mistake, RacewayError, SceneError
+from raceway.framework.options import nearest
+from raceway.framework.shown import read_in
+from raceway.plugins.pictures import new_figure
+from raceway.points.axes import is_number, shown
+from raceway.points.axes import shown as _text
+from raceway.scene.changes import parse_value
+from raceway.storage.files import write_whole
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from matplotlib.axes import Axes
+    from matplotlib.collections import Collection
+    from matplotlib.figure import Figure
+    from xarray import DataArray, Dataset
+
+    from raceway.storage.tables import Tables
+
+
+#: The dimension of a sweep over a list of points; a grid has one dimension for each key instead.
+LIST = "point"
+DONE = "done"
+#: Numbers of an axis that differ by less are one value [relative].
+_SAME = 1e-9
+_SHOWN = 8
+
+
+@attrs.frozen(eq=False)
+class Selection:
+    """Results on the axes that still vary.
+
+    Attributes
+    ----------
+    dataset : with one dimension for each key of ``axes``, in that order, or ``point`` where the list is no grid
+    axes : keys that vary, with their values in rising order (numbers) or in the order of the sweep
+    fixed : keys of the sweep that do not vary here, and their values
+    unfinished : status -> number of points that have no result
+    """
+
+    dataset: Dataset
+    axes: Tables
+    fixed: Tables
+    unfinished: dict[str, int]
+
+    @property
+    def title(self) -> str:
+        return str(self.scene.get("title", "sweep"))
+
+    @property
+    def scene(self) -> Tables:
+        """The scene that was swept; keys of ``axes`` and ``fixed`` have other values."""
+        found = json.loads(self.dataset.attrs.get("scene", "{}"))
+        return found if isinstance(found, dict) else {}
+
+    def value(self, key: str, default: object = None) -> Any:
+        """What a key of the scene is at all points of the selection; ``default`` where it is not given.
+
+        Raises
+        ------
+        KeyError
+            For a key that varies.
+        """
+        if key in self.axes:
+            raise KeyError(key)
+        if key in self.fixed:
+            return self.fixed[key]
+        table: Any = self.scene
+        for name in key.split("."):
+            if not isinstance(table, Mapping) or table.get(name) is None:
+                return default
+            table = table[name]
+        return table
+
+    @property
+    def gaps(self) -> str:
+        """The points without result in words; empty when there are none."""
+        return ", ".join(f"{count} {state}" for state, count in self.unfinished.items())
+
+
+def parse_at(texts: Iterable[str]) -> Tables:
+    """``KEY=VALUE`` texts as a mapping.
+
+    Raises
+    ------
+    SceneError
+        With every text that is not of this form, and every key that stands twice.
+    """
+    chosen: Tables = {}
+    mistakes = []
+    for text in texts:
+        key, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not key or not value:
+            mistakes.append(Mistake("--at", text, "must have the form KEY=VALUE, for instance load.axial=1000"))
+        elif key in chosen:
+            mistakes.append(Mistake(f"--at {key}", value, "is chosen twice: leave one out"))
+        else:
+            chosen[key] = parse_value(value)
+    if mistakes:
+        raise SceneError(mistakes)
+    return chosen
+
+
+def keys_of(dataset: Dataset) -> list[str]:
+    """The keys of the scene that a sweep varied, in its order."""
+    if LIST in dataset.dims:
+        return [str(name) for name, found in dataset.coords.items() if found.dims == (LIST,) and name != LIST]
+    return [str(name) for name in dataset.dims if name in dataset.coords and "." in str(name)]
+
+
+def select(dataset: Dataset, at: ReadTables) -> Selection:
+    """The results at chosen values.
+
+    Parameters
+    ----------
+    dataset : as a sweep gives it: a dimension for each key, or ``point`` with the keys as coordinates
+    at : key -> value; it must be one of the axis' values
+
+    Raises
+    ------
+    SceneError
+        An unknown key, or a value that the sweep does not hold; the nearest one is named.
+    """
+    keys = keys_of(dataset)
+    mistakes, chosen = [], Tables()
+    for key, wanted in at.items():
+        if key not in keys:
+            message = f"is not an axis of this sweep{nearest(key, keys)}; axes: {', '.join(keys)}"
+            mistakes.append(Mistake(f"--at {key}", wanted, message))
+            continue
+        values = _values(dataset[key].values)
+        found = [value for value in values if same(value, wanted)]
+        if found:
+            chosen[key] = found[0]
+        else:
+            mistakes.append(Mistake(f"--at {key}", wanted, f"is not in the sweep, which has {listed(values)}"))
+    if mistakes:
+        raise SceneError(mistakes)
+    part = _list_at(dataset, chosen) if LIST in dataset.dims else dataset.sel(chosen)
+    axes, fixed = Tables(), Tables()
+    for key in keys:
+        values = _values(part[key].values)
+        if key in chosen or len(values) == 1:
+            fixed[key] = values[0] if values else chosen[key]
+        else:
+            axes[key] = values
+    unfinished = _unfinished(part)
+    return Selection(_as_grid(part, axes, fixed), axes, fixed, unfinished)
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values of a key are equal, numbers to rounding."""
+    if is_number(one) and is_number(other):
+        return math.isclose(one, other, rel_tol=_SAME, abs_tol=0.0)
+    return _value_text(one) == _value_text(other)
+
+
+def _value_text(value: object) -> str:
+    """What is no number has its JSON text on an axis."""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+def listed(values: Sequence[object]) -> str:
+    """Values for a message; long lists are shortened in the middle."""
+    texts = [shown(value) for value in values]
+    if len(texts) > _SHOWN:
+        texts = [*texts[: _SHOWN - 3], "...", *texts[-2:]]
+    return ", ".join(texts)
+
+
+def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> None:
+    """Refuse axes that would have to be chosen first.
+
+    Raises
+    ------
+    SceneError
+        Naming each axis, its values and what to type.
+    """
+    mistakes = [
+        Mistake(
+            key,
+            None,
+            f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}",
+        )
+        for key, values in selection.axes.items()
+        if key not in allowed
+    ]
+    if mistakes:
+        raise SceneError(mistakes)
+
+
+def _values(array: np.ndarray) -> list[Any]:
+    """Different values as plain Python objects, numbers in rising order."""
+    found = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))
+    return sorted(found) if all(is_number(value) for value in found) else found
+
+
+def _list_at(dataset: Dataset, chosen: ReadTables) -> Dataset:
+    keep = np.ones(dataset.sizes[LIST], dtype=bool)
+    for key, value in chosen.items():
+        keep &= np.array([same(one, value) for one in dataset[key].values.tolist()])
+    if not keep.any():
+        raise RacewayError(f"no point of the sweep has {', '.join(f'{k} = {shown(v)}' for k, v in chosen.items())} together")
+    return dataset.isel({LIST: np.flatnonzero(keep)})
+
+
+def _unfinished(dataset: Dataset) -> dict[str, int]:
+    if "status" not in dataset:
+        return {}
+    states, counts = np.unique(dataset["status"].values.astype(str), return_counts=True)
+    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != DONE}
+
+
+def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
+    """Axes that do not vary dropped, the others sorted; a list becomes a grid where it fills one."""
+    keys = list(axes)
+    if LIST not in part.dims:
+        part = part.isel({key: 0 for key in fixed if key in part.dims})
+        return _ordered(part, axes)
+    part = part.drop_vars([key for key in fixed if key in part.coords])
+    if not keys:
+        return part.isel({LIST: 0})
+    points = list(zip(*(part[key].values.tolist() for key in keys), strict=True))
+    if len(set(points)) != len(points) or len(points) != math.prod(len(values) for values in axes.values()):
+        return part
+    kept = {key: dict(part[key].attrs) for key in keys}
+    part = part.drop_vars([LIST], errors="ignore")
+    if len(keys) == 1:
+        part = part.swap_dims({LIST: keys[0]})
+    else:
+        part = part.set_index(point=keys).unstack(LIST)
+    part = _ordered(part, axes)
+    for key, attributes in kept.items():
+        part[key].attrs.update(attributes)
+    return part
+
+
+def _ordered(part: Dataset, axes: ReadTables) -> Dataset:
+    """Values of the axes in their order, by place: a list of booleans would be a mask."""
+    places = {key: [part[key].values.tolist().index(value) for value in values] for key, values in axes.items()}
+    return part.isel(places).transpose(*axes, ...)
+
+
+_WORDS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3aa6b9", "#b0457b")
+_MARKERS = "os^DvPX*"
+_GRID = "#e3e7eb"
+_NO_RESULT = "#c3cad1"
+_LIST = "point"
+_FORMATS = (".png", ".svg")
+_DOTS_PER_INCH = 150
+
+
+def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, title: str, remark: str) -> Figure:
+    """One quantity.
+
+    Parameters
+    ----------
+    data : over ``x``, ``y``, ``panels`` or over ``point``; nan where there is no result; attrs units, description
+    kind : "curves", "map" or "surface"
+    title, remark : the first line over the picture, and a second, smaller one
+
+    Raises
+    ------
+    RacewayError
+        matplotlib is missing.
+    """
+    factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
+    name = str(data.name).replace("_", " ").replace(":", " ")
+    words = str(data.attrs.get("description", ""))
+    label = name if unit in ("", "1") else f"{name} [{unit}]"
+    data = data.copy(data=data.values * factor).assign_coords({key: data[key] for key in data.coords})
+    parts = (
+        [(None, data)] if panels is None else [(value, data.sel({panels: value})) for value in data[panels].values.tolist()]
+    )
+    figure = _figure(kind, len(parts))
+    columns = min(len(parts), 3)
+    rows = -(-len(parts) // columns)
+    projection = {"projection": "3d"} if kind == "surface" else {}
+    grid = figure.subplots(
+        rows, columns, squeeze=False, sharex=kind != "surface", sharey=kind != "surface", subplot_kw=projection
+    )
+    low, high = float(np.nanmin(data.values)), float(np.nanmax(data.values))
+    if high - low <= 1e-9 * abs(high):
+        low, high = low - 0.01 * abs(low or 1.0), high + 0.01 * abs(high or 1.0)
+    for place, (value, part) in enumerate(parts):
+        axes = grid.flat[place]
+        axes.set_title("" if panels is None else f"{panels} = {_text(value)}{_unit(data, panels)}", fontsize=10.5)
+        first = place % columns == 0
+        if kind == "curves":
+            _curves(axes, part, x, y, label if first else "")
+        elif kind == "map":
+            shown = _map(axes, part, x, y or "", (low, high), first)
+        else:
+            shown = _surface(axes, part, x, y or "", (low, high), label)
+    for axes in grid.flat[len(parts) :]:
+        axes.set_visible(False)
+    if kind == "map":
+        bar = figure.colorbar(shown, ax=grid, shrink=0.95, pad=0.015)
+        bar.set_label(label, fontsize=11)
+        bar.outline.set_visible(False)
+    if kind == "curves" and y is not None:
+        handles, labels = grid.flat[0].get_legend_handles_labels()
+        figure.legend(
+            handles, labels, loc="outside right center", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
+        )
+    heading = name if words in ("", name) else f"{name}: {words}"
+    figure.suptitle(
+        "\n".join(line for text in (heading, *title.splitlines(), remark) for line in wrap(text, 84)), fontsize=11.5
+    )
+    return figure
+
+
+def write(figure: Figure, path: Path) -> Path:
+    """Write a figure as PNG or SVG, by the ending, whole or not at all.
+
+    Raises
+    ------
+    RacewayError
+        Another ending, or a folder that cannot be written.
+    """
+    if path.suffix.lower() not in _FORMATS:
+        raise RacewayError(f"`{path}`: pictures are written as {' or '.join(_FORMATS)}: choose such a name with --out")
+    from matplotlib import rc_context
+
+    memory = io.BytesIO()
+    # Neither a date nor names at random: the same results give the same file.
+    with rc_context({"svg.hashsalt": "raceway"}):
+        vector = path.suffix.lower() == ".svg"
+        figure.savefig(
+            memory, format=path.suffix.lower()[1:], dpi=_DOTS_PER_INCH, metadata={"Date": None} if vector else None
+        )
+    return write_whole(memory.getvalue(), path)
+
+
+def _figure(kind: str, count: int) -> Figure:
+    columns, rows = min(count, 3), -(-count // 3)
+    if count == 1:
+        return new_figure(8.6, 5.6)
+    return new_figure(2.0 + 4.0 * columns, 1.2 + (3.9 if kind != "surface" else 4.2) * rows)
+
+
+def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
+    """A curve for each value of y; the points of a list without lines, since they may have no order."""
+    scattered = _LIST in data.dims
+    values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
+    values = sorted(values) if y is not None and _numeric(values) else values
+    places, names = _places(data[x].values)
+    for k, value in enumerate(values):
+        if y is None:
+            chosen, at = data, places
+        elif scattered:
+            keep = np.array([one == value for one in data[y].values.tolist()])
+            chosen, at = data.isel({_LIST: np.flatnonzero(keep)}), places[keep]
+        else:
+            chosen, at = data.sel({y: value}), places
+        axes.plot(
+            at, chosen.values, label=_text(value), color=_colour(k, values), marker=_MARKERS[k % len(_MARKERS)],
+            markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if scattered or names else 1.6,
+        )  # fmt: skip
+        if scattered and len(at) > 40:
+            axes.lines[-1].set_markersize(3.0)
+    if names:
+        axes.set_xticks(range(len(names)), names)
+    axes.set_ylabel(label, fontsize=11)
+    _dress(axes, data, x)
+
+
+def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float], first: bool) -> Collection:
+    """A cell round each point; contours where every point has a result."""
+    low, high = limits
+    axes.set_ylabel(_axis(data, y) if first else "", fontsize=11)
+    if _LIST in data.dims:
+        found = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
+        _dress(axes, data, x)
+        return found
+    at_x, at_y = data[x].values, data[y].values
+    values = data.transpose(y, x).values
+    axes.set_facecolor(_NO_RESULT)
+    shown = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", cmap="viridis", vmin=low, vmax=high)
+    if np.isfinite(values).all() and min(values.shape) >= 4:
+        lines = axes.contour(at_x, at_y, values, levels=8, colors="white", linewidths=0.8, alpha=0.85)
+        axes.clabel(lines, fontsize=8.5, fmt="%.4g")
+    _dress(axes, data, x)
+    axes.grid(False)
+    return shown
+
+
+def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], label: str) -> Collection:
+    across, along = np.meshgrid(data[x].values, data[y].values)
+    values = data.transpose(y, x).values
+    shown = axes.plot_surface(
+        across, along, values, cmap="viridis", vmin=limits[0], vmax=limits[1], rcount=200, ccount=200,
+        linewidth=0.3, edgecolor="#ffffff55", antialiased=True,
+    )  # fmt: skip
+    axes.set_xlabel(_axis(data, x), fontsize=9.5, labelpad=9)
+    axes.set_ylabel(_axis(data, y), fontsize=9.5, labelpad=9)
+    axes.set_zlabel(label, fontsize=9.5, labelpad=7)
+    axes.tick_params(labelsize=8.5)
+    axes.view_init(elev=26.0, azim=-128.0)
+    axes.set_box_aspect((1.25, 1.1, 0.8), zoom=1.0)
+    return shown
+
+
+def _dress(axes: Axes, data: DataArray, x: str) -> None:
+    axes.set_xlabel(_axis(data, x), fontsize=11)
+    axes.tick_params(labelsize=10)
+    axes.grid(True, color=_GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    for axis in (axes.xaxis, axes.yaxis):
+        formatter = axis.get_major_formatter()
+        if hasattr(formatter, "set_useOffset"):
+            formatter.set_useOffset(False)
+    if _numeric(np.atleast_1d(data[x].values).tolist()):
+        axes.locator_params(axis="x", nbins=7)
+
+
+def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Numbers as they are; words at 0, 1, 2, ... with their names."""
+    plain = values.tolist()
+    if _numeric(plain):
+        return np.asarray(values, dtype=float), []
+    names = list(dict.fromkeys(_text(value) for value in plain))
+    return np.array([names.index(_text(value)) for value in plain], dtype=float), names
+
+
+def _colour(place: int, values: list[Any]) -> str | tuple[float, float, float, float]:
+    """Ordered colours for numbers, distinct ones for words."""
+    if not _numeric(values) or len(values) == 1:
+        return _WORDS[place % len(_WORDS)]
+    from matplotlib import colormaps
+
+    return colormaps["viridis"](0.88 * place / (len(values) - 1))
+
+
+def _axis(data: DataArray, key: str) -> str:
+    return f"{key}{_unit(data, key, brackets=True)}"
+
+
+def _unit(data: DataArray, key: str, brackets: bool = False) -> str:
+    unit = str(data[key].attrs.get("units", ""))
+    if unit in ("", "1", "-"):
+        return ""
+    return f" [{unit}]" if brackets else f" {unit}"
+
+
+def _numeric(values: Iterable[object]) -> bool:
+    return all(map(is_number, values))
+
+
+#: First that is there: what a sweep is made for, then what a static scene has.
+_DEFAULTS = ("equivalent_stiffness", "z_real", "stiffness:y,y", "axial_displacement")
+_FIRST_X = ("excitation.speed_rpm", "kinematics.spin_speed_rpm")
+_MOST_COLOURS = 8
+_MOST_PANELS = 6
+
+
+@attrs.frozen(eq=False)
+class Layout:
+    """A picture of one quantity.
+
+    Attributes
+    ----------
+    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; units and description in its attributes
+    x, y : keys; in curves y is what the colours stand for and may be None
+    panels : key of one panel a value, or None
+    """
+
+    data: DataArray
+    name: str
+    kind: str
+    x: str
+    y: str | None
+    panels: str | None
+    title: str
+    remark: str
+
+    def write(self, path: Path) -> Path:
+        """Draw it.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the file cannot be written.
+        """
+
+        return write(draw(self.data, self.kind, self.x, self.y, self.panels, self.title, self.remark), path)
+
+
+def layout(
+    selection: Selection, value: str | None = None, kind: str | None = None, x: str | None = None, y: str | None = None
+) -> Layout:
+    """Choose what was left open.
+
+    Parameters
+    ----------
+    value : variable, with labels of its other dimensions after a colon: ``p0``, ``stiffness:y,y``, ``displacement:x``
+    kind : "curves", "map" or "surface"
+
+    Raises
+    ------
+    SceneError
+        Unknown names, axes that do not vary or have no numbers, and axes left over, each with what to type.
+    RacewayError
+        Nothing varies, or nothing is finished.
+    """
+    if not names(selection.dataset):
+        raise RacewayError("no point is done yet: compute them with raceway sweep ... --resume")
+    data, name = quantity(selection.dataset, value)
+    axes = selection.axes
+    if not axes:
+        raise RacewayError("nothing varies in this part of the sweep: leave out an --at, or see the values with --json")
+    if not bool(data.notnull().any()):
+        raise RacewayError(f"no point of this part has a {name}: {selection.gaps or 'none was finished'}")
+    _refuse_strangers(selection, x, y)
+    numeric = [key for key, values in axes.items() if all(is_number(v) for v in values)]
+    kind = kind or _kind(axes, numeric)
+    x = x or _best(axes, [key for key in numeric or axes if key != y], kind)
+    rest = [key for key in axes if key != x]
+    if kind != "curves":
+        y = y or next(iter(sorted((key for key in rest if key in numeric), key=lambda key: -len(axes[key]))), None)
+        _refuse_flat(kind, x, y, numeric)
+    else:
+        y = y or _colour_axis(axes, rest)
+    over = [key for key in rest if key != y]
+    panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
+    _refuse_rest(axes, [key for key in over if key != panels], kind)
+    if kind == "surface" and LIST in data.dims:
+        raise RacewayError("the points of this sweep fill no grid, and a surface needs one: choose --kind map or curves")
+    fixed = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
+    remark = "; ".join(part for part in (fixed, f"without result: {selection.gaps}" if selection.gaps else "") if part)
+    return Layout(data, name, kind, x, y, panels, selection.title, remark)
+
+
+def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
+    """A variable by its name, with the labels of its other dimensions chosen.
+
+    Raises
+    ------
+    SceneError
+        A name that is not there, or labels that do not fit.
+    """
+    if text is None:
+        text = next((name for name in _DEFAULTS if name.partition(":")[0] in dataset), None)
+        if text is None:
+            raise RacewayError(f"choose what to draw with --value: {', '.join(names(dataset))}")
+    name, _, labels = text.partition(":")
+    if name not in dataset or dataset[name].dtype.kind not in "fiu":
+        known = names(dataset)
+        raise SceneError.at(
+            "--value", text, f"is not a quantity of this sweep{nearest(name, known)}; there are {', '.join(known)}"
+        )
+    data = dataset[name]
+    own = [str(dim) for dim in data.dims if "." not in str(dim) and dim != LIST]
+    given = [label.strip() for label in labels.split(",") if label.strip()]
+    if len(given) != len(own):
+        choices = [[str(label) for label in data[dim].values] for dim in own]
+        wanted = ",".join(options[min(1, len(options) - 1)] for options in choices)
+        message = (
+            f"takes {len(own)} labels after a colon{f', for instance {name}:{wanted}' if own else ''}; {len(given)} given"
+        )
+        raise SceneError.at("--value", text, message)
+    for dim, label in zip(own, given, strict=True):
+        known = [str(one) for one in data[dim].values]
+        if label not in known:
+            raise SceneError.at("--value", text, f"has no '{label}'{nearest(label, known)}; there are {', '.join(known)}")
+        data = data.isel({dim: known.index(label)})
+    data = data.copy()  # its attributes change
+    if own:
+        data.name = text
+        data.attrs["units"] = unit_of(name, str(data.attrs.get("units", "")), given)
+    return data, text
+
+
+def unit_of(name: str, unit: str, labels: Sequence[str]) -> str:
+    """The unit of one entry where a variable mixes translations and tilts."""
+    tilts = sum(label.startswith("tilt") for label in labels)
+    if name == "stiffness" and len(labels) == 2:
+        if not tilts:
+            return "N/m"
+        return "N m/rad" if tilts == 2 else ("N/rad" if labels[1].startswith("tilt") else "N m/m")
+    if name == "displacement":
+        return "rad" if tilts else "m"
+    return unit
+
+
+def names(dataset: Dataset) -> list[str]:
+    """Variables with numbers."""
+    return [str(name) for name, data in dataset.data_vars.items() if data.dtype.kind in "fiu"]
+
+
+def _kind(axes: Tables, numeric: list[str]) -> str:
+    both = len(axes) == 2 and len(numeric) == 2
+    return "map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves"
+
+
+def _best(axes: Tables, keys: list[str], kind: str) -> str:
+    if not keys:
+        raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
+    return min(keys, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
+
+
+def _colour_axis(axes: Tables, rest: list[str]) -> str | None:
+    """The axis with most values that still can be told apart; panels take the other one."""
+    fitting = [key for key in rest if len(axes[key]) <= _MOST_COLOURS]
+    return max(fitting or rest, key=lambda key: len(axes[key]), default=None)
+
+
+def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> None:
+    mistakes = []
+    known = list(selection.axes)
+    for option, key in (("--x", x), ("--y", y)):
+        if key is None or key in known:
+            continue
+        if key in selection.fixed:
+            why = f"has the one value {shown(selection.fixed[key])} here"
+        else:
+            why = f"is not an axis of this sweep{nearest(key, known)}"
+        mistakes.append(Mistake(option, key, f"{why}; axes that vary: {', '.join(known)}"))
+    if x is not None and x == y:
+        mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
+    if mistakes:
+        raise SceneError(mistakes)
+
+
+def _refuse_flat(kind: str, x: str, y: str | None, numeric: list[str]) -> None:
+    if y is None:
+        raise SceneError.at("--kind", kind, f"takes two axes with numbers, and only {x} varies: choose --kind curves")
+    for option, key in (("--x", x), ("--y", y)):
+        if key not in numeric:
+            raise SceneError.at(option, key, f"has words for values, and a {kind} takes numbers: choose --kind curves")
+
+
+def _refuse_rest(axes: Tables, over: list[str], kind: str) -> None:
+    if over:
+        raise SceneError(
+            [
+                Mistake(key, None, f"varies, too ({listed(axes[key])}), and {kind} have no place for it: choose one with "
+                        f"--at {key}={shown(axes[key][0])}")
+                for key in over
+            ]
+        )  # fmt: skip

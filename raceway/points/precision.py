@@ -1,0 +1,569 @@
+"""Error against run time of a scene's settings, for Python and the command line alike: ``raceway.precision``."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.doors import door, member
+from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.framework.shown import Fact, Shown
+from raceway.out.progress import ShowProgress, telling
+from raceway.plugins.labelled import labelled_dataset, labels
+from raceway.plugins.pictures import given_axes
+from raceway.points.axes import shown
+from raceway.points.engine import measured_once
+from raceway.points.settings import (
+    Reference,
+    Runner,
+    Setting,
+    distance,
+    find_reference,
+    main_size,
+    make_design,
+    minus,
+    needs_motion,
+    setting_at,
+)
+from raceway.points.store import RowStore
+from raceway.scene.changes import parse_change
+from raceway.scene.given import plain_tables, tidy
+from raceway.storage.files import writable
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from xarray import Dataset
+
+    from raceway.pipeline.simulate import OnProgress
+    from raceway.points.precision import Precision
+
+
+THRESHOLDS = (0.01, 0.001, 0.0001)
+#: A reference counts as exact for rows whose error is this many times its bound.
+EXACT = 10.0
+#: Errors below this many times the reference's bound say nothing about an order.
+_ORDER_MARGIN = 5.0
+#: Axes along which errors have an order: the exponent of 1 / value (True) or of the value itself.
+LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
+Row = Tables
+
+
+@attrs.frozen(eq=False, slots=False, repr=False)
+class Precision(Shown):
+    """Findings of a precision study.
+
+    Attributes
+    ----------
+    rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
+    references : by physics; ``base`` is the physics that the front and the other models refer to
+    left_out : (family, values, reason) of the default design
+    fault : why rows could not be kept on disk
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> force = {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4}
+    >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000}, "rotor": {"mass": 2}, "excitation": force}
+    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [90]}, repeats=1)
+    >>> found.to_xarray().error.item() < 1e-4  # of Z, relative
+    True
+    """
+
+    title: str
+    rows: tuple[Row, ...]
+    references: dict[str, Reference]
+    base: str
+    left_out: tuple[tuple[str, Tables, str], ...]
+    notes: tuple[str, ...] = ()
+    fault: RacewayError | None = None
+
+    @cached_property
+    def judged(self) -> list[Row]:
+        """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
+        found = [{**row, **self._errors(row)} for row in self.rows]
+        for place, order in self._orders(found).items():
+            found[place]["order"] = order
+        return found
+
+    def _errors(self, row: Row) -> Row:
+        out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
+        values = row["quantities"]
+        if not values:
+            return out
+        reference = self.references[row["physics"]]
+        out["value"] = main_size(values)
+        if not reference.values:
+            return out
+        apart = minus(values, reference.values)
+        size = reference.size
+        scale = {name: size if name in ("z_real", "z_imag") else abs(reference.values[name]) or 1.0 for name in apart}
+        out["errors"] = {name: abs(apart[name]) / scale[name] for name in apart}
+        out["error"] = distance(apart) / size
+        out["at_bound"] = not out["error"] > EXACT * reference.bound
+        return out
+
+    def _orders(self, rows: list[Row]) -> dict[int, float]:
+        """Order between each row and the next coarser one of its ladder."""
+        found: dict[int, float] = {}
+        for key, inverse in LADDERS.items():
+            for places in _ladders(rows, key):
+                places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
+                for coarse, fine in zip(places, places[1:], strict=False):
+                    bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
+                    errors = [rows[k]["error"] for k in (coarse, fine)]
+                    if min(errors) > bound:
+                        ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
+                        found[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
+        return found
+
+    def bounded(self, row: Row) -> float:
+        """The largest error that the row can have."""
+        return float(row["error"]) + self.references[row["physics"]].bound
+
+    def front(self, physics: str) -> list[int]:
+        """Places of the rows that no other row of the same model beats in both error and run time, the fastest first.
+
+        Errors below the reference's bound count as the bound: nobody knows which of them is smaller.
+        """
+        bound = self.references[member("physics", physics, self.references)].bound
+        rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        found, best = [], math.inf
+        for _, error, place in sorted(rows):
+            if error < best:
+                found.append(place)
+                best = error
+        return found
+
+    def cheapest(self, physics: str) -> dict[str, int | None]:
+        """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
+        rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
+        found: dict[str, int | None] = {}
+        for threshold in THRESHOLDS:
+            good = [(time, k) for time, k in rows if self.bounded(self.judged[k]) <= threshold]
+            found[_text(threshold)] = min(good)[1] if good else None
+        return found
+
+    @property
+    def converged(self) -> bool:
+        """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
+        found = [row for row in self.judged if row["status"] == "completed"]
+        known = [row for row in found if row["error"] is not None]
+        return any(self.bounded(row) <= THRESHOLDS[0] for row in known) if known else bool(found)
+
+    @property
+    def models(self) -> list[Tables]:
+        """Each model: what sets it apart, its reference, its difference from the base, its own front."""
+        base = self.references[self.base]
+        found = []
+        for physics, reference in self.references.items():
+            rows = [row for row in self.rows if row["physics"] == physics]
+            if not rows:
+                continue
+            apart = minus(reference.values, base.values)
+            scale = {n: base.size if n in ("z_real", "z_imag") else abs(base.values[n]) or 1.0 for n in apart}
+            known = apart.keys() >= {"z_real"} or ("axial_displacement" in apart and "z_real" not in base.values)
+            found.append(
+                {
+                    "model": rows[0]["model"],
+                    "base": physics == self.base,
+                    "reference": _reference_table(reference),
+                    "difference": distance(apart) / base.size if known else None,
+                    "differences": {name: apart[name] / scale[name] for name in apart},
+                    "front": self.front(physics),
+                    "cheapest": self.cheapest(physics),
+                }
+            )
+        return found
+
+    @cached_property
+    def words(self) -> list[str]:
+        """The reference, the cheapest settings and the models' differences, a sentence each."""
+        reference = self.references[self.base]
+        lines = [f"reference: {reference.how}; relative bound {reference.bound:.1g}"]
+        limited = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
+        if limited:
+            lines.append(
+                f"the reference is not {EXACT:g} times more accurate than {len(limited)} of the rows (marked ~): their errors "
+                "are known to its bound only, and so is the front there"
+            )
+        for threshold, place in self.cheapest(self.base).items():
+            percent = f"{100.0 * float(threshold):g} %"
+            if place is None:
+                lines.append(f"no setting is known to be within {percent}")
+            else:
+                row = self.judged[place]
+                lines.append(f"cheapest within {percent}: {words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)")
+        for model in self.models:
+            if not model["base"] and model["difference"] is not None:
+                lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
+        return [*lines, *self.notes]
+
+    def to_dict(self) -> Tables:
+        """Everything, as plain tables for JSON."""
+        keep = (
+            "family",
+            "setting",
+            "model",
+            "value",
+            "error",
+            "at_bound",
+            "order",
+            "expected_order",
+            "errors",
+            "quantities",
+        )
+        rows = []
+        for row in self.judged:
+            cost = row["cost"] or {}
+            named = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
+            rest = {"status": row["status"], "reason": row["reason"], "own_error": row["own_error"], "reused": row["reused"]}
+            base = row["physics"] == self.base
+            rows.append({**{name: row[name] for name in keep}, **named, **rest, "base": base, "cost": row["cost"]})
+        return {
+            "title": self.title,
+            "reference": _reference_table(self.references[self.base]),
+            "rows": rows,
+            "front": self.front(self.base),
+            "cheapest": self.cheapest(self.base),
+            "models": self.models,
+            "left_out": [{"family": f, "setting": v, "why": why} for f, v, why in self.left_out],
+            "words": self.words,
+        }
+
+    def to_xarray(self) -> Dataset:
+        """Error, time [s] and size of Z [N/m] of every setting, over ``setting``, its words.
+
+        Raises
+        ------
+        RacewayError
+            xarray is missing.
+        """
+
+        return labelled(self)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw relative error over the run's time [s], with the front of what no other setting beats.
+
+        Parameters
+        ----------
+        ax : matplotlib axes; new ones without
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing.
+        """
+        from raceway.points.precision_picture import draw_on, put_beside
+
+        panel = given_axes(ax, 9.0, 6.0)
+        labels = draw_on(panel, self.to_dict())
+        panel.legend(frameon=False, fontsize=8)
+        put_beside(panel, labels)
+        return panel
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        reference = self.references[self.base]
+        facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
+        for threshold, place in self.cheapest(self.base).items():
+            row = None if place is None else self.judged[place]
+            name, value = f"cheapest within {100.0 * float(threshold):g} %", "none" if row is None else _time(row)
+            facts.append((name, value, "" if row is None else words_of(row["setting"])))
+        front = set(self.front(self.base))
+        rows = [
+            (
+                words_of(row["setting"]),
+                "-" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}",
+                ("on the front, " if place in front else "")
+                + (f"{1e3 * row['cost']['time_s']:.3g} ms" if row["cost"] else row["status"]),
+            )
+            for place, row in enumerate(self.judged)
+        ]
+        return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [
+            *facts,
+            *rows,
+        ]
+
+    def table(self) -> list[dict[str, str]]:
+        """One line a row, as short text for a screen."""
+        front = set(self.front(self.base))
+        return [_screen_row(row, place in front) for place, row in enumerate(self.judged)]
+
+    def write(self, folder: Path, pictures: bool) -> list[Path]:
+        """precision.json, precision.md and, if wanted, precision.png.
+
+        Raises
+        ------
+        RacewayError
+            A folder or disk that cannot be written, or matplotlib missing.
+        """
+        from raceway.points.precision_picture import PrecisionReport
+
+        return PrecisionReport(picture=pictures).write(self.to_dict(), folder)
+
+
+def _time(row: Row) -> str:
+    return f"{1e3 * row['cost']['time_s']:.3g} ms"
+
+
+def _reference_table(reference: Reference) -> Tables:
+    known = bool(reference.values)
+    return {
+        "value": reference.size if known else None,
+        "error": reference.bound if known and math.isfinite(reference.bound) else None,
+        "how": reference.how,
+        "quantities": {
+            name: {"value": value, "error": bound if math.isfinite(bound := reference.bounds[name]) else None}
+            for name, value in reference.values.items()
+        },
+    }
+
+
+def _counts(row: Row, physics: str) -> bool:
+    return row["physics"] == physics and row["error"] is not None
+
+
+def _ladders(rows: list[Row], key: str) -> list[list[int]]:
+    """Places of finished rows that differ in one key only, a list for each ladder."""
+    found: dict[str, list[int]] = {}
+    for place, row in enumerate(rows):
+        value = row["setting"].get(key)
+        if row["error"] and isinstance(value, int | float) and not isinstance(value, bool):
+            rest = {name: other for name, other in row["setting"].items() if name != key}
+            found.setdefault(f"{row['family']} {rest!r}", []).append(place)
+    return [places for places in found.values() if len(places) > 1]
+
+
+def words_of(setting: Tables) -> str:
+    """A setting for people: the keys' last parts, or what kind of table it is."""
+
+    def word(key: str, value: object) -> str:
+        table, _, last = key.rpartition(".")
+        if key == "inertia":
+            return "without inertia"
+        return f"{table} {shown(value)}" if last == "kind" else f"{last} {shown(value)}"
+
+    return ", ".join(word(key, value) for key, value in setting.items()) or "the scene itself"
+
+
+def _text(threshold: float) -> str:
+    return f"{threshold:.10f}".rstrip("0")
+
+
+def _screen_row(row: Row, on_front: bool) -> dict[str, str]:
+    cost = row["cost"]
+    text = {"setting": ("* " if on_front else "  ") + words_of(row["setting"])}
+    text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
+    text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
+    text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
+    text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
+    text["cpu ms"] = "" if cost is None else f"{1e3 * cost['cpu_s']:.1f}"
+    text["steps"] = "" if cost is None else str(cost["steps"])
+    text["status"] = "" if row["status"] == "completed" else row["status"]
+    return text
+
+
+def labelled(found: Precision) -> Dataset:
+    """Error, time and value of every setting.
+
+    Raises
+    ------
+    RacewayError
+        xarray is missing.
+    """
+    content = found.to_dict()
+    about = {
+        "value": ("N/m", "size of Z, or of the tangent where nothing is identified"),
+        "error": ("1", "relative error against the reference of the row's model"),
+        "own_error": ("1", "relative error that the run estimates itself"),
+        "time_s": ("s", "of the fastest repeat, compiling apart"),
+    }
+    rows = content["rows"]
+    variables = {
+        name: (
+            "setting",
+            np.array([np.nan if row[name] is None else row[name] for row in rows], dtype=float),
+            labels(name, unit, words),
+        )
+        for name, (unit, words) in about.items()
+    }
+    names = np.array([text["setting"].lstrip("* ") for text in found.table()], dtype=object)
+    more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
+    return labelled_dataset({**variables, **more}, {"setting": names}, {"title": found.title})
+
+
+#: Runs of each setting, and the longest predicted run [s].
+REPEATS = 3
+LIMIT_S = 30.0
+
+
+def measure_settings(
+    tables: ReadTables,
+    vary: Iterable[str] | Mapping[str, Any] = (),
+    reference: Iterable[str] | Mapping[str, Any] = (),
+    repeats: int = REPEATS,
+    limit_s: float = LIMIT_S,
+    store: Path | None = None,
+    registry: Registry | None = None,
+    on_progress: OnProgress | None = None,
+) -> Precision:
+    """A work-precision study of one scene.
+
+    Parameters
+    ----------
+    tables : plain tables of a TOML scene
+    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values, whose product is run; the default design without them
+    reference : changes ``KEY=VALUE``, or keys with values, that make the reference; found by itself without them
+    repeats : runs of each setting
+    limit_s : settings predicted to take longer are left out [s]
+    store : file that finished rows are kept in and taken from
+    on_progress : called as ``on_progress(what, done, total)`` before each run; an exception stops the study
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene, an axis or the reference; nothing has been run.
+    RacewayError
+        A file of rows that cannot be read.
+    """
+    registry = registry or default_registry()
+    design = make_design(tables, vary, limit_s, registry)
+    given = _given(design.settings, reference, registry)
+    rows = RowStore(store)
+    groups: dict[str, list[Setting]] = {}
+    for setting in design.settings:
+        if setting.scene is not None:
+            groups.setdefault(setting.physics, []).append(setting)
+    total = len(design.settings) + len(groups)
+    done = 0
+
+    def tell(what: str) -> None:
+        if on_progress is not None:
+            on_progress(what, done, total)
+
+    found = []
+    for setting in design.settings:
+        tell(words_of(setting.values))
+        found.append(_row(setting, repeats, registry, rows))
+        done += 1
+    runner = Runner(registry, rows, limit_s, tell)
+    references = {design.base: Reference({}, {}, "no setting could be run")}
+    for physics, group in groups.items():
+        references[physics] = find_reference(group, runner, given)
+        done += 1
+    return Precision(design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault)
+
+
+def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, Any], registry: Registry) -> Tables:
+    """The reference that the user names, checked with the first setting that can run."""
+    given = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
+    first = next((setting for setting in settings if setting.scene is not None), None)
+    if given and first is not None:
+        found = setting_at(first.tables, "reference", given, registry)
+        if found.scene is None:
+            raise SceneError.at("--reference", None, found.reason)
+    return given
+
+
+def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) -> Tables:
+    """One row: measured now, or taken from what an earlier study has kept."""
+    head = {
+        "family": setting.family,
+        "setting": setting.values,
+        "model": setting.model,
+        "physics": setting.physics,
+        "expected_order": None,
+        "reused": False,
+    }
+    if setting.scene is None:
+        lost: Tables = {
+            "status": "refused",
+            "reason": setting.reason,
+            "quantities": {},
+            "own_error": None,
+            "cost": None,
+        }
+        return {**head, **lost}
+    if needs_motion(setting.scene) and setting.scene.integrator.method.inertial:
+        head["expected_order"] = setting.scene.integrator.method.order
+    row, reused = measured_once(setting.scene, repeats, repeats, registry, store)
+    return {**head, **row, "reused": reused}
+
+
+#: Finished rows, in the folder of the results.
+ROWS = "precision-rows.jsonl"
+
+
+@door
+def precision(
+    scene: Any,
+    vary: Mapping[str, Any] | Iterable[str] | None = None,
+    *,
+    reference: Mapping[str, Any] | Iterable[str] = (),
+    repeats: int = REPEATS,
+    limit_s: float = LIMIT_S,
+    out: str | Path | None = None,
+    kept: str | Path | None = None,
+    plugins: Iterable[str | Path] = (),
+    progress: ShowProgress = None,
+) -> Precision:
+    """Run a scene with many settings: what each costs, and how far it is from a reference with a known bound.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    vary : key of the scene -> its values, whose combinations are run; None: a design made for the scene
+    reference : key -> value of the reference; found by itself without
+    repeats : runs of each setting, of which the fastest counts
+    limit_s : settings that are predicted to take longer are left out [s]
+    out : folder in which finished rows are kept and reused, and precision.json and .md are written; None: nothing is written
+    kept : file of the finished rows instead of that in ``out``
+    plugins : files of one-off plug-ins that the scene uses
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+
+    Returns
+    -------
+    Precision
+        ``judged`` rows with error and time [s], the ``front`` of those that no other beats, the ``cheapest`` within an error
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene, a value or the reference; nothing has been run.
+    RacewayError
+        A folder that cannot be written.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> scene = {
+    ...     "bearing": {"preset": "B7206C"},
+    ...     "load": {"axial": 1000.0},
+    ...     "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4},
+    ...     "rotor": {"mass": 2.0},
+    ... }
+    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [45, 90]}, repeats=1)
+    >>> found.judged[1]["error"] < found.judged[0]["error"]
+    True
+    """
+    registry = registry_with(plugins)
+    folder = None if out is None else writable(Path(out))
+    kept = folder / ROWS if folder is not None and kept is None else kept
+    tables = plain_tables(scene, registry=registry)
+    with telling(progress) as told:
+        found = measure_settings(
+            tables, vary or (), reference, repeats, limit_s, None if kept is None else Path(kept), registry, told
+        )
+    if found.fault is not None:
+        warnings.warn(str(found.fault), stacklevel=3)
+    if folder is not None:
+        found.write(folder, pictures=False)
+    return found

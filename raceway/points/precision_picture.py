@@ -1,0 +1,287 @@
+"""A precision study on disk: JSON, a Markdown page, and the picture of error against run time."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+import numpy as np
+
+from raceway.framework.options import between, option
+from raceway.plugins.pictures import new_figure, save_figure
+from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+#: Text, the point that it belongs to in the axes' data, its colour.
+Label = tuple[str, tuple[float, float], str]
+
+_SIZE = 7.5
+#: Mean width of a letter and height of a line over the size of the letters.
+_WIDE, _HIGH = 0.56, 1.15
+#: Half the width of a marker, and from a point to its label, near and further away [points of 1/72 inch].
+_MARKER, _AWAY = 4.0, (6.0, 15.0, 26.0)
+#: Where labels are tried, from their point: the right above first.
+_DIRECTIONS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1), (0, 1), (0, -1), (1, 0), (-1, 0)], dtype=float)
+
+
+def put_beside(axes: Axes, labels: Sequence[Label]) -> None:
+    """Write each label at the first place that is free, with a thin line where that is not beside its point.
+
+    A label without a free place is left out.
+    """
+    figure = axes.figure.figure  # the whole one, of which the axes may have a part
+    figure.draw_without_rendering()  # only then axes and limits have their places
+    scale = 72.0 / figure.dpi
+    points = [scale * axes.transData.transform(point) for _, point, _ in labels]
+    low, high = scale * axes.bbox.get_points()
+    taken = [(point, np.full(2, _MARKER)) for point in points]
+    for (text, at, tone), point in zip(labels, points, strict=True):
+        half = 0.5 * _SIZE * np.array([_WIDE * len(text), _HIGH])
+        for middle, away in _places(point, half):
+            inside = (middle - half >= low).all() and (middle + half <= high).all()
+            if inside and not any((np.abs(middle - other) < half + size).all() for other, size in taken):
+                taken.append((middle, half))
+                line = {"arrowstyle": "-", "color": tone, "linewidth": 0.5, "shrinkB": 3.0} if away > _AWAY[0] else None
+                axes.annotate(
+                    text, at, tuple(middle - point), textcoords="offset points", fontsize=_SIZE, color=tone, ha="center", va="center",
+                    arrowprops=line, in_layout=False,
+                )  # fmt: skip
+                break
+
+
+def _places(point: np.ndarray, half: np.ndarray) -> list[tuple[np.ndarray, float]]:
+    """Middles of a label around its point, near ones first, and how far away they are."""
+    return [
+        (point + direction * half + away * direction / np.linalg.norm(direction), away)
+        for away in _AWAY
+        for direction in _DIRECTIONS
+    ]
+
+
+_COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#a83250", "#3a9aa8")
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
+_GREY = "#555f6b"
+#: Errors below are drawn here: a logarithm has no zero.
+_LEAST = 1e-16
+
+
+@attrs.frozen
+class PrecisionReport:
+    """precision.json, precision.md and precision.png."""
+
+    name: ClassVar[str] = "precision"
+
+    picture: bool = option(True, help="whether to draw precision.png")
+    dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
+
+    def write(self, result: Tables, folder: Path) -> list[Path]:
+        """Write the files.
+
+        Parameters
+        ----------
+        result : the tables of ``raceway precision --json``
+        folder : path, made when it is missing
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        folder = Path(folder)
+        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
+        files = [
+            write_whole(text.encode(), folder / "precision.json"),
+            write_whole(page(result, self.picture).encode(), folder / "precision.md"),
+        ]
+        if self.picture:
+            files.append(save_figure(draw(result), folder / "precision.png", self.dots_per_inch))
+        return files
+
+
+def page(result: Tables, picture: bool = False) -> str:
+    """The study as Markdown."""
+    lines = [f"# Error against run time: {result['title']}", ""]
+    lines += ["![error against run time](precision.png)", ""] if picture else []
+    lines += [*(f"- {text}" for text in result["words"]), "", _table(result), ""]
+    lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
+    others = [model for model in result["models"] if not model["base"]]
+    if others:
+        lines += ["Differences between models, each by its own reference:", "", _models(others), ""]
+    if result["left_out"]:
+        lines += ["Left out:", ""]
+        lines += [f"- {_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
+        lines.append("")
+    return "\n".join(lines)
+
+
+def _table(result: Tables) -> str:
+    head = (
+        "",
+        "setting",
+        "error",
+        "own estimate",
+        "order",
+        "wall ms",
+        "spread",
+        "cpu ms",
+        "compile s",
+        "steps",
+        "iterations",
+    )
+    lines = [_line((*head, "MiB", "status")), _line(["---"] * (len(head) + 2))]
+    for place, row in enumerate(result["rows"]):
+        cost = row["cost"] or {}
+        memory = cost.get("peak_memory_bytes")
+        cells = [
+            "\\*" if place in result["front"] else "",
+            _words(row["setting"]),
+            ("~" if row["at_bound"] else "") + _number(row["error"], 2),
+            _number(row["own_error"], 2),
+            "" if row["order"] is None else f"{row['order']:.2f}",
+            _number(_milli(cost.get("wall_s"))),
+            _number(_milli(cost.get("wall_spread_s")), 2),
+            _number(_milli(cost.get("cpu_s"))),
+            _number(cost.get("compile_s"), 2),
+            str(cost.get("steps", "")),
+            str(cost.get("iterations", "")),
+            "" if memory is None else f"{memory / 2**20:.0f}",
+            row["status"] + (f": {row['reason']}" if row["reason"] else ""),
+        ]
+        lines.append(_line(cells))
+    notes = "\\* on the front; ~ the reference is not ten times more accurate than this row: its error is known to the bound only."
+    return "\n".join([*lines, "", notes])
+
+
+def _quantities(result: Tables) -> str:
+    """Errors of all quantities, those of Z's parts relative to |Z|."""
+    rows = [row for row in result["rows"] if row["errors"]]
+    names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
+    lines = [_line(("setting", *(name.replace("_", " ") for name in names))), _line(["---"] * (1 + len(names)))]
+    lines += [_line((_words(row["setting"]), *(_number(row["errors"].get(name), 2) for name in names))) for row in rows]
+    return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
+
+
+def _models(models: list[Tables]) -> str:
+    lines = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
+    for model in models:
+        parts = model["differences"]
+        signed = (parts.get(name) for name in ("equivalent_stiffness", "peak_ball_load", "p0"))
+        cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
+        whole = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
+        lines.append(_line((_words(model["model"]), whole, *cells, _number(model["reference"]["error"], 2))))
+    return "\n".join(lines)
+
+
+def _line(cells: Sequence[object]) -> str:
+    return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    return "" if value is None else f"{value:.{digits}g}"
+
+
+def _milli(value: float | None) -> float | None:
+    return None if value is None else 1e3 * value
+
+
+def _words(setting: Tables) -> str:
+    return ", ".join("without inertia" if key == "inertia" else f"{key} = {value}" for key, value in setting.items()) or "-"
+
+
+def draw(result: Tables) -> Figure:
+    """The figure of a study."""
+    figure = new_figure(12.8, 8.6)
+    labels = draw_on(panel := figure.add_subplot(), result)
+    figure.suptitle(f"Error against run time: {result['title']}", fontsize=13)
+    if panel.get_legend_handles_labels()[1]:
+        figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    put_beside(panel, labels)
+    return figure
+
+
+def draw_on(panel: Axes, result: Tables) -> list[Label]:
+    """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front; labels to be put."""
+    bound = result["reference"]["error"]
+    # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
+    least = bound / 10.0 if bound else _LEAST
+    base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and _of_base(row)]
+    other = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
+    series: dict[str, list[int]] = {}
+    labels: list[Label] = []
+    for place in base:
+        series.setdefault(_series(result["rows"][place]), []).append(place)
+    for number, (name, places) in enumerate(series.items()):
+        tone, mark = _COLOURS[number % len(_COLOURS)], _MARKERS[(number // 2) % len(_MARKERS)]
+        xy = [_point(result["rows"][place], least) for place in places]
+        panel.plot(*zip(*xy, strict=True), color=tone, marker=mark, linewidth=1.0, alpha=0.9, label=name)
+        labels += [(_rung(result["rows"][place]), point, tone) for place, point in zip(places, xy, strict=True)]
+    if other:
+        xy = [_point(result["rows"][place], least) for place in other]
+        label = "other models, against their own references"
+        panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=_GREY, label=label)
+        labels += [(_words(result["rows"][place]["setting"]), point, _GREY) for place, point in zip(other, xy, strict=True)]
+    _front(panel, result, least)
+    if bound:
+        panel.axhspan(bound / 30.0, bound, color="#e3e7eb", zorder=0)
+        panel.axhline(bound, color=_GREY, linewidth=0.8, linestyle=":", label="bound of the reference, grey below")
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.set_xlabel("time of the run, fastest repeat, compiling apart  [s]")
+    panel.set_ylabel("relative error against the reference")
+    panel.grid(True, which="major", color="#e3e7eb", linewidth=0.8)
+    panel.set_axisbelow(True)
+    panel.spines[["top", "right"]].set_visible(False)
+    return labels
+
+
+def _front(panel: Axes, result: Tables, least: float) -> None:
+    points = [_point(result["rows"][place], least) for place in result["front"]]
+    if points:
+        x, y = zip(*points, strict=True)
+        label = "front: nothing is faster and more accurate"
+        panel.plot(x, y, color="black", linewidth=1.2, linestyle="--", drawstyle="steps-post", label=label)
+        panel.plot(x, y, linestyle="", marker="o", markersize=13, markerfacecolor="none", markeredgecolor="black")
+
+
+def _drawn(row: Tables) -> bool:
+    return row["error"] is not None and row["time_s"] is not None
+
+
+def _of_base(row: Tables) -> bool:
+    return bool(row["base"])
+
+
+def _point(row: Tables, least: float) -> tuple[float, float]:
+    return row["time_s"], max(row["error"], least)
+
+
+_RUNGS = ("integrator.steps_per_turn", "integrator.turns", "integrator.tolerance", "mesh.element_size")
+
+
+def _series(row: Tables) -> str:
+    """Rows of one line: the same but for the family's ladder."""
+    ladder = _ladder(row)
+    rest = {key: value for key, value in row["setting"].items() if key != ladder}
+    short = {key.removeprefix("integrator."): value for key, value in rest.items()}
+    return f"{row['family']}: {_words(short)}"
+
+
+def _ladder(row: Tables) -> str | None:
+    wanted = ("integrator.turns",) if row["family"] == "turns and start" else _RUNGS
+    return next((key for key in wanted if key in row["setting"]), None)
+
+
+def _rung(row: Tables) -> str:
+    ladder = _ladder(row)
+    value = row["setting"].get(ladder) if ladder else None
+    return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

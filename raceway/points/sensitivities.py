@@ -1,0 +1,305 @@
+"""Sensitivities of one scene, for Python: ``raceway.sensitivities``."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable
+from pathlib import Path
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import build_model
+from raceway.core.jit import working_processor_time
+from raceway.errors import Mistake, SceneError
+from raceway.framework.doors import door, member
+from raceway.framework.shown import Fact, Shown, number
+from raceway.out.progress import telling
+from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, described, values
+from raceway.pipeline.result import without_nan, write_json
+from raceway.pipeline.settle import settle
+from raceway.pipeline.simulate import OnProgress
+from raceway.pipeline.static_gradient import NoDerivative
+from raceway.planning.plan import make_plan
+from raceway.plugins.pictures import new_figure
+from raceway.scene.continuous import Key, continuous_keys, key_of
+from raceway.scene.given import as_scene
+from raceway.storage.files import write_whole
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from raceway.bodies.equilibrium import Equilibrium
+    from raceway.bodies.model import Model
+    from raceway.out.progress import ShowProgress
+
+
+@attrs.frozen(eq=False)
+class Sensitivity:
+    """Of all quantities to one key.
+
+    Attributes
+    ----------
+    derivatives : quantity -> derivative, in its unit over the key's
+    influence : quantity -> per cent by which it grows when the number at the key grows by one per cent; empty where that is 0
+    """
+
+    gradient: Gradient
+    derivatives: dict[str, float]
+    influence: dict[str, float]
+
+    @property
+    def key(self) -> Key:
+        return self.gradient.statics.key
+
+    @property
+    def remark(self) -> str:
+        return self.gradient.statics.remark
+
+
+@attrs.frozen(eq=False, repr=False)
+class Sensitivities(Shown):
+    """How much each number of a scene changes the answer; largest relative influence on the first quantity first.
+
+    Attributes
+    ----------
+    values : quantity -> number, SI;  definitions : quantity -> what it is;  rows : of keys that change something
+    without_effect : keys that change nothing;  refused : (key, why it has no derivative)
+    run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these
+    warnings : what to know of the answer itself
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.sensitivities({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+    >>> found.rows[0].key.path, len(found.rows[0].gradient.statics.displacement)
+    ('bearing.conformity_inner', 5)
+    """
+
+    title: str
+    values: dict[str, float]
+    definitions: dict[str, str]
+    rows: tuple[Sensitivity, ...]
+    without_effect: tuple[Key, ...]
+    refused: tuple[tuple[Key, str], ...]
+    run_s: float
+    gradients_s: float
+    models: int
+    warnings: tuple[str, ...] = ()
+
+    def __getitem__(self, path: str) -> Sensitivity:
+        rows = {row.key.path: row for row in self.rows}
+        return rows[member("path", path, rows)]
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        first = next(iter(self.values))
+        told = [
+            (row.key.path, f"{row.influence[first]:+.3g} %" if row.influence else "", f"{row.derivatives[first]:.4g}")
+            for row in self.rows
+        ]
+        head: Fact = (first, number(self.values[first], UNITS[first]), "its change by 1 % of a key; derivative")
+        return self.title, [head, *told]
+
+    def to_dict(self) -> Tables:
+        """Plain tables: quantities, keys with all derivatives, keys without effect or derivative, cost."""
+        return dict(
+            without_nan(
+                {
+                    "title": self.title,
+                    "quantities": {n: described(n, value, self.definitions) for n, value in self.values.items()},
+                    "keys": [_table(row) for row in self.rows],
+                    "without_effect": [key.path for key in self.without_effect],
+                    "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
+                    "warnings": list(self.warnings),
+                    "cost": {"run_s": self.run_s, "gradients_s": self.gradients_s, "models": self.models},
+                }
+            )
+        )
+
+    def to_csv(self) -> str:
+        """A line a key: value, unit, relative influences, derivatives."""
+        out, names = io.StringIO(), list(self.values)
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["key", "value", "unit", *(f"{n}_%_per_%" for n in names), *(f"d_{n}" for n in names), "remark"])
+        for row in self.rows:
+            shares = [row.influence.get(name, "") for name in names]
+            slopes = [row.derivatives[name] for name in names]
+            writer.writerow([row.key.path, row.key.value, row.key.unit, *shares, *slopes, row.remark])
+        return out.getvalue()
+
+    def save(self, folder: Path) -> list[Path]:
+        """Write sensitivities.json and sensitivities.csv.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        table = write_json(self.to_dict(), folder / "sensitivities.json")
+        return [table, write_whole(self.to_csv().encode(), folder / "sensitivities.csv")]
+
+    def picture(self, folder: Path) -> list[Path]:
+        """Draw sensitivities.png: bars of relative influence.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+
+        return [save_figure(draw(self.to_dict()), folder / "sensitivities.png", 100)]
+
+
+def sensitivities_of(
+    model: Model, equilibrium: Equilibrium, keys: list[Key], run_s: float = 0.0, on_progress: OnProgress | None = None
+) -> Sensitivities:
+    """Of an equilibrium, and of the steady orbit about it, to keys.
+
+    Parameters
+    ----------
+    run_s : processor time of the equilibrium, to which that of the orbit is added [s]
+    on_progress : called as ``on_progress(what, done, total)``
+    """
+    begun = working_processor_time()
+    gradients = Gradients(model, equilibrium)
+    now = values(model, equilibrium, gradients.orbit)
+    run_s, begun = run_s + working_processor_time() - begun, working_processor_time()
+    rows, nothing, refused, models = [], [], [], 0
+    for done, key in enumerate(keys):
+        if on_progress is not None:
+            on_progress("keys", done, len(keys))
+        try:
+            gradient = gradients.by(key)
+        except NoDerivative as why:
+            refused.append((key, str(why)))
+            continue
+        models += gradient.statics.models
+        if gradient.nothing:
+            nothing.append(key)
+            continue
+        slopes = {name: slope for name, slope in derivatives(model, equilibrium, gradient).items() if name in now}
+        shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
+        rows.append(Sensitivity(gradient, slopes, shares))
+    first = next(iter(now))
+    rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))
+    took = working_processor_time() - begun
+    warning = "" if gradients.orbit is None else gradients.orbit.warning
+    warnings = (warning,) if warning else ()
+    words = definitions(model, equilibrium)
+    return Sensitivities(
+        model.scene.title, now, words, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings
+    )
+
+
+def _table(row: Sensitivity) -> Tables:
+    statics, motion = row.gradient.statics, row.gradient.motion
+    half = len(statics.contact_force) // 2
+    table: Tables = {
+        "key": row.key.path,
+        "value": row.key.value,
+        "unit": row.key.unit,
+        "help": row.key.help,
+        "influence": row.influence,
+        "derivatives": row.derivatives,
+        "displacement": statics.displacement.tolist(),
+        "stiffness": statics.stiffness.tolist(),
+        "damping": statics.damping.tolist(),
+        "ball_load_inner": statics.contact_force[:half].tolist(),
+        "ball_load_outer": statics.contact_force[half:].tolist(),
+        "step": statics.step,
+        "remark": row.remark,
+    }
+    if motion is not None:
+        table["z"] = {"real": motion.dynamic_stiffness.real, "imag": float(np.imag(motion.dynamic_stiffness))}
+    return table
+
+
+_MORE, _LESS = "#0b5fa5", "#c8501e"
+#: Keys at most, and influence over the largest one below which none is drawn.
+_MOST, _LEAST = 14, 1e-3
+
+
+def draw(content: ReadTables) -> Figure:
+    """Bars of relative influence, per cent a quantity grows when a key grows by one per cent."""
+    names = list(content["quantities"])
+    keys = [
+        key for key in content["keys"] if _largest(key, names) >= _LEAST * max(_largest(k, names) for k in content["keys"])
+    ]
+    keys = sorted(keys, key=lambda key: -_largest(key, names))[:_MOST]
+    figure = new_figure(2.6 + 2.3 * len(names), 1.6 + 0.32 * max(len(keys), 3))
+    panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
+    for panel, name in zip(panels, names, strict=True):
+        shares = [key["influence"].get(name, 0.0) for key in keys]
+        colours = [_MORE if share >= 0.0 else _LESS for share in shares]
+        panel.barh(range(len(keys)), shares, color=colours, height=0.66)
+        panel.axvline(0.0, color="#555f6b", linewidth=0.8)
+        reach = 1.55 * max((abs(share) for share in shares), default=1.0) or 1.0
+        panel.set_xlim(-reach, reach)
+        for place, share in enumerate(shares):
+            if abs(share) >= _LEAST:
+                side = "left" if share >= 0.0 else "right"
+                panel.annotate(f"{share:+.2g}", (share, place), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
+        panel.set_title(name.replace("_", " "), fontsize=11)
+        panel.set_xlabel("% per % of the key", fontsize=9)
+        panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
+        panel.set_ylim(len(keys) - 0.4, -0.6)
+    figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
+    return figure
+
+
+def _largest(key: ReadTables, names: list[str]) -> float:
+    return max((abs(key["influence"].get(name, 0.0)) for name in names), default=0.0)
+
+
+@door
+def sensitivities(
+    scene: Any, keys: Iterable[str] = (), *, progress: ShowProgress = None, plugins: Iterable[str | Path] = ()
+) -> Sensitivities:
+    """Derivatives of displacement, stiffness and ball loads, and of Z, K and C of the steady orbit, by numbers of a scene.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    keys : paths such as "load.axial"; none: every continuous key of the scene
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+    plugins : files of one-off plug-ins that the scene uses
+
+    Returns
+    -------
+    Sensitivities
+
+    Notes
+    -----
+    By the implicit function theorem on the exact tangents: nothing is solved again.  The motion is the steady orbit that
+    ``integrator.kind`` = "periodic" solves for, whatever the scene's integrator.
+
+    Raises
+    ------
+    SceneError
+        With every mistake of the scene; a key that is not continuous or has no derivative; bodies whose contacts have no derivative.
+    ConvergenceError
+        No equilibrium or no steady orbit.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.sensitivities({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}}, ["load.axial"])
+    >>> round(found["load.axial"].influence["kxx"], 2)  # kxx grows by 0.54 % where the load grows by 1 %
+    0.54
+    """
+    read = as_scene(scene, plugins=plugins)
+    keys = list(keys)
+    chosen = [key_of(read, path) for path in keys] or continuous_keys(read)
+    with telling(progress) as told:
+        begun = working_processor_time()
+        model = build_model(read, make_plan(read))
+        equilibrium = settle(model)
+        found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
+    if keys and found.refused:
+        raise SceneError([Mistake(key.path, key.value, why) for key, why in found.refused])
+    return found

@@ -1,0 +1,426 @@
+"""Settings of a precision study: the axes that the user names, or a design made from the scene.
+
+The default design is a union of small products, one for each question, not the product of all axes:
+
+time step         every integrator with inertia x steps a turn, in halvings
+steady orbit      integrators that solve for the orbit itself x their tolerance
+few turns         the scene's integrator over three turns x few steps: what a rough answer costs
+turns and start   the scene's integrator x how the motion starts x turns, at steps so fine that only the transient is left
+mesh              element sizes about the scene's own, where bodies have a mesh
+models            what changes the physics, one at a time: law, discretisation, bodies, identifier, no inertia
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.contracts import Integrator
+from raceway.framework.registry import Registry
+from raceway.planning.plan import make_plan
+from raceway.points.axes import axes_of, points, refuse_mistakes, tables_at
+from raceway.points.engine import measured_once
+from raceway.points.store import RowStore
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Integrator, Mesher
+
+
+STEPS = (45, 90, 180, 360, 720, 1440)
+TURNS = (3, 6, 12, 24, 48)
+STARTS = ("orbit", "ramp", "static")
+TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
+#: Steps a turn of the transient's ladder.
+FINE_STEPS = 720
+FEW_STEPS, FEW_TURNS = (24, 45, 90, 180), 3
+#: Factors on the scene's element size.
+SIZES = (2.0, 1.414, 1.0, 0.707)
+BODIES = ("rigid", "condensed", "elastic")
+#: Tables whose keys choose how the equations are solved, not which.
+NUMERICAL = ("integrator", "mesh")
+_REASON = 160
+
+
+@attrs.frozen
+class Setting:
+    """One place of a study.
+
+    Attributes
+    ----------
+    family : the question it belongs to
+    values : key -> value, what it changes in the scene
+    model : the part of ``values`` that changes the equations; ``inertia`` is among them, although an integrator sets it
+    tables : the scene's tables with the changes
+    scene : None where it is refused, for ``reason``
+    physics : the same for settings that differ in how they are solved only
+    """
+
+    family: str
+    values: Tables
+    model: Tables
+    tables: Tables
+    scene: Scene | None
+    physics: str = ""
+    predicted_s: float = 0.0
+    reason: str = ""
+
+
+@attrs.frozen
+class Design:
+    """Settings to run; what was left out with its reason; the physics that other models are held against."""
+
+    settings: tuple[Setting, ...]
+    left_out: tuple[tuple[str, Tables, str], ...]
+    base: str
+    title: str
+    notes: tuple[str, ...] = ()
+
+
+def is_numerical(key: str) -> bool:
+    """Whether a key changes how a model is solved (True) or the model itself."""
+    return key.partition(".")[0] in NUMERICAL
+
+
+def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], limit_s: float, registry: Registry) -> Design:
+    """The settings of a study.
+
+    Parameters
+    ----------
+    vary : axes whose product is run; the default design where there are none
+    limit_s : settings whose predicted time is longer are left out
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene or in an axis.
+    """
+    given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
+    if given:
+        axes = axes_of(given, tables, registry)
+        title = refuse_mistakes(tables, axes, registry)
+        wanted = [("axes", point) for point in points(axes)]
+    else:
+        scene = scene_from_dict(tables, registry)
+        title, wanted = scene.title, default_points(scene, registry)
+    settings: list[Setting] = []
+    left_out = []
+    for family, values in wanted:
+        setting = setting_at(tables, family, values, registry, notes)
+        if setting.scene is not None and setting.predicted_s > limit_s:
+            left_out.append((family, values, f"predicted {setting.predicted_s:.3g} s, above the limit of {limit_s:g} s"))
+        elif setting.scene is None and not given:
+            left_out.append((family, values, setting.reason))
+        elif all(setting.tables != other.tables for other in settings):
+            settings.append(setting)
+    if not settings:
+        why = left_out[0][2] if left_out else "the scene is static and has no mesh"
+        raise SceneError.at("--vary", None, f"no setting is left to run: {why}")
+    return Design(tuple(settings), tuple(left_out), _base(tables, settings, registry), title, tuple(notes))
+
+
+def setting_at(
+    tables: ReadTables, family: str, values: Tables, registry: Registry, notes: list[str] | None = None
+) -> Setting:
+    """One setting, checked and planned."""
+    changed = tables_at(tables, values, registry, notes)
+    model = {key: value for key, value in values.items() if not is_numerical(key)}
+    try:
+        scene = scene_from_dict(changed, registry)
+        plan = make_plan(scene)
+    except RacewayError as error:
+        return Setting(family, values, model, changed, None, reason=short(str(error)))
+    if needs_motion(scene) and not scene.integrator.method.inertial:
+        model["inertia"] = False
+    return Setting(family, values, model, changed, scene, _physics(scene), plan.predicted_work_s)
+
+
+def needs_motion(scene: Scene) -> bool:
+    """Whether an integrator takes part at all."""
+    return scene.excitation is not None and "record" in scene.identifier.method.needs
+
+
+def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> str:
+    """The scene's own physics where it is among the settings, else the first's."""
+    own = setting_at(tables, "", {}, registry).physics
+    found = [setting.physics for setting in settings if setting.scene is not None]
+    return own if own in found or not found else found[0]
+
+
+def _physics(scene: Scene) -> str:
+    inertial = not needs_motion(scene) or scene.integrator.method.inertial
+    content = {name: part for name, part in scene.to_dict().items() if name not in (*NUMERICAL, "title")}
+    return json.dumps([content, inertial], sort_keys=True, default=str)
+
+
+def default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:
+    """Family and values of every setting of the default design that has a meaning for the scene."""
+    found: list[tuple[str, Tables]] = []
+    if needs_motion(scene):
+        methods: Tables = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
+        steady = [name for name, method in methods.items() if is_steady(method)]
+        for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
+            found.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
+        for name, tolerance in product(steady, TOLERANCES):
+            known = {field.name for field in attrs.fields(methods[name])}
+            one: Tables = {"integrator.kind": name}
+            found.append(("steady orbit", {**one, "integrator.tolerance": tolerance} if "tolerance" in known else one))
+        own = scene.integrator.method
+        if own.inertial and not is_steady(type(own)):
+            for steps in FEW_STEPS:
+                found.append(("few turns", {"integrator.turns": FEW_TURNS, "integrator.steps_per_turn": steps}))
+            for start, turns in product(STARTS, TURNS):
+                values = {"integrator.start": start, "integrator.turns": turns, "integrator.steps_per_turn": FINE_STEPS}
+                found.append(("turns and start", values))
+        found += [("models", {"integrator.kind": n}) for n, m in methods.items() if not m.inertial]
+    size = getattr(scene.mesh, "element_size", None)
+    if size is not None:
+        found += [("mesh", {"mesh.element_size": float(f"{size * factor:.3g}")}) for factor in SIZES]
+    found.append(("models", {"contact.kind": scene.contact.kind}))
+    others = {
+        "contact.kind": [n for n in registry.names("contact_law") if n != scene.contact.kind],
+        "contact.discretisation": [d for d in ("resultant", "nodal") if d != scene.contact.discretisation],
+        "bodies.kind": [n for n in registry.names("bodies") if n != scene.bodies.name],
+    }
+    if scene.excitation is not None:
+        others["identifier.kind"] = [n for n in registry.names("identifier") if n != scene.identifier.kind]
+    found += [("models", {key: value}) for key, values in others.items() for value in values]
+    return found
+
+
+def is_steady(method: type[Integrator]) -> bool:
+    """Whether an integrator solves for the periodic motion itself."""
+    return method.steady
+
+
+def short(text: str) -> str:
+    """The first line of a reason, cut where it would fill a table."""
+    line = text.splitlines()[0]
+    return line if len(line) <= _REASON else f"{line[: _REASON - 3]}..."
+
+
+#: Steps of the reference over the finest steps of the rows, and its least steps and turns.
+FINER = 4
+_LEAST_STEPS = 2880
+_LEAST_TURNS = 24
+#: Newmark's error has one sign, central differences' the other; the third where one of them cannot run.
+METHODS = ("newmark", "central_difference", "generalized_alpha")
+TIGHT = 1e-10
+#: Smallest bound that is claimed [relative]: equilibria and steps are iterated to 1e-9 of the forces.
+FLOOR = 1e-10
+
+Values = dict[str, float]
+
+
+@attrs.frozen
+class Reference:
+    """Quantities, the bound of each in its own unit, and how they were found; empty where there is none."""
+
+    values: Values
+    bounds: Values
+    how: str
+
+    @property
+    def size(self) -> float:
+        """Size that relative errors of the main quantity refer to."""
+        return main_size(self.values)
+
+    @property
+    def bound(self) -> float:
+        """Relative, of the main quantity."""
+        return distance(self.bounds) / self.size if self.values else float("inf")
+
+
+def main_size(values: Mapping[str, float]) -> float:
+    """|Z|, or of a static scene the axial displacement."""
+    return distance(values) or 1.0
+
+
+def distance(values: Mapping[str, float]) -> float:
+    """Length of the main quantity, or of a difference of it: Z as a complex number."""
+    if "z_real" in values:
+        return abs(complex(values["z_real"], values["z_imag"]))
+    return abs(values["axial_displacement"])
+
+
+def minus(a: Mapping[str, float], b: Mapping[str, float]) -> Values:
+    return {name: a[name] - b[name] for name in a if name in b}
+
+
+@attrs.frozen(eq=False)
+class Runner:
+    """Runs reference settings, each once and kept like rows."""
+
+    registry: Registry
+    store: RowStore
+    limit_s: float
+    on_run: Callable[[str], None]
+
+    def at(self, setting: Setting, values: ReadTables) -> Tables | None:
+        """The measured run of a setting with some values changed; None where it is refused, fails or takes too long."""
+        tables = tables_at(setting.tables, values, self.registry)
+        found = setting_at(tables, "reference", {}, self.registry)
+        if found.scene is None or found.predicted_s > self.limit_s:
+            return None
+        self.on_run(f"reference: {', '.join(f'{k} = {v}' for k, v in values.items())}")
+        row, _ = measured_once(found.scene, 1, "reference", self.registry, self.store)
+        return row if row["status"] == "completed" else None
+
+
+def find_reference(group: list[Setting], runner: Runner, given: ReadTables | None) -> Reference:
+    """The reference of settings that share their physics."""
+    sizes = sorted({float(size) for s in group if (size := getattr(_mesh(s), "element_size", None)) is not None})
+    first = next((s for s in group if getattr(_mesh(s), "element_size", None) == (sizes[0] if sizes else None)), group[0])
+    if given:
+        return _given(first, given, runner)
+    found = _of_one_mesh(first, group, runner)
+    if len(sizes) < 2 or not found.values:
+        return found
+    finer = _of_one_mesh(first, group, runner, {"mesh.element_size": 0.5 * sizes[0]})
+    if not finer.values:
+        return attrs.evolve(
+            found, bounds=dict.fromkeys(found.bounds, float("inf")), how=f"{found.how}; no finer mesh could run"
+        )
+    change = minus(finer.values, found.values)
+    bounds = {name: finer.bounds[name] + abs(change[name]) for name in finer.values}
+    how = f"{finer.how}; elements of {0.5 * sizes[0]:.3g} m, bound by the change from {sizes[0]:.3g} m"
+    return Reference(finer.values, bounds, how)
+
+
+def _mesh(setting: Setting) -> Mesher | None:
+    return None if setting.scene is None else setting.scene.mesh
+
+
+def _given(first: Setting, given: ReadTables, runner: Runner) -> Reference:
+    words = ", ".join(f"{key} = {value}" for key, value in given.items())
+    row = runner.at(first, given)
+    if row is None:
+        return Reference({}, {}, f"the given reference ({words}) could not be run")
+    error = row["own_error"]
+    bound = float("inf") if error is None else error
+    note = "which it has no estimate of" if error is None else "as it estimates itself"
+    return Reference(row["quantities"], _all(row["quantities"], bound), f"given: {words}; its error {note}")
+
+
+def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: ReadTables | None = None) -> Reference:
+    scene, extra = first.scene, dict(extra or {})
+    assert scene is not None
+    if not needs_motion(scene):
+        row = runner.at(first, extra)
+        if row is None:
+            return Reference({}, {}, "the equilibrium could not be found")
+        bound = max(row["own_error"] or 0.0, FLOOR)
+        return Reference(row["quantities"], _all(row["quantities"], bound), "nothing is integrated: solved to a residual")
+    steps, turns = _finest(group)
+    if not scene.integrator.method.inertial:
+        return _equilibria(first, steps, runner, extra)
+    # Where every turn is alike, a longer run shows the same; elsewhere the window belongs to the question.
+    alike = scene.contact.friction == 0.0 and not scene.kinematics.orbiting and scene.excitation.period_s is not None
+    common = {**extra, "integrator.turns": max(turns, _LEAST_TURNS) if alike else turns}
+    if alike:
+        common["integrator.start"] = "orbit"
+    by_time = _transients(first, steps, common, runner)
+    direct = _direct(first, extra, runner) if alike else None
+    if direct is None:
+        return by_time
+    if not by_time.values:
+        how = f"{direct.how}, bound by its own estimate; no transient could confirm it"
+        return attrs.evolve(direct, how=how)
+    apart = minus(direct.values, by_time.values)
+    off = distance(apart) / direct.size
+    if off <= direct.bound + by_time.bound:
+        how = f"{direct.how}, bound by its own estimate; confirmed to {off:.1g} by {by_time.how}"
+        return attrs.evolve(direct, how=how)
+    bounds = {name: max(direct.bounds[name], abs(apart[name])) for name in direct.values}
+    return Reference(direct.values, bounds, f"{direct.how}, bound by its distance from {by_time.how}")
+
+
+def _finest(group: list[Setting]) -> tuple[int, int]:
+    """Most steps a turn and most turns of the rows."""
+    scenes = [s.scene for s in group if s.scene is not None]
+    steps = [s.integrator.steps_per_turn for s in scenes if isinstance(s.integrator.steps_per_turn, int)]
+    return max(steps, default=360), max(s.integrator.turns for s in scenes)
+
+
+def _all(values: Values, relative: float) -> Values:
+    """The same relative bound for every quantity; parts of Z are measured by |Z|."""
+    size = main_size(values)
+    return {name: relative * (size if name in ("z_real", "z_imag") else abs(value)) for name, value in values.items()}
+
+
+def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Reference:
+    rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, FINER)]
+    if rows[0] is None or rows[1] is None:
+        return Reference({}, {}, "the series of equilibria at finer steps could not be run")
+    values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
+    floor = _all(values, max(FLOOR, rows[1]["own_error"] or 0.0))
+    bounds = {name: max(abs(change[name]), floor[name]) for name in values}
+    how = f"series of {FINER * steps} equilibria a turn; bound by its own estimate and its change from {2 * steps}"
+    return Reference(values, bounds, how)
+
+
+def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
+    """The steady orbit solved for directly, by whatever integrator is made for that."""
+    registry = runner.registry
+    for name in registry.names("integrator"):
+        method = registry.find("integrator", name).plugin
+        if not is_steady(method):
+            continue
+        known = {field.name for field in attrs.fields(method)}
+        tight = {"integrator.tolerance": TIGHT} if "tolerance" in known else {}
+        row = runner.at(first, {**extra, "integrator.kind": name, **tight})
+        if row is not None and row["own_error"] is not None:
+            how = f"steady orbit by '{name}'" + (f" to {TIGHT:g}" if tight else "")
+            return Reference(row["quantities"], _all(row["quantities"], max(row["own_error"], FLOOR)), how)
+    return None
+
+
+def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> Reference:
+    steps = max(FINER * finest, _LEAST_STEPS)
+    found: list[tuple[str, Values, Values, float]] = []
+    while not found and steps > finest:
+        for name in METHODS:
+            if len(found) < 2 and name in runner.registry.names("integrator"):
+                one = _extrapolated(first, name, steps, common, runner)
+                found += [] if one is None else [one]
+        steps = steps if found else steps // 2
+    if not found:
+        return Reference({}, {}, "no transient at finer steps than the rows' could be run within the limit of time")
+    name, values, change, rest = found[0]
+    floor = _all(values, max(FLOOR, rest))
+    turns = common["integrator.turns"]
+    if len(found) == 1:
+        bounds = {key: abs(change[key]) + floor[key] for key in values}
+        how = f"'{name}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by what that changes"
+        return Reference(values, bounds, how)
+    other, second, _, rest = found[1]
+    apart = minus(second, values)
+    floor = _all(values, max(FLOOR, rest, found[0][3]))
+    middle = {key: value + 0.5 * apart[key] for key, value in values.items()}
+    bounds = {key: abs(apart[key]) + floor[key] for key in values}
+    how = (
+        f"'{name}' and '{other}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by their distance"
+    )
+    return Reference(middle, bounds, f"{how} and by what is left of the transient")
+
+
+def _extrapolated(
+    first: Setting, name: str, steps: int, common: Tables, runner: Runner
+) -> tuple[str, Values, Values, float] | None:
+    """Method, values at step zero, the change to them, and what is left of the transient [relative]."""
+    at = {**common, "integrator.kind": name}
+    coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
+    if coarse is None or fine is None:
+        return None
+    method: type[Integrator] = runner.registry.find("integrator", name).plugin
+    gain = 1.0 / (2.0**method.order - 1.0)
+    change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
+    values = {key: fine["quantities"][key] + part for key, part in change.items()}
+    return name, values, change, fine["transient_error"] or 0.0

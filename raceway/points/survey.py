@@ -1,0 +1,112 @@
+"""A look over all points before any is computed: mistakes, the plug-ins and files that they use."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import attrs
+
+from raceway.errors import Mistake, SceneError
+from raceway.framework.registry import Registry
+from raceway.points.axes import Design, tables_at
+from raceway.points.engine import plugins_of
+from raceway.points.store import files_of
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.storage.tables import ReadTables, Tables
+
+_MOST_MISTAKES = 10
+
+
+@attrs.frozen
+class Survey:
+    """Requirements of a sweep.
+
+    Attributes
+    ----------
+    scene : at the first point
+    used : (kind, name) of plug-ins;  files : path -> hash of its content
+    notes : options that are left out where another kind does not know them
+    """
+
+    scene: Scene
+    used: frozenset[tuple[str, str]]
+    files: dict[str, str]
+    notes: tuple[str, ...]
+
+
+def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
+    """Check every value of a grid, each at the first values of the others, or every point of a list.
+
+    Raises
+    ------
+    SceneError
+        The scene's mistakes, and those of the values: an unknown key, a wrong type.  What only two values together make
+        impossible is kept as a failed point.
+    """
+    notes: list[str] = []
+    first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)
+    used, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
+    for where, changed, point in _others(design):
+        try:
+            scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
+        except SceneError as error:
+            chosen = _blamed(error.mistakes, point, changed) if design.axes else error.mistakes
+            mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in chosen]
+            if len(mistakes) >= _MOST_MISTAKES:
+                break
+            continue
+        used |= set(plugins_of(scene))
+        files |= set(files_of(scene))
+    if mistakes:
+        raise SceneError(mistakes)
+    return Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
+
+
+def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
+    """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
+    found = []
+    for mistake in mistakes:
+        inside = [key for key in point if key.startswith(f"{mistake.path}.")]
+        if mistake.path in point:
+            found.append(mistake)
+        elif inside == [changed]:
+            found.append(Mistake(changed, point[changed], f"{mistake.path}: {mistake.message}"))
+    return found
+
+
+def _others(design: Design) -> Iterator[tuple[str, str, Tables]]:
+    """(where, key that differs from the first point, point)."""
+    first = design.point(0)
+    for axis in design.axes:
+        for value in axis.values[1:]:
+            yield "", axis.key, {**first, axis.key: value}
+    for number, point in enumerate(design.listed[1:], 2):
+        yield f"point {number}: ", "", point
+
+
+def _hash(name: str) -> str:
+    path = Path(name)
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:24] if path.is_file() else "missing"
+
+
+def key_facts(scene: Scene, key: str) -> tuple[str, str]:
+    """(unit, words) of a key of the scene; empty for one that declares none."""
+    table, _, rest = key.partition(".")
+    names = rest.split(".")
+    parts: list[type | None] = [TABLES.get(table), type(getattr(scene, table, None))]
+    if table in PLUGIN_TABLES and table in TABLES:
+        frame = getattr(scene, table)
+        slot = next(f.name for f in attrs.fields(type(frame)) if "plugin" in f.metadata)
+        parts.append(type(getattr(frame, slot)))
+    for cls in parts:
+        holder = cls
+        for name in names[:-1]:
+            holder = type(getattr(getattr(scene, table), name, None)) if holder is not None else None
+        field = attrs.fields_dict(holder).get(names[-1]) if holder is not None and attrs.has(holder) else None
+        if field is not None:
+            return str(field.metadata.get("unit", "")), str(field.metadata.get("help", ""))
+    return "", ""

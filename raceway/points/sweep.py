@@ -1,0 +1,400 @@
+"""One scene at many points, for Python and the command line alike: ``raceway.sweep``."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import warnings
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from contextlib import closing, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.framework.contracts import Batch, Lost
+from raceway.framework.doors import door
+from raceway.framework.registry import Registry, registry_with
+from raceway.out.progress import telling
+from raceway.pipeline.simulate import OnProgress
+from raceway.planning.plan import make_plan
+from raceway.planning.wall_time import START_S
+from raceway.points.axes import Design, grid, in_units, listed_points, numbers_at, tables_at
+from raceway.points.dataset import dataset, values_of
+from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
+from raceway.points.store import Store, exists, open_store, row_key, written
+from raceway.points.survey import Survey, survey
+from raceway.scene.given import plain_tables
+from raceway.scene.reading import scene_from_dict
+from raceway.storage.files import writable
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    import xarray
+
+    from raceway.framework.contracts import Executor
+    from raceway.out.progress import ShowProgress
+    from raceway.pipeline.result import Result
+
+
+@attrs.frozen
+class Chain:
+    """Callable on ``[(number, point), ...]``, neighbours of which each begins from the one before; gives their rows.
+
+    Attributes
+    ----------
+    tables : of the scene;  program : hash of the sources that compute
+
+    Notes
+    -----
+    A row is ``{"number", "state": "done" | "failed", "reason", "key", "values", "warnings", "cost"}``.
+    """
+
+    tables: Tables
+    program: str
+
+    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Tables]:
+        before: Result | None = None
+        rows, parts = [], dict[Hashable, Any]()
+        for number, point in points:
+            row, before = self._row(number, point, registry, before, parts)
+            rows.append(row)
+        return rows
+
+    def _row(
+        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, Any]
+    ) -> tuple[Tables, Result | None]:
+        from raceway.pipeline.run import run
+
+        wall, cpu = time.perf_counter(), time.process_time()
+        row = unfinished_row(number, "")
+        result = None
+        try:
+            scene = scene_from_dict(tables_at(self.tables, point, registry), registry, parts)
+            row["key"] = row_key(scene, registry, None, self.program)
+            result = run(scene, registry, near=before)
+            row["values"] = values_of(result)
+            row["warnings"] = list(result.warnings)
+            row["state"] = "done"
+            row["cost"] = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
+        except RacewayError as error:
+            row["reason"] = str(error)
+        except Exception as error:  # a fault of the program or of a plug-in costs its point, not the sweep
+            row["reason"] = f"unexpected {type(error).__name__}: {error or 'no message'}"
+        row["cost"] |= {
+            "wall_s": time.perf_counter() - wall,
+            "cpu_s": time.process_time() - cpu,
+            "worker": worker(),
+        }
+        return row, result
+
+
+def unfinished_row(number: int, reason: str) -> Tables:
+    """A row of a point that failed, or that has nothing yet."""
+    return {"number": number, "state": "failed", "reason": reason, "key": "", "values": {}, "warnings": [], "cost": {}}
+
+
+#: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
+_LONGEST, _CHAIN_S = 16, 1.0
+#: Chains at least in a sweep: otherwise some of many workers have nothing to do.
+_CHAINS = 16
+
+
+@attrs.frozen
+class Sweep:
+    """A sweep that was looked over: what is computed, where it goes, and what is there already.
+
+    Attributes
+    ----------
+    length : of chains [points]
+    """
+
+    tables: Tables
+    design: Design
+    store: Path
+    plugins: tuple[str, ...]
+    survey: Survey
+    facts: Tables
+    length: int
+
+
+def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
+    """Look over a sweep; nothing is computed or written.
+
+    Parameters
+    ----------
+    tables : plain tables of a TOML scene;  plugins : one-off plug-in files
+    resume : go on with a store that is there
+
+    Raises
+    ------
+    SceneError
+        Mistakes in the scene or in the values that are swept.
+    RacewayError
+        A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
+    """
+    files = tuple(str(file.resolve()) for file in plugins)
+    registry = registry_of(files)
+    found = survey(tables, design, registry)
+    facts = {
+        "scene": found.scene.to_dict(),
+        "design": design.to_dict(),
+        "identity": identity(registry, found.used),
+        "files": found.files,
+    }
+    if any(key.rpartition(".")[2] == "kind" for key in design.keys):
+        facts["tables"] = dict(tables)  # options of kinds that the first point does not have
+    if exists(store):
+        with open_store(store) as there:
+            _refuse_other(there, facts, store)
+            if not resume:
+                states = there.status()
+                raise RacewayError(
+                    f"`{store}` holds this sweep already, {states['done']} of {states['total']} points done: go on with "
+                    "--resume, or choose another folder with --out. Nothing is overwritten."
+                )
+    elif (store / "results.nc").exists():
+        raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
+    return Sweep(dict(tables), design, store, files, found, facts, _chain_length(found, design))
+
+
+def _chain_length(found: Survey, design: Design) -> int:
+    """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
+    scene = found.scene
+    try:
+        plan = make_plan(scene)
+        seconds = plan.predicted_work_s - plan.predicted_once_s - START_S
+    except RacewayError:
+        return 1
+    by_time = int(_CHAIN_S / max(seconds, 1e-3))
+    return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
+
+
+def fill_store(
+    prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None
+) -> Store:
+    """Compute what is not finished; the store, open to be read.
+
+    Parameters
+    ----------
+    executor : follows ``raceway.framework.contracts.Executor``
+    on_progress : called as ``on_progress(what, done, total)``; an exception stops the sweep
+
+    Raises
+    ------
+    PluginError
+        An executor that cannot work, or a worker that is not fit for it.
+    RacewayError
+        A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
+    """
+    design = prepared.design
+    wanted = prepared.facts["identity"]
+    work = Work(Chain(prepared.tables, wanted["program"]), prepared.plugins, wanted)
+    with written(prepared.store, prepared.facts) as store:
+        store.wait_again(["running", *(["failed"] if retry_failed else [])])
+        lost = store.repair()
+        if lost:
+            warnings.warn(f"{len(lost)} rows of the store are damaged: their points are computed again", stacklevel=2)
+        waiting = store.numbers("waiting")
+        done, total = design.size - len(waiting), design.size
+        chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
+
+        def batches() -> Iterator[Batch]:
+            for number, chain in enumerate(chains):
+                left = [n for n in chain if n in waiting]
+                store.mark(left, "running")
+                # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
+                yield number, [[(n, design.point(n)) for n in chain[: chain.index(left[-1]) + 1]]]
+
+        try:
+            with closing(answers(executor, work, batches())) as found:
+                for number, answer in found:
+                    if isinstance(answer, Lost):
+                        rows = [unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
+                    else:
+                        rows = [row for row in answer[0] if row["number"] in waiting]
+                    store.put(rows)
+                    done += len(rows)
+                    if on_progress is not None:
+                        on_progress("points", done, total)
+        finally:
+            with suppress(RacewayError):  # a full disk was reported already; the next sweep does it
+                store.wait_again(["running"])
+    return open_store(prepared.store)
+
+
+def _refuse_other(there: Store, facts: ReadTables, store: Path) -> None:
+    """A store that holds something else is named and left alone."""
+    reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
+    what = "another scene"
+    if not reasons:
+        what, reasons = "another sweep", there.design.differences(Design.from_dict(facts["design"]))
+    if not reasons and there.facts["files"] != facts["files"]:
+        what, reasons = "another content of the files that the scene names", sorted({*there.facts["files"], *facts["files"]})
+    if not reasons:
+        what, reasons = "another version", differences(there.facts["identity"], facts["identity"])
+    if reasons:
+        told = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
+        raise RacewayError(
+            f"`{store}` holds results of {what} ({told}). It is not overwritten: choose another folder with --out."
+        )
+
+
+def _changed(old: object, new: object, place: str = "") -> list[str]:
+    """``key: old, now new`` for every leaf of two trees of tables that differs."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        keys = [*old, *(key for key in new if key not in old)]
+        return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{place}.{key}" if place else key)]
+    return [] if old == new else [f"{place}: {old!r} there, {new!r} here"]
+
+
+SPEED = "excitation.speed_rpm"
+_FROM_ZERO = (
+    "A force that turns has a speed; K(n) from 0 r/min is the tangent, swept over the speed of the ring: raceway sweep SCENE "
+    "--set identifier.kind=tangent --grid kinematics.spin_speed_rpm=0:20000:21 --out STORE, then for rotor programs raceway export "
+    "STORE --from tangent --ross bearing.toml"
+)
+#: Values of the axes by key, or a list of points.
+Axes = Mapping[str, Any] | Iterable[Mapping[str, Any]] | Design
+
+
+@door
+def sweep(
+    scene: Any,
+    axes: Axes,
+    *,
+    executor: str | Executor = "serial",
+    workers: int | None = None,
+    store: str | Path | None = None,
+    resume: bool = False,
+    retry_failed: bool = False,
+    plugins: Iterable[str | Path] = (),
+    progress: ShowProgress = None,
+) -> xarray.Dataset:
+    """Compute a scene at every point of a grid or a list.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    axes : key of the scene -> its values (array (n,), list, or the text "start:stop:count"), all combinations of which are computed;
+        or a list of points, each key -> value
+    executor : "serial", "processes", "joblib", "dask" or a plug-in's name, or an executor
+    workers : processes of these, by default 2
+    store : folder in which every finished point is kept; None: a temporary one, removed when the results are loaded
+    resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
+    plugins : files of one-off plug-ins, which the workers load, too
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+
+    Returns
+    -------
+    xarray.Dataset
+        ``equivalent_stiffness`` [N/m], ``equivalent_damping`` [N s/m], ``stiffness`` (..., 5, 5), ``p0`` [Pa] and others over the
+        keys of ``axes``, units in their ``attrs``; ``status`` says which points failed, their values are NaN
+
+    Raises
+    ------
+    SceneError
+        A mistake in the scene or in a value of an axis; nothing has been computed.
+    PluginError
+        An executor that is not known or cannot work.
+    ConvergenceError
+        Every point failed.
+    RacewayError
+        A store that cannot be written, or that holds another sweep.
+
+    Notes
+    -----
+    Worker processes import the program that calls: outside notebooks it keeps what it does below ``if __name__ == "__main__":``.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.sweep({"bearing": {"preset": "B7206C"}}, {"load.axial": [400.0, 1000.0]})
+    >>> (1e-6 * found.stiffness.sel(dof="y", dof2="y")).round(1).values.tolist()  # kyy [N/um]
+    [183.4, 238.2]
+    """
+    with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as told:
+        folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
+        chosen = executor_of(executor, {"workers": workers}, registry_with(plugins))
+        prepared = prepared_sweep(scene, axes, folder, resume or retry_failed, plugins)
+        with fill_store(prepared, chosen, retry_failed, told) as found:
+            if (failed := all_failed(found)) is not None:
+                raise failed
+            return dataset(found, registry_with(plugins))
+
+
+def prepared_sweep(scene: Any, axes: Axes, store: Path, resume: bool = False, plugins: Iterable[str | Path] = ()) -> Sweep:
+    """A sweep that was looked over, nothing computed; options that a change of kind leaves out are warned of.
+
+    Raises
+    ------
+    SceneError, PluginError, RacewayError
+        As ``sweep``.
+    """
+    files = tuple(Path(file) for file in plugins)
+    registry = registry_with(files)
+    tables = plain_tables(scene, registry=registry)
+    try:
+        prepared = prepare(tables, _in_units(design_of(axes), tables, registry), store, files, resume)
+    except SceneError as error:
+        raise with_static_remedy(error) from None
+    for note in prepared.survey.notes:
+        warnings.warn(note, stacklevel=2)
+    return prepared
+
+
+def with_static_remedy(error: SceneError) -> SceneError:
+    """The same mistakes; who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had."""
+    mistakes = [
+        attrs.evolve(one, message=f"{one.message}. {_FROM_ZERO}") if one.path == SPEED and one.value == 0 else one
+        for one in error.mistakes
+    ]
+    return SceneError(mistakes)
+
+
+def design_of(axes: Axes) -> Design:
+    """The points of a mapping of axes, or of a list of points."""
+    if isinstance(axes, Design):
+        return axes
+    return grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
+
+
+def _in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
+    """A design with all values as numbers in the units of their keys."""
+    if design.axes:
+        return Design(tuple(in_units(axis, tables, registry) for axis in design.axes))
+    return Design(listed=tuple(numbers_at(tables, point, registry) for point in design.listed))
+
+
+def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> Executor:
+    """An executor by its name, with the options that are given and that it has.
+
+    Raises
+    ------
+    PluginError
+        A name that is not known, or an option that it does not have.
+    """
+    options: Tables = {key: value for key, value in given.items() if value is not None}
+    if not isinstance(name, str):
+        if options:
+            raise PluginError(f"{', '.join(options)}: an executor that is made already has its own")
+        return name
+    plugin = registry.find("executor", name).plugin
+    known = {field.name for field in attrs.fields(plugin)}
+    for key in options:
+        if key not in known:
+            raise PluginError(f"executor '{name}' has no --{key}: leave it out, or choose another --executor")
+    try:
+        return plugin(**options)
+    except ValueError as why:
+        raise PluginError(f"executor '{name}': {why}") from None
+
+
+def all_failed(store: Store) -> ConvergenceError | None:
+    """A sweep without any result is none: the error, with the first point's reason."""
+    states = store.status()
+    if states["failed"] < states["total"]:
+        return None
+    reason = next(row["reason"] for row in store.rows())
+    return ConvergenceError(f"all {states['total']} points failed; the first: {reason}")
