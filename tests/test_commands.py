@@ -81,7 +81,6 @@ COMMANDS = {
         *("fit", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000"),
         *("--free", "load.axial", "--out", "OUT"),
     ),
-    "study limits": ("study", "limits", EXAMPLES / "set_tbt.toml"),
     "study article": ("study", "article", *SMALL, "--out", "OUT"),
     "infer": ("infer", "gmn"),
     "infer, one": ("infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),

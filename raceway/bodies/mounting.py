@@ -7,6 +7,7 @@ give; *running*, speed and temperatures do, too.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, growth_of
 from raceway.bodies.running import renew
+from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
 from raceway.core.ring.system import ChangingSpeed, System
@@ -35,6 +37,9 @@ _TOLERANCE = 1e-9
 _STEP, _LIMIT = 0.01, 60
 #: Times at which the speeds of a run are looked at, and steady speeds that a sprung ring is placed at.
 _SAMPLES, _SPEEDS = 1001, 17
+#: First share of the largest motion that a row is looked for to lift off in.
+_LIFTED = 1e-3
+_AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 
 def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
@@ -49,7 +54,7 @@ def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
         place = partial(_follow_spring, scene, basis, float(system.table[system.sliding[0], ring.SHIFT]))
     if scene.supports.axial == "displacement":
         loose = _under(system.standing(growth), scene.load.axial)
-        start = np.array([guess[0], 0.0, 0.0, 0.0, 0.0])
+        start = guess[0] * _AXIAL
         guess = loose.settle(start)[0] if place is None else place(loose, start)
     if renews(scene.contact.law) and isinstance(system, System):
         guess = renew(scene, basis, system, guess, place)
@@ -80,7 +85,7 @@ def _ground_shifts(scene: Scene, basis: Basis, loose: R) -> np.ndarray:
         same = (len(rows) if bearing.equal_rows else tuple(rows), force)
         balls = np.flatnonzero(np.isin(basis.row, rows))
         if same not in known:
-            start = np.array([0.05 * basis.geometry.centre_distance, 0.0, 0.0, 0.0, 0.0])
+            start = 0.05 * basis.geometry.centre_distance * _AXIAL
             known[same] = _under(_some(loose, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
         found[balls] = known[same]
     return found
@@ -88,8 +93,7 @@ def _ground_shifts(scene: Scene, basis: Basis, loose: R) -> np.ndarray:
 
 def _under(system: R, axial: float) -> R:
     """The system under an axial load alone, the other coordinates held."""
-    one = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-    return attrs.evolve(system, load=axial * one, free=one)
+    return attrs.evolve(system, load=axial * _AXIAL, free=_AXIAL)
 
 
 def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
@@ -182,7 +186,9 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     -----
     Before mounting the rows of the first direction and of the other one (``second``) carry what the preload sets, under its
     difference as an axial load.  Mounted and running, both without loads, the rows of either direction carry the same.  ``rows_n``
-    are the axial forces of the rows under the constant loads.
+    are the axial forces of the rows under the constant loads.  ``lift_off_axial_n`` are the loads [N] along +x and -x, of all
+    coordinates but x held and the scene's loads left out, at which the first row carries nothing any more, ``lift_off_row`` its
+    number, from 1; None where none ever does.
     """
     bearing, system = model.scene.bearing, model.system
     if not bearing.preloaded:
@@ -195,7 +201,7 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     rows = _row_forces(model, system, equilibrium.displacement, equilibrium.ball)
     return {
         "kind": bearing.preload_kind, "of": bearing.preload_of, "before_mounting_n": first, "second_before_mounting_n": second,
-        "mounted_n": mounted, "running_n": _unloaded(model, system), "rows_n": rows,
+        "mounted_n": mounted, "running_n": _unloaded(model, system), "rows_n": rows, **_lift_off(model),
     }  # fmt: skip
 
 
@@ -219,6 +225,55 @@ def _unloaded(model: Model, system: Ring) -> float:
     rows = model.scene.bearing.rows
     forces = _row_forces(model, system, q, ball)
     return sum(force for force, (side, _) in zip(forces, rows, strict=True) if side == rows[0][0])
+
+
+def _lift_off(model: Model) -> Tables:
+    """Axial loads along +x and -x at which the first row of a set lifts off, and its number.
+
+    Notes
+    -----
+    The inner rings move axially from where the set carries no load; forces follow from the displacement, no equilibrium is solved for.
+    Rows on a spring keep its force, as their outer rings follow.
+    """
+    system, spring = model.system.without(ring.CAGE), 0.0
+    balls = np.arange(system.ball_count)
+    if system.sliding is not None:
+        balls = np.setdiff1d(balls, system.sliding)
+        spring = float(system.table[system.sliding[0], ring.SIDE]) * model.scene.bearing.other_preload
+    rows, start = _some(system, balls), 0.0
+    with suppress(ConvergenceError):  # all rows are loose
+        start = float(_under(rows, -spring).settle(np.zeros(5))[0][0])
+    loads, numbers = list[float | None](), list[int | None]()
+    for sense in (1.0, -1.0):
+        x, ball = _first_open(rows, start, sense * model.bearing.largest_motion)
+        loads.append(None if x is None else float(rows.evaluate(x * _AXIAL).force[0]) + spring)
+        numbers.append(None if ball is None else int(model.basis.row[balls[ball]]) + 1)
+    return {"lift_off_axial_n": loads, "lift_off_row": numbers}
+
+
+def _first_open(rows: Ring, start: float, furthest: float) -> tuple[float, int] | tuple[None, None]:
+    """Axial displacement [m] at which an inner contact opens first, and its ball.
+
+    Parameters
+    ----------
+    start : displacement from which the rings move [m];  furthest : by which they move at most, signed [m]
+    """
+    unloaded = np.flatnonzero(rows.table[:, ring.SIDE] != np.sign(furthest))
+    lifting = _some(rows, unloaded)
+
+    def gaps(share: float) -> np.ndarray:
+        return lifting.evaluate((start + share * furthest) * _AXIAL).gap[: len(unloaded)]
+
+    low, high = 0.0, _LIFTED
+    try:
+        while len(unloaded) and gaps(high).max() < 0.0 and high < 1.0:
+            low, high = high, min(2.0 * high, 1.0)
+        if not len(unloaded) or gaps(high).max() < 0.0:
+            return None, None
+        share = 0.0 if gaps(low).max() >= 0.0 else regula_falsi(lambda share: float(gaps(share).max()), low, high)
+    except ConvergenceError:  # balls find no place between the races on the way
+        return None, None
+    return start + share * furthest, int(unloaded[gaps(share).argmax()])
 
 
 def lost_preload(model: Model) -> str:
@@ -250,7 +305,7 @@ def held_table(model: Model, equilibrium: Equilibrium) -> dict[str, float] | Non
         return None
     first = mounted = scene.load.axial
     if scene.mounting.fitted:
-        mounted = float(evaluate_following(scene, _mounted(model), q * [1.0, 0.0, 0.0, 0.0, 0.0]).force[0])
+        mounted = float(evaluate_following(scene, _mounted(model), q * _AXIAL).force[0])
     now = model.system.without(ring.CAGE).evaluate(q, ball=equilibrium.ball)
     return {"before_mounting_n": first, "mounted_n": mounted, "running_n": float(now.force[0])}
 

@@ -154,6 +154,10 @@ def _mounted(found: ReadTables) -> list[Row]:
         how = f"running, without loads; {before}; {what} stays"
         rows.append(("preload", number(preload["running_n"], "N"), how))
         rows.append(("axial force of rows", f"{forces} N", f"rows 1 to {len(preload['rows_n'])} under the loads"))
+        lifts = [*zip(preload["lift_off_axial_n"], preload["lift_off_row"], strict=True)]
+        loads = ", ".join("never" if load is None else number(load, "N") for load, _ in lifts)
+        which = ", ".join(f"row {row} along {way}" for way, (_, row) in zip(("+x", "-x"), lifts, strict=True) if row)
+        rows.append(("axial load at lift-off", loads, f"without other loads: {which}"))
     if held is not None:
         before = f"before mounting {held['before_mounting_n']:g} N, mounted {held['mounted_n']:.5g} N"
         how = f"what the held displacement takes now; {before}"

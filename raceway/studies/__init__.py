@@ -6,7 +6,6 @@ rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
 band        the range of an answer over the tolerances of its scene
 sensitivities   derivatives of an answer by every number of its scene
 fit         numbers of a scene from measured data, with what these do not determine
-limits      lift-off and limiting axial loads of a set: a plug-in of the same hook
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
 command     ``raceway study``
@@ -52,9 +51,4 @@ def raceway_studies() -> list[type]:
             "raceway.studies.article.command:article",
         ),
         _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.command:rig"),
-        _study(
-            "limits",
-            "Axial loads at which a set's rows lift off, and those that its contacts carry.",
-            "raceway.studies.limits.command:study_limits",
-        ),
     ]

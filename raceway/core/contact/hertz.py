@@ -14,13 +14,12 @@ Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 6 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from typing import Any
 
 import attrs
 import numpy as np
-from scipy.optimize import minimize_scalar
 from scipy.special import ellipe, ellipkm1, elliprd
 
 from raceway.errors import RacewayError
@@ -54,24 +53,27 @@ def ellipticity(curvature_difference: float) -> float:
         high *= 2.0
         if high > 300.0:
             raise RacewayError("the contact ellipse is longer than 1e100 widths: a line contact, not a point")
-    below, above = -curvature_difference, _difference(high) - curvature_difference
-    low = 0.0
-    last = 0
+    return float(np.exp(regula_falsi(lambda log_chi: _difference(log_chi) - curvature_difference, low, high)))
+
+
+def regula_falsi(function: Callable[[float], float], low: float, high: float) -> float:
+    """Zero to rounding of a function that is below 0 at ``low`` and above it at ``high`` (Illinois)."""
+    below, above, last = function(low), function(high), 0
     for _ in range(200):
         middle = (low * above - high * below) / (above - below)
         if not low < middle < high:
             break
-        left = _difference(middle) - curvature_difference
-        if left == 0.0:
-            return float(np.exp(middle))
-        side = -1 if left < 0.0 else 1
+        value = function(middle)
+        if value == 0.0:
+            return middle
+        side = -1 if value < 0.0 else 1
         # An end that stays for a second time counts half, or it would stay for ever.
         if side < 0:
-            low, below, above = middle, left, 0.5 * above if last == side else above
+            low, below, above = middle, value, 0.5 * above if last == side else above
         else:
-            high, above, below = middle, left, 0.5 * below if last == side else below
+            high, above, below = middle, value, 0.5 * below if last == side else below
         last = side
-    return float(np.exp(0.5 * (low + high)))
+    return 0.5 * (low + high)
 
 
 @attrs.frozen
@@ -281,6 +283,8 @@ def largest_shear(semi_axes: tuple[float, float], peak_pressure: float, poisson:
     -----
     Of long ellipses with a Poisson's ratio below 0.2 it lies at the surface, where the stress along the line is small.
     """
+    from scipy.optimize import minimize_scalar
+
     minor = min(semi_axes)
 
     def shear(share: np.ndarray) -> np.ndarray:
