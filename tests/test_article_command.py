@@ -13,8 +13,8 @@ from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Instead
 from raceway.scene.file import read_toml
-from raceway.studies.article import runs
 from raceway.studies.article import study as driver
+from raceway.studies.article import trends
 from raceway.studies.article.design import (
     ARTICLE,
     FRICTIONS,
@@ -35,14 +35,14 @@ from validation.command_line import EXAMPLES, invoke
 def quick(monkeypatch):
     """Leave out what other tests compute: static pressures, and all but two tilt stiffnesses and one trend."""
     monkeypatch.setattr(driver, "static_pressures", lambda *_: [])
-    monkeypatch.setattr(runs, "STIFFNESSES", (1e3, 1e6))
-    monkeypatch.setattr(runs, "TRENDS", dict(list(runs.TRENDS.items())[-1:]))
+    monkeypatch.setattr(trends, "STIFFNESSES", (1e3, 1e6))
+    monkeypatch.setattr(trends, "TRENDS", dict(list(trends.TRENDS.items())[-1:]))
 
 
 @pytest.mark.slow
 def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
     done = []
-    real = runs.curve
+    real = driver.curve
 
     def stop(points, registry):
         if len(done) == 30:
@@ -52,13 +52,11 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
 
     stop.__qualname__ = real.__qualname__  # a part of the key of finished work
     monkeypatch.setattr(driver, "curve", stop)
-    monkeypatch.setattr(runs, "curve", stop)
     words = ("study", "article", *SMALL, "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert "go on" in found.stderr or "goes on from there" in found.stderr
     monkeypatch.setattr(driver, "curve", real)
-    monkeypatch.setattr(runs, "curve", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0
     content = json.loads(found.stdout)
@@ -89,8 +87,8 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
     def fail(*_):
         raise ConvergenceError("no motion was found")
 
-    monkeypatch.setattr(runs, "run", fail)
-    monkeypatch.setattr(runs, "from_rest", lambda _, speed, turns: Instead(speed, FAILED, turns, why="nothing"))
+    monkeypatch.setattr(driver, "run", fail)
+    monkeypatch.setattr(driver, "from_rest", lambda _, speed, turns: Instead(speed, FAILED, turns, why="nothing"))
     found = invoke("study", "article", *SMALL, "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr
@@ -139,7 +137,7 @@ def test_friction_is_run_through_time_at_every_other_speed_and_load():
     standing, orbiting = (Setting(**ROTATING, tilt="free", inertia=True, bodies="rigid", friction=f) for f in FRICTIONS[1:])
     assert made.friction == 0.03 and standing in made.settings() and orbiting in made.settings()
     assert made.loads_of(standing) == (400.0, 800.0, 1200.0, 1600.0, 2000.0)
-    assert made.relative_speeds_of(standing) == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert made.relative(made.speeds_of(standing)) == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
     tables = made.point(orbiting, 400.0, 15000.0, default_registry())
     assert tables["contact"]["friction"] == 0.03 and tables["kinematics"]["orbiting"] is True
     assert tables["integrator"]["kind"] == "newmark" and tables["integrator"]["start"] == "ramp"
@@ -152,7 +150,7 @@ def test_friction_on_balls_that_stand_reverses_the_trend_at_a_heavy_load_with_ti
     made = design(article_tables())
     for friction, sense in (("none", 1.0), ("standing", -1.0), ("orbiting", 1.0)):
         setting = Setting(**ROTATING, tilt="free", inertia=True, bodies="rigid", friction=friction)
-        first, last = runs.curve(
+        first, last = driver.curve(
             [made.point(setting, 2000.0, speed, default_registry()) for speed in (10980.0, 15000.0)], default_registry()
         )
         # The changes are 2.7 to 7.6 %; runs with friction are known to half a percent.
@@ -215,7 +213,7 @@ def test_shaft_of_a_known_beam():
     ],
 )
 def test_bad_input_is_told_before_anything_is_run(tmp_path, monkeypatch, words, told):
-    monkeypatch.setattr(driver, "work", lambda *_: pytest.fail("something was run"))
+    monkeypatch.setattr(driver, "work_through", lambda *_: pytest.fail("something was run"))
     found = invoke("study", "article", *words, "--out", tmp_path)
     assert found.exit_code == 2
     assert told in found.stderr
@@ -236,7 +234,7 @@ def test_where_no_ring_stays_on_a_steady_motion_it_is_told_what_it_does_instead(
     constant, growing = (
         Setting("unidirectional", a, t, True, "rigid") for a, t in (("constant", "free"), ("unbalance", "shaft"))
     )
-    first, second = runs.curve(
+    first, second = driver.curve(
         [made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)], registry
     )
     assert (first["status"], second["status"]) == ("unstable", "unsteady") and "k" in first and "k" not in second

@@ -14,7 +14,7 @@ import raceway as rw
 from raceway import ConvergenceError, SceneError
 from raceway.scene.file import read_toml
 from raceway.studies.article import elastic
-from raceway.studies.article.elastic import SCENE, Design, Run, Told, design
+from raceway.studies.article.elastic import SCENE, Design, RemainingTime, Run, design
 from raceway.studies.article.elastic_page import drawings, page
 from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
@@ -253,7 +253,7 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now, told = [0.0], []
     monkeypatch.setattr("raceway.studies.article.elastic.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
-    progress = Told({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
+    progress = RemainingTime({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "elastic at rest", "400 N axial")
     assert told[-1][0] == "run 1 of 3: 12 min left, elastic at rest: 400 N axial"
     now[0] = 60.0

@@ -7,7 +7,7 @@ from typing import Any
 
 from raceway.scene.file import read_toml
 from raceway.storage.tables import Tables
-from raceway.studies.article import elastic, runs
+from raceway.studies.article import elastic, trends
 from raceway.studies.article.design import Curves, article_tables, design
 from raceway.studies.article.elastic import ElasticArticle, Run
 from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
@@ -28,7 +28,7 @@ def curves(k: Any, bodies: tuple[str, ...] = ("rigid",), friction: float | None 
     rows: dict[Any, list[dict[str, Any]]] = {}
     for setting, load in made.tasks():
         rows[setting, load] = []
-        for speed, w in zip(made.speeds_of(setting), made.relative_speeds_of(setting), strict=True):
+        for speed, w in zip(made.speeds_of(setting), made.relative(made.speeds_of(setting)), strict=True):
             value = k(setting, load, w)
             if value is None:
                 one = row(speed, load, None, "failed", "no motion was found")
@@ -58,17 +58,19 @@ def static(deviation: float | None) -> list[dict[str, Any]]:
 
 def study(found: Curves) -> Article:
     """A whole study around invented curves."""
-    trends = tuple(runs.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in runs.TRENDS.items())
+    compared = tuple(
+        trends.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in trends.TRENDS.items()
+    )
     scan = {
-        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(runs.STIFFNESSES))
+        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(trends.STIFFNESSES))
                for speed in (10980.0, 15000.0)]
-        for load in runs.scan_loads(found.design)
+        for load in trends.scan_loads(found.design)
     }  # fmt: skip
     rig = tuple(
         {"tilt": tilt, "bodies": "rigid", **row(speed, load, 2e8)}
         for tilt in ("locked", "shaft", "free") for load in RIG_LOADS for speed in RIG_SPEEDS
     )  # fmt: skip
-    return Article("invented", found, rig, tuple(static(0.01)), trends, scan, 1.0, 1.0, 0.5, 10, 0)
+    return Article("invented", found, rig, tuple(static(0.01)), compared, scan, 1.0, 1.0, 0.5, 10, 0)
 
 
 def elastic_rows() -> dict[Run, Tables]:

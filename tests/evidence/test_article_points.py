@@ -6,7 +6,7 @@ import pytest
 
 from raceway.framework.registry import default_registry
 from raceway.studies.article.design import Setting, article_tables, design
-from raceway.studies.article.runs import curve
+from raceway.studies.article.study import curve
 
 pytestmark = pytest.mark.release
 

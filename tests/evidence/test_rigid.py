@@ -14,7 +14,7 @@ import pytest
 from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
-from raceway.studies.article.runs import SPEEDS, TRENDS
+from raceway.studies.article.trends import SOLVER_SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
@@ -24,7 +24,7 @@ from validation.scenes import random_tables
 from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 SOLVER = "another rigid-ring solver (validation/expected_values.py)"
-TURNING = "another rigid-ring solver (raceway/studies/article/runs.py)"
+TURNING = "another rigid-ring solver (raceway/studies/article/trends.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}
 CONVEX = "the potential of loaded rings is convex: there is an equilibrium"
@@ -50,7 +50,7 @@ def test_secant_stiffness_over_speed(claim):
     """Locked or free tilt, three axial loads, with and without centrifugal force."""
     first, trend = [], []
     for (tilt, axial, inertia), (k, ratios) in TRENDS.items():
-        curve = np.array([secant(axial, tilt, speed, inertia) for speed in SPEEDS])
+        curve = np.array([secant(axial, tilt, speed, inertia) for speed in SOLVER_SPEEDS])
         first.append(abs(curve[0] / k / 1e6 - 1.0))
         trend.append(np.abs(curve[1:] / curve[0] - ratios).max())
     where = f"under the rig's force, {len(TRENDS)} combinations of tilt, axial load, centrifugal force"

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -30,64 +31,15 @@ from raceway.cli.frame import (
 from raceway.errors import ConvergenceError, Mistake, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
-from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.commands.progress import ProgressBar
     from raceway.framework.registry import Registry
-
-
-def study_elastic(
-    scene: Path | None,
-    changes: tuple[str, ...],
-    friction: float | None,
-    turns: int | None,
-    out: Path | None,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-    command: str,
-    registry: Registry,
-) -> int:
-    """Run it, write everything, show the table.
-
-    Parameters
-    ----------
-    as given on the command line;  command : what was typed
-
-    Raises
-    ------
-    RacewayError
-        Mistakes of the scene, before anything is run; a folder that cannot be written; every run failed.
-    """
-    from raceway.studies.article.elastic import SCENE, TURNS, design
-
-    tables, mistakes = changed_tables(scene or SCENE, changes, registry)
-    if mistakes:
-        raise SceneError(mistakes)
-    made = design(tables, friction, TURNS if turns is None else turns)
-    name = "article-elastic" if scene is None else f"{slug(str(tables['title']))}-article-elastic"
-    folder = writable(out or RESULTS / name)
-    draw = pictures and has_matplotlib()
-    tell_faults(registry)
-    kept = folder / "article-elastic-rows.jsonl"
-    with keeping("runs", kept), show_progress() as progress:
-        from raceway.studies.article.elastic import elastic_article
-        from raceway.studies.article.elastic_page import write
-
-        found = elastic_article(made, folder if draw else None, kept, registry, plugins, progress)
-        progress("writing", 0, 0)
-        content, files = found.to_dict(), list[str]()
-        failed = attempt(lambda: write(found, folder, draw, command), files) or found.fault
-    if failed is None and found.failed == len(found.rows):
-        failed = ConvergenceError(f"every run failed; the first reason: {found.rows[0]['reason']}")
-    from raceway.studies.article.elastic_page import elastic_screen
-
-    show(content, as_json, failed, lambda: elastic_screen(content, files))
-    return 0
+    from raceway.storage.tables import Tables
 
 
 class ArticleOptions(NamedTuple):
-    """What ``raceway study article`` is given."""
+    """Arguments and options of ``raceway study article``."""
 
     scene: Path | None
     bodies: str
@@ -133,7 +85,7 @@ class ArticleOptions(NamedTuple):
 @plugin_files
 @common
 @record(ArticleOptions)
-def article(given: ArticleOptions) -> int:
+def article(options: ArticleOptions) -> int:
     """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
 
     SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
@@ -151,42 +103,63 @@ def article(given: ArticleOptions) -> int:
           --set rotor.mass=1.5 --axial 400,1000,2000
       raceway study article --bodies elastic --set mesh.element_size=2e-3
     """  # fmt: skip
-    elastic = given.bodies == "elastic"
-    _refuse_unused(click.get_current_context(), elastic)
-    registry = registry_with(given.plugins)
-    if elastic:
-        command = _command(click.get_current_context())
-        return study_elastic(given.scene, given.changes, given.friction, given.turns, given.out, given.pictures, given.plugins,
-                             given.as_json, command, registry)  # fmt: skip
-    from raceway.studies.article.design import ARTICLE, article_tables, design
-
-    tables: Tables | None = None
-    if given.scene is not None or given.changes:
-        tables, mistakes = changed_tables(given.scene or ARTICLE, given.changes, registry)
-        if mistakes:
-            raise SceneError(mistakes)
-    kinds = ("rigid", "condensed") if given.bodies == "both" else (given.bodies,)
-    made = design(tables or article_tables(), given.speeds, given.axial, given.shaft, kinds, given.friction)
-    command = _command(click.get_current_context())
-    name = "article" if given.scene is None else f"{slug(str((tables or {})['title']))}-article"
-    folder = writable(given.out or RESULTS / name)
-    pictures = given.pictures and has_matplotlib()
+    context, elastic = click.get_current_context(), options.bodies == "elastic"
+    _refuse_unused(context, elastic)
+    registry, command = registry_with(options.plugins), _command(context)
+    scene = options.scene or Path(__file__).resolve().parents[2] / "data" / f"article{'_elastic' if elastic else ''}.toml"
+    tables, mistakes = changed_tables(scene, options.changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    name = "article-elastic" if elastic else "article"
+    study = (_elastic if elastic else _article)(options, tables, registry)
+    folder = writable(options.out or RESULTS / (name if options.scene is None else f"{slug(str(tables['title']))}-{name}"))
+    pictures = options.pictures and has_matplotlib()
     tell_faults(registry)
-    kept = folder / "article-rows.jsonl"
-    with keeping("curves", kept), show_progress() as progress:
-        from raceway.studies.article.page import write
-        from raceway.studies.article.study import article as study
-
-        found = study(made, given.processes, kept, registry, given.plugins, progress)
+    rows = folder / f"{name}-rows.jsonl"
+    with keeping("runs" if elastic else "curves", rows), show_progress() as progress:
+        result, write, screen = study(folder if pictures else None, rows, progress)
         progress("writing", 0, 0)
-        content, files = found.to_dict(), list[str]()
-        failed = attempt(lambda: write(found, folder, pictures, command), files) or found.fault
-    if failed is None and all(row["status"] == "failed" for row in content["rows"]):
+        content, files = result.to_dict(), list[str]()
+        failed = attempt(lambda: write(result, folder, pictures, command), files) or result.fault
+    lost = ("failed", "refused") if elastic else ("failed",)
+    if failed is None and all(row["status"] in lost for row in content["rows"]):
         failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
-    from raceway.studies.article.page import article_screen
-
-    show(content, given.as_json, failed, lambda: article_screen(content, files))
+    show(content, options.as_json, failed, lambda: screen(content, files))
     return 0
+
+
+#: Runs a study: where the section is drawn, file of finished rows, progress -> result, and what writes and shows it.
+Study = Callable[[Path | None, Path, "ProgressBar"], tuple[Any, Callable[..., list[Path]], Callable[..., object]]]
+
+
+def _article(options: ArticleOptions, tables: Tables, registry: Registry) -> Study:
+    """Rigid and condensed bodies; mistakes are refused before anything is loaded that computes."""
+    from raceway.studies.article.design import design
+
+    kinds = ("rigid", "condensed") if options.bodies == "both" else (options.bodies,)
+    runs = design(tables, options.speeds, options.axial, options.shaft, kinds, options.friction)
+
+    def study(_folder: Path | None, rows: Path, progress: ProgressBar) -> Any:
+        from raceway.studies.article.page import article_screen, write
+        from raceway.studies.article.study import article
+
+        return article(runs, options.processes, rows, registry, options.plugins, progress), write, article_screen
+
+    return study
+
+
+def _elastic(options: ArticleOptions, tables: Tables, registry: Registry) -> Study:
+    """Elastic bodies beside the others."""
+    from raceway.studies.article.elastic import TURNS, design, elastic_article
+
+    runs = design(tables, options.friction, TURNS if options.turns is None else options.turns)
+
+    def study(folder: Path | None, rows: Path, progress: ProgressBar) -> Any:
+        from raceway.studies.article.elastic_page import elastic_screen, write
+
+        return elastic_article(runs, folder, rows, registry, options.plugins, progress), write, elastic_screen
+
+    return study
 
 
 #: Options that one choice of --bodies has no use for, with the reason.
@@ -199,6 +172,10 @@ _NOT_ELASTIC = {
 _ELASTIC_ONLY = {"turns": "the study sets them, or has steady orbits"}
 
 
+def _typed(context: click.Context, name: str) -> bool:
+    return context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+
+
 def _refuse_unused(context: click.Context, elastic: bool) -> None:
     """Refuse what was typed and would have no effect.
 
@@ -207,12 +184,11 @@ def _refuse_unused(context: click.Context, elastic: bool) -> None:
     SceneError
         Naming each option.
     """
-    unused = _NOT_ELASTIC if elastic else _ELASTIC_ONLY
     bodies = context.params["bodies"]
     mistakes = [
         Mistake(f"--{name}", context.params[name], f"has no effect with --bodies {bodies}: {why}; leave it out")
-        for name, why in unused.items()
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        for name, why in (_NOT_ELASTIC if elastic else _ELASTIC_ONLY).items()
+        if _typed(context, name)
     ]
     if mistakes:
         raise SceneError(mistakes)
@@ -223,11 +199,10 @@ def _command(context: click.Context) -> str:
     words = ["raceway", "study", "article"]
     for parameter in context.command.params:
         name = str(parameter.name)
-        typed = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
-        if not typed or name not in context.params or name in ("out", "processes", "pictures", "as_json"):
+        if name not in context.params or name in ("out", "processes", "pictures", "as_json") or not _typed(context, name):
             continue
-        value = context.params[name]
-        for one in value if parameter.multiple else (value,):
-            text = one.name if isinstance(one, Path) and one.is_absolute() else str(one)
+        values = context.params[name]
+        for value in values if parameter.multiple else (values,):
+            text = value.name if isinstance(value, Path) and value.is_absolute() else str(value)
             words += [text] if isinstance(parameter, click.Argument) else [parameter.opts[0], text]
     return shlex.join(words)

@@ -13,7 +13,7 @@ import numpy as np
 
 from raceway.errors import SceneError, Status
 from raceway.framework.registry import Registry
-from raceway.points.axes import Axis, parse_axis, points, tables_at
+from raceway.points.axes import parse_axis, points, tables_at
 from raceway.scene.changes import with_value
 from raceway.scene.file import read_toml
 from raceway.storage.tables import ReadTables, Tables
@@ -21,12 +21,19 @@ from raceway.storage.tables import ReadTables, Tables
 DIRECTIONS = ("unidirectional", "bidirectional")
 AMPLITUDES = ("constant", "unbalance")
 #: The pairs that the article compares; it changes direction and amplitude law at once.
-CLAIMED = (("unidirectional", "constant"), ("bidirectional", "unbalance"))
-TILTS = ("locked", "shaft", "free")
+CLAIMED = tuple(zip(DIRECTIONS, AMPLITUDES, strict=True))
+ONE_WAY, ROTATING = ({"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED)
+TILT_WORDS = {"locked": "tilt locked", "shaft": "tilt against the shaft", "free": "tilt free"}
+TILTS = tuple(TILT_WORDS)
 BODIES = ("rigid", "condensed")
 #: The article's coefficient, section 3.1; what a contact that sticks means depends on whether the balls orbit.
 FRICTION = 0.03
-FRICTIONS = ("none", "standing", "orbiting")
+FRICTION_WORDS = {
+    "none": "without friction",
+    "standing": "friction on balls that stand",
+    "orbiting": "friction on balls that orbit",
+}
+FRICTIONS = tuple(FRICTION_WORDS)
 #: How runs with friction are integrated: the force grows over two thirds of the turns, the last third counts.
 FRICTION_TURNS, FRICTION_STEPS = 12, 360
 #: Least relative error of K with friction: what twice the turns of twice the steps change (``tests/evidence/test_article.py``).
@@ -37,6 +44,10 @@ SPEEDS = "10980:15000:9"
 LOADS = "400:2000:9"
 #: The rig's shaft: span between the bearings from section 3.3; the diameter is not printed, 30 mm is the bearing's bore.
 SHAFT_DIAMETER, SPAN, YOUNG = 0.030, 0.175, 212e9
+#: Status of a run that is neither failed nor refused.
+ANSWERED = (Status.COMPLETED, Status.UNSTABLE, Status.UNSTEADY)
+#: What may be called k: name -> key of a row.
+MEASURES = {"K": "k", "|Z|": "abs_z"}
 
 
 @attrs.frozen(order=True)
@@ -53,16 +64,12 @@ class Setting:
     @property
     def name(self) -> str:
         balls = "ball inertia" if self.inertia else "weightless balls"
-        rubbing = "" if self.friction == "none" else f", {FRICTION_WORDS[self.friction]}"
-        return f"{self.direction}, {self.amplitude} amplitude, {TILT_WORDS[self.tilt]}, {balls}, {self.bodies}{rubbing}"
+        friction = "" if self.friction == "none" else f", {FRICTION_WORDS[self.friction]}"
+        return f"{self.direction}, {self.amplitude} amplitude, {TILT_WORDS[self.tilt]}, {balls}, {self.bodies}{friction}"
 
-
-FRICTION_WORDS = {
-    "none": "without friction",
-    "standing": "friction on balls that stand",
-    "orbiting": "friction on balls that orbit",
-}
-TILT_WORDS = {"locked": "tilt locked", "shaft": "tilt against the shaft", "free": "tilt free"}
+    @property
+    def claimed(self) -> bool:
+        return (self.direction, self.amplitude) in CLAIMED
 
 
 @attrs.frozen
@@ -84,52 +91,45 @@ class Design:
     friction: float = 0.0
 
     @property
-    def relative_speeds(self) -> list[float]:
-        """w* = (w - w_min) / (w_max - w_min)."""
-        return self._relative(self.speeds)
-
-    @property
     def frictions(self) -> tuple[str, ...]:
         """Of ``FRICTIONS`` those that are run."""
         return FRICTIONS if self.friction > 0.0 and "rigid" in self.bodies else FRICTIONS[:1]
+
+    @property
+    def scene_load(self) -> float:
+        """The scene's axial load, or the load of the study that lies next to it [N]."""
+        axial = self.tables.get("load", {}).get("axial", 0.0)
+        return min(self.loads, key=lambda load: abs(load - axial))
 
     def speeds_of(self, setting: Setting) -> tuple[float, ...]:
         """All of them, with friction every other one: those runs go through time."""
         return self.speeds if setting.friction == "none" else _thinned(self.speeds)
 
     def loads_of(self, setting: Setting) -> tuple[float, ...]:
-        """With friction as the speeds; of the pairs that no claim is about the lightest, the scene's own and the heaviest."""
-        if (setting.direction, setting.amplitude) not in CLAIMED:
-            return tuple(sorted({self.loads[0], self.own_load, self.loads[-1]}))
+        """With friction as the speeds; of the pairs that no claim is about the lightest, the scene's and the heaviest."""
+        if not setting.claimed:
+            return tuple(sorted({self.loads[0], self.scene_load, self.loads[-1]}))
         return self.loads if setting.friction == "none" else _thinned(self.loads)
 
-    @property
-    def own_load(self) -> float:
-        """The scene's own axial load, or the one of the study that lies next to it [N]."""
-        own = self.tables.get("load", {}).get("axial", 0.0)
-        return min(self.loads, key=lambda load: abs(load - own))
-
-    def relative_speeds_of(self, setting: Setting) -> list[float]:
-        return self._relative(self.speeds_of(setting))
-
-    def _relative(self, speeds: Sequence[float]) -> list[float]:
+    def relative(self, speeds: Sequence[float]) -> list[float]:
+        """w* = (w - w_min) / (w_max - w_min)."""
         first, last = self.speeds[0], self.speeds[-1]
         return [(speed - first) / (last - first) for speed in speeds]
 
     def models(self) -> Iterator[Tables]:
         """Every way to model the bearing, apart from its excitation, in the order of the tables."""
-        for friction, tilt, inertia in product(self.frictions, TILTS, (True, False)):
-            for kind in [one for one in BODIES if one in self.bodies]:
-                if friction == "none" or (inertia and kind == "rigid"):
-                    yield {"friction": friction, "tilt": tilt, "inertia": inertia, "bodies": kind}
+        for friction, tilt, inertia, bodies in product(self.frictions, TILTS, (True, False), BODIES):
+            if bodies in self.bodies and (friction == "none" or (inertia and bodies == "rigid")):
+                yield {"friction": friction, "tilt": tilt, "inertia": inertia, "bodies": bodies}
 
     def settings(self) -> Iterator[Setting]:
         """All of them for the first kind of bodies; for a second one, and with friction, the pairs that the claims are about."""
         for bodies, direction, amplitude, tilt, inertia in product(
             self.bodies, DIRECTIONS, AMPLITUDES, TILTS, (True, False)
         ):
-            if bodies == self.bodies[0] or (direction, amplitude) in CLAIMED:
-                yield Setting(direction, amplitude, tilt, inertia, bodies)
+            setting = Setting(direction, amplitude, tilt, inertia, bodies)
+            if bodies == self.bodies[0] or setting.claimed:
+                yield setting
         for friction, (direction, amplitude), tilt in product(self.frictions[1:], CLAIMED, TILTS):
             yield Setting(direction, amplitude, tilt, True, "rigid", friction)
 
@@ -139,7 +139,7 @@ class Design:
 
     def point(self, setting: Setting, load: float, speed: float, registry: Registry) -> Tables:
         """The scene's tables at one point."""
-        chosen = {
+        values = {
             "bodies.kind": setting.bodies,
             "excitation.kind": setting.direction,
             "excitation.amplitude": setting.amplitude,
@@ -151,14 +151,14 @@ class Design:
             "integrator.kind": "periodic",
         }
         if setting.friction != "none":
-            chosen |= {
+            values |= {
                 "kinematics.orbiting": setting.friction == "orbiting",
                 "integrator.kind": "newmark",
                 "integrator.start": "ramp",
                 "integrator.turns": FRICTION_TURNS,
                 "integrator.steps_per_turn": FRICTION_STEPS,
             }
-        return tables_at(self.tables, chosen, registry)
+        return tables_at(self.tables, values, registry)
 
 
 def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, young: float = YOUNG) -> float:
@@ -186,32 +186,54 @@ def design(
     Parameters
     ----------
     speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
-    shaft : tilt stiffness [N m/rad]; the scene's own where it has one, else that of the rig's shaft
-    friction : Coulomb coefficient; the scene's own where it has one, else the article's
+    shaft : tilt stiffness [N m/rad]; the scene's where it has one, else that of the rig's shaft
+    friction : see ``friction_of``
 
     Raises
     ------
     SceneError
         A scene without unbalance, too few speeds or loads, or values that do not ascend.
     """
-    excitation = tables.get("excitation")
-    if not isinstance(excitation, Mapping) or excitation.get("unbalance") is None:
-        message = "is needed: the study compares the force m e w^2 with one of constant amplitude; give it in kg m"
-        raise SceneError.at("excitation.unbalance", None, message)
-    own = tables.get("supports", {}).get("tilt")
+    excitation, tilt = excitation_of(tables), tables.get("supports", {}).get("tilt")
     if shaft is None:
-        shaft = float(own) if isinstance(own, int | float) and not isinstance(own, bool) else shaft_tilt_stiffness()
+        shaft = float(tilt) if isinstance(tilt, int | float) and not isinstance(tilt, bool) else shaft_tilt_stiffness()
     if not (math.isfinite(shaft) and shaft > 0.0):
         raise SceneError.at("--shaft", shaft, "must be a tilt stiffness above 0 N m/rad")
+    friction = friction_of(tables, friction)
+    ascending = _ascending("--speeds", speeds)
+    if "force" not in excitation and "reference_speed_rpm" not in excitation:
+        tables = with_value(tables, "excitation.reference_speed_rpm", ascending[0])
+    return Design(tables, ascending, _ascending("--axial", loads), shaft, tuple(bodies), friction)
+
+
+def excitation_of(tables: ReadTables) -> ReadTables:
+    """The scene's excitation.
+
+    Raises
+    ------
+    SceneError
+        It has no unbalance.
+    """
+    excitation = tables.get("excitation")
+    if not isinstance(excitation, Mapping) or excitation.get("unbalance") is None:
+        why = "is needed: the study compares the force m e w^2 with one of constant amplitude; give it in kg m"
+        raise SceneError.at("excitation.unbalance", None, why)
+    return excitation
+
+
+def friction_of(tables: ReadTables, friction: float | None) -> float:
+    """Coulomb coefficient: the one of ``--friction``, else the scene's, else the article's.
+
+    Raises
+    ------
+    SceneError
+        A friction below 0.
+    """
     if friction is None:
         friction = float(tables.get("contact", {}).get("friction", 0.0)) or FRICTION
     if not (math.isfinite(friction) and friction >= 0.0):
         raise SceneError.at("--friction", friction, "must be a coefficient of friction of at least 0")
-    found = Design(tables, _values("--speeds", speeds), _values("--axial", loads), shaft, tuple(bodies), friction)
-    if "force" not in excitation and "reference_speed_rpm" not in excitation:
-        changed = with_value(tables, "excitation.reference_speed_rpm", found.speeds[0])
-        found = attrs.evolve(found, tables=changed)
-    return found
+    return friction
 
 
 def _thinned(values: tuple[float, ...]) -> tuple[float, ...]:
@@ -219,7 +241,7 @@ def _thinned(values: tuple[float, ...]) -> tuple[float, ...]:
     return values[::2] if len(values) % 2 and len(values) >= 9 else values
 
 
-def _values(option: str, text: str) -> tuple[float, ...]:
+def _ascending(option: str, text: str) -> tuple[float, ...]:
     """Ascending positive numbers, at least three: two points have no curvature.
 
     Raises
@@ -228,7 +250,7 @@ def _values(option: str, text: str) -> tuple[float, ...]:
         Naming the option.
     """
     try:
-        axis: Axis = parse_axis(f"{option}={text}")
+        axis = parse_axis(f"{option}={text}")
     except SceneError as error:
         raise SceneError.at(option, text, error.mistakes[0].message.replace("table.key=", "")) from None
     values = [point[option] for point in points([axis])]
@@ -239,80 +261,95 @@ def _values(option: str, text: str) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-#: What became of a run that is neither failed nor refused.
-ANSWERED = (Status.COMPLETED, Status.UNSTABLE, Status.UNSTEADY)
-#: What may be called k: name -> key of a row.
-MEASURES = {"K": "k", "|Z|": "abs_z"}
+@attrs.frozen(eq=False)
+class Curve:
+    """Runs of one setting at one axial load [N], a row per speed; arrays are (speeds,)."""
+
+    setting: Setting
+    load: float
+    rows: list[Tables]
+
+    def values(self, measure: str = "K", status: str = "completed") -> np.ndarray:
+        """K or |Z| [N/m] of runs with this status; nan elsewhere."""
+        key = MEASURES[measure]
+        return np.array([row[key] if row["status"] == status else np.nan for row in self.rows])
+
+    def normalised(self, measure: str = "K") -> np.ndarray:
+        """k* = k / k(w_min)."""
+        values = self.values(measure)
+        return np.asarray(values / values[0])
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Each run's relative error, its mesh's apart: that is the same at all speeds.
+
+        With friction at least ``FRICTION_ERROR``: where contacts stick depends on how the motion began.
+        """
+        least = 0.0 if self.setting.friction == "none" else FRICTION_ERROR
+        return np.array([max(row.get("error") or 0.0, least) for row in self.rows])
+
+    @property
+    def failed(self) -> np.ndarray:
+        """Where the run failed or was refused, so that nobody knows what a ring does."""
+        return np.array([row["status"] not in ANSWERED for row in self.rows])
+
+    @property
+    def missing(self) -> str:
+        """Runs without a number, counted by status, with the first reason of each; "" where there is none."""
+        missing = [row for row in self.rows if row["status"] != "completed"]
+        parts = []
+        for status, count in Counter(row["status"] for row in missing).items():
+            rows = [row for row in missing if row["status"] == status]
+            speeds = ", ".join(dict.fromkeys(f"{row['speed_rpm']:g}" for row in rows))
+            parts.append(f"{count} {status} ({speeds} r/min: {rows[0]['reason']})")
+        return "; ".join(parts)
+
+
+@attrs.frozen(eq=False)
+class Surface:
+    """Curves of one setting at all of its axial loads; arrays are (loads, speeds)."""
+
+    setting: Setting
+    loads: tuple[float, ...]
+    speeds: tuple[float, ...]
+    curves: list[Curve]
+
+    def values(self, measure: str = "K") -> np.ndarray:
+        """[N/m]; nan where the run failed or its motion is unstable."""
+        return np.array([curve.values(measure) for curve in self.curves])
+
+    @property
+    def errors(self) -> np.ndarray:
+        return np.array([curve.errors for curve in self.curves])
+
+    @property
+    def failed(self) -> np.ndarray:
+        return np.array([curve.failed for curve in self.curves])
+
+    @property
+    def missing(self) -> str:
+        return "; ".join(filter(None, (curve.missing for curve in self.curves)))
 
 
 @attrs.frozen(eq=False)
 class Curves:
-    """All rows.
-
-    Attributes
-    ----------
-    rows : (setting, axial load) -> one row a speed, in the design's order
-    """
+    """All rows: (setting, axial load) -> one row a speed, in the design's order."""
 
     design: Design
     rows: dict[tuple[Setting, float], list[Tables]]
 
-    def values(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
-        """(speeds,) [N/m]; nan where the run failed or its motion is unstable."""
-        key = MEASURES[measure]
-        return np.array([row[key] if row["status"] == "completed" else np.nan for row in self.rows[setting, load]])
+    def curve(self, setting: Setting, load: float) -> Curve:
+        return Curve(setting, load, self.rows[setting, load])
 
-    def errors(self, setting: Setting, load: float) -> np.ndarray:
-        """(speeds,) each run's own relative error, its mesh's apart: that is the same at all speeds.
-
-        With friction at least ``FRICTION_ERROR``: where contacts stick depends on how the motion began.
-        """
-        least = 0.0 if setting.friction == "none" else FRICTION_ERROR
-        return np.array([max(row.get("error") or 0.0, least) for row in self.rows[setting, load]])
-
-    def unstable(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
-        """(speeds,) [N/m] of unstable motions, nan elsewhere."""
-        key = MEASURES[measure]
-        return np.array([row[key] if row["status"] == "unstable" else np.nan for row in self.rows[setting, load]])
-
-    def failed(self, setting: Setting, load: float) -> np.ndarray:
-        """(speeds,) where the run failed or was refused, so that nobody knows what a ring does."""
-        return np.array([row["status"] not in ANSWERED for row in self.rows[setting, load]])
-
-    def surface(self, setting: Setting, measure: str = "K") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Values [N/m], errors, and where runs failed; (loads, speeds) each."""
+    def surface(self, setting: Setting) -> Surface:
         loads = self.design.loads_of(setting)
-        values = np.array([self.values(setting, load, measure) for load in loads])
-        errors = np.array([self.errors(setting, load) for load in loads])
-        return values, errors, np.array([self.failed(setting, load) for load in loads])
+        return Surface(setting, loads, self.design.speeds_of(setting), [self.curve(setting, load) for load in loads])
 
-    def normalised(self, setting: Setting, load: float, measure: str = "K") -> np.ndarray:
-        """k* = k / k(w_min), (speeds,)."""
-        found = self.values(setting, load, measure)
-        return np.asarray(found / found[0])
-
-    def why_not(self, setting: Setting, load: float) -> str:
-        """What is missing in a curve, in words; "" where nothing is."""
-        return told(self.rows[setting, load])
+    def surfaces(self, excitation: ReadTables) -> Iterator[tuple[Tables, Surface]]:
+        """Every way to model the bearing under an excitation, and its curves."""
+        return ((model, self.surface(Setting(**excitation, **model))) for model in self.design.models())
 
     def faults(self) -> Iterator[Tables]:
         """Every run that gave no number to judge with."""
         for (setting, _), rows in self.rows.items():
-            for row in rows:
-                if row["status"] != "completed":
-                    yield {**attrs.asdict(setting), **row}
-
-
-def told(rows: list[Tables]) -> str:
-    """Runs without a number, counted by what became of them, with the first reason of each kind."""
-    bad = [row for row in rows if row["status"] != "completed"]
-    parts = []
-    for status, count in Counter(row["status"] for row in bad).items():
-        reason = next(row["reason"] for row in bad if row["status"] == status)
-        speeds = ", ".join(dict.fromkeys(f"{row['speed_rpm']:g}" for row in bad if row["status"] == status))
-        parts.append(f"{count} {status} ({speeds} r/min: {reason})")
-    return "; ".join(parts)
-
-
-_PAIRS: list[Tables] = [{"direction": direction, "amplitude": amplitude} for direction, amplitude in CLAIMED]
-ONE_WAY, ROTATING = _PAIRS
+            yield from ({**attrs.asdict(setting), **row} for row in rows if row["status"] != "completed")

@@ -6,7 +6,7 @@ has all of them side by side.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -15,13 +15,12 @@ import numpy as np
 from raceway.errors import Status
 from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import Tables
-from raceway.studies.article import runs
+from raceway.studies.article import trends
 from raceway.studies.article.design import (
     AMPLITUDES,
     CLAIMED,
     DIRECTIONS,
     FRICTION_WORDS,
-    FRICTIONS,
     ROTATING,
     TILT_WORDS,
     TILTS,
@@ -29,7 +28,6 @@ from raceway.studies.article.design import (
     Setting,
 )
 from raceway.studies.article.rules import LEVEL
-from raceway.studies.article.runs import hardening
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,9 +35,17 @@ if TYPE_CHECKING:
 
     from raceway.studies.article.study import Article
 
-
 _WIDTH, _HEIGHT = 4.7, 3.8
-GRID = "#d8dee4"
+_GRID, _REFERENCE = "#d8dee4", "#8794a0"
+_STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
+#: Direction and amplitude law -> colour, style, width [pt] and name of a line.
+_PAIRS = {
+    (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
+    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "unidirectional, constant"),
+    (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
+    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
+}
+_FRICTION_COLOURS = dict(zip(FRICTION_WORDS, ("#55636f", "#c8501e", "#0b5fa5"), strict=True))
 
 
 @attrs.frozen
@@ -53,7 +59,7 @@ class Panel:
 
     def figure(self) -> Figure:
         figure = new_figure(_WIDTH, _HEIGHT)
-        self.draw(_axes(figure, 111, self.solid))
+        self.draw(_axes(figure, (1, 1, 1), self.solid))
         return figure
 
 
@@ -69,92 +75,133 @@ class Picture:
         rows = -(-len(self.panels) // 3)
         columns = min(3, len(self.panels))
         figure = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4)
-        for place, panel in enumerate(self.panels, start=1):
-            panel.draw(_axes(figure, (rows, columns, place), panel.solid))
+        for number, panel in enumerate(self.panels, start=1):
+            panel.draw(_axes(figure, (rows, columns, number), panel.solid))
         figure.suptitle(self.title, fontsize=13)
         return figure
 
 
-def _axes(figure: Figure, place: int | tuple[int, int, int], solid: bool) -> Any:
+def _axes(figure: Figure, position: tuple[int, int, int], solid: bool) -> Any:
     words: Tables = {"projection": "3d"} if solid else {}
-    return figure.add_subplot(*place, **words) if isinstance(place, tuple) else figure.add_subplot(place, **words)
+    return figure.add_subplot(*position, **words)
 
 
 def finish(axes: Axes, title: str, x: str, y: str, legend: int = 0) -> None:
+    """Title, labels and grid; a legend of so many columns below."""
     axes.set_title(title, fontsize=11)
     axes.set_xlabel(x, fontsize=10)
     axes.set_ylabel(y, fontsize=10)
     axes.tick_params(labelsize=9)
-    axes.grid(color=GRID, linewidth=0.7)
+    axes.grid(color=_GRID, linewidth=0.7)
     axes.set_axisbelow(True)
     axes.ticklabel_format(useOffset=False)
     if legend:
         axes.legend(fontsize=8.5, frameon=False, ncols=legend, loc="upper center", bbox_to_anchor=(0.5, -0.17))
 
 
-def ends(values: np.ndarray) -> str:
-    return f"{values[0]:.4g} to {values[-1]:.4g}" if np.isfinite(values[[0, -1]]).all() else "not computed to the end"
+@attrs.frozen(eq=False)
+class Line:
+    """A line of a panel; ``marked`` has a dot at each point, ``bridged`` goes straight over points without a number."""
+
+    x: np.ndarray
+    y: np.ndarray
+    style: str
+    colour: Any
+    width: float
+    label: str | None = None
+    marked: bool = True
+    bridged: bool = False
+
+    def plot(self, axes: Axes) -> None:
+        shown = np.isfinite(self.y) if self.bridged else slice(None)
+        marker: Tables = {"marker": "o", "markersize": 3} if self.marked else {}
+        axes.plot(
+            self.x[shown], self.y[shown], self.style, color=self.colour, linewidth=self.width, label=self.label, **marker
+        )
 
 
-def cut(axes: Axes, lines: list[np.ndarray]) -> None:
-    """Limits by the steady motions: an unstable one far away must not flatten them."""
-    values = np.concatenate(lines)
-    values = values[np.isfinite(values)]
-    if values.size:
-        low, high = values.min(), values.max()
-        room = 0.07 * max(high - low, 0.01 * abs(high))
-        axes.set_ylim(low - room, high + room)
+def _panel(
+    lines: Sequence[Line], labels: tuple[str, str, str], legend: int, words: str, caption: str = "", more: Callable[[Axes], None] | None = None
+) -> Panel:  # fmt: skip
+    """Lines over one axis.
+
+    Parameters
+    ----------
+    labels : title, x and y;  words : what is seen;  more : draws what is no line
+    """
+
+    def draw(axes: Axes) -> None:
+        for line in lines:
+            line.plot(axes)
+        if more is not None:
+            more(axes)
+        finish(axes, *labels, legend=legend)
+
+    return Panel(draw, words, caption)
 
 
-def colours(count: int) -> list[Any]:
+def _ends(named: Mapping[str, np.ndarray]) -> str:
+    """First and last value of each, in words."""
+    return "; ".join(
+        f"{name}: {f'{values[0]:.4g} to {values[-1]:.4g}' if np.isfinite(values[[0, -1]]).all() else 'not computed to the end'}"
+        for name, values in named.items()
+    )
+
+
+def _colours(count: int) -> list[Any]:
     from matplotlib import colormaps
 
     return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
-def end_labels(axes: Axes, x: float, labels: list[tuple[float, str, Any]]) -> None:
+def _end_labels(axes: Axes, x: float, labels: list[tuple[float, str, Any]]) -> None:
     """Names at the right ends of curves, pushed apart where they would cover each other."""
-    known = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
+    finite = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
     low, high = axes.get_ylim()
     gap = 0.062 * (high - low)
-    places: list[float] = []
-    for y, *_ in known:
-        places.append(max(y, places[-1] + gap) if places else y)
+    heights: list[float] = []
+    for y, *_ in finite:
+        heights.append(max(y, heights[-1] + gap) if heights else y)
     top = high + 0.5 * gap
-    for k in reversed(range(len(places))):  # what was pushed out at the top pushes back
-        places[k] = top = min(places[k], top - gap)
-    for place, (_, text, colour) in zip(places, known, strict=True):
-        axes.annotate(text, (x, place), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
+    for k in reversed(range(len(heights))):  # what was pushed out at the top pushes back
+        heights[k] = top = min(heights[k], top - gap)
+    for height, (_, text, colour) in zip(heights, finite, strict=True):
+        axes.annotate(text, (x, height), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
                       annotation_clip=False)  # fmt: skip
-
-
-_STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
-_PAIRS = {
-    (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
-    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "unidirectional, constant"),
-    (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
-    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
-}
 
 
 def drawings(study: Article) -> list[Picture]:
     """All figures in the order of the page: 9 to 12 for each kind of bodies, then what they have in common."""
-    curves = study.curves
-    found = []
-    for kind in curves.design.bodies:
-        made = [
-            *_excitations(curves, kind),
-            *_curves_of(curves, kind, 10, "speed at several axial loads", _over_speed),
-            *_curves_of(curves, kind, 11, "axial load", _over_load),
-            *_surfaces(curves, kind),
-        ]
-        found += [attrs.evolve(one, name=named(one.name, curves.design.bodies, kind)) for one in made]
+    curves, bodies = study.curves, study.curves.design.bodies
+    pictures = []
+    for kind in bodies:
+        for name, title, measure, star, label in (
+            ("figure-9", "Figure 9: k*, both excitations", "K", True, "k* (k = K)"),
+            ("figure-9-newton-per-metre", "Figure 9 in N/m: K, both excitations", "K", False, _STIFFNESS),
+            ("figure-9-with-inertia", "Figure 9 for k = |Z|, which holds the inertia", "|Z|", True, "k* (k = |Z|)"),
+        ):
+            title = f"{title}, {curves.design.scene_load:g} N, {kind} bodies"
+            pictures.append(Picture(named(name, bodies, kind), title, tuple(_excitations(curves, kind, tilt, measure, star, label) for tilt in TILTS)))  # fmt: skip
+        for number, along, panel in ((10, "speed at several axial loads", _over_speed), (11, "axial load", _over_load)):
+            for ending, unit, star in (("", ": k*", True), ("-newton-per-metre", " in N/m: K", False)):
+                title = f"Figure {number}{unit} over {along}, rotating force m e w², {kind} bodies"
+                panels = tuple(panel(curves, kind, tilt, star) for tilt in TILTS)
+                pictures.append(Picture(named(f"figure-{number}{ending}", bodies, kind), title, panels))
+        for name, title, draw, inertia in (
+            ("figure-12", f"Figure 12: k* over speed and axial load, ball inertia, {kind} bodies", _map, True),
+            ("figure-12-weightless-balls", f"Figure 12: k* over speed and axial load, weightless balls, {kind} bodies", _map, False),
+            ("figure-12-newton-per-metre", f"Figure 12 in N/m: K, {kind} bodies", _solid, True),
+        ):  # fmt: skip
+            settings = [Setting(**ROTATING, tilt=tilt, inertia=inertia, bodies=kind) for tilt in TILTS]
+            pictures.append(Picture(named(name, bodies, kind), title, tuple(draw(curves, setting) for setting in settings)))
     if len(curves.design.frictions) > 1:
-        found.append(_friction(curves))
-    found.append(_tilt_stiffness(study))
-    if len(curves.design.bodies) > 1:
-        found.append(_bodies(curves))
-    return found
+        title = f"What friction does: k* over speed, rotating force m e w², coefficient {curves.design.friction:g}"
+        pictures.append(Picture("friction", title, tuple(_friction(curves, tilt) for tilt in TILTS)))
+    pictures.append(_tilt_stiffness(study))
+    if len(bodies) > 1:
+        panels = tuple(_both_bodies(curves, tilt, star) for star in (True, False) for tilt in TILTS)
+        pictures.append(Picture("bodies", "Rigid and condensed bodies, rotating force m e w², ball inertia", panels))
+    return pictures
 
 
 def named(figure: str, bodies: Sequence[str], kind: str) -> str:
@@ -162,158 +209,106 @@ def named(figure: str, bodies: Sequence[str], kind: str) -> str:
     return figure if kind == bodies[0] else f"{figure}-{kind}"
 
 
-def _some(values: Sequence[float], count: int = 5) -> list[int]:
-    """Places of at most ``count`` of the values, evenly spread, both ends among them."""
+def _spread(values: Sequence[float], count: int = 5) -> list[int]:
+    """Indices of at most ``count`` of the values, evenly spread, both ends among them."""
     return sorted({round(k) for k in np.linspace(0, len(values) - 1, min(count, len(values)))})
 
 
-def _excitations(curves: Curves, kind: str) -> list[Picture]:
+def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool, label: str) -> Panel:
     """Figure 9: both excitations over speed, and the mixed pairs, as far as they are run, that change one thing only."""
-    load = curves.design.own_load
-    w = np.array(curves.design.relative_speeds)
-    parts = (
-        ("figure-9", "Figure 9: k*, both excitations", "K", True, "k* (k = K)"),
-        ("figure-9-newton-per-metre", "Figure 9 in N/m: K, both excitations", "K", False, "K [10⁶ N/m]"),
-        ("figure-9-with-inertia", "Figure 9 for k = |Z|, which holds the inertia", "|Z|", True, "k* (k = |Z|)"),
-    )
-    found = []
-    for name, title, measure, star, label in parts:
-        panels = []
-        for tilt in TILTS:
-            settings = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
-            lines = {pair: setting for pair, setting in settings.items() if (setting, load) in curves.rows}
-            panels.append(_excitation_panel(curves, w, lines, load, measure, star, label))
-        found.append(Picture(name, f"{title}, {load:g} N, {kind} bodies", tuple(panels)))
-    return found
+    load, w = curves.design.scene_load, np.array(curves.design.relative(curves.design.speeds))
+    settings = {pair: Setting(*pair, tilt, True, kind) for pair in _PAIRS}
+    run = {pair: curves.curve(setting, load) for pair, setting in settings.items() if (setting, load) in curves.rows}
+    light = {pair: curves.curve(attrs.evolve(settings[pair], inertia=False), load) for pair in CLAIMED}
 
+    def k(curve: Any, status: str = "completed") -> np.ndarray:
+        return np.asarray(curve.values(measure, status) / (curve.values(measure)[0] if star else 1e6))
 
-def _excitation_panel(
-    curves: Curves, w: np.ndarray, lines: dict[tuple[str, str], Setting], load: float, measure: str, star: bool, label: str
-) -> Panel:  # fmt: skip
-    tilt = TILT_WORDS[next(iter(lines.values())).tilt]
+    lines = [Line(w, k(curve), "--", _PAIRS[pair][0], 1.1, None, False, True) for pair, curve in light.items()]
+    lines += [Line(w, k(curve), style, colour, width, name, bridged=True)
+              for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
 
-    def taken(setting: Setting, values: np.ndarray) -> np.ndarray:
-        return np.asarray(values / curves.values(setting, load, measure)[0] if star else values / 1e6)
-
-    light = {pair: attrs.evolve(lines[pair], inertia=False) for pair in CLAIMED}
-
-    def draw(axes: Axes) -> None:
-        for pair, setting in light.items():
-            steady = taken(setting, curves.values(setting, load, measure))
-            known = np.isfinite(steady)
-            axes.plot(w[known], steady[known], "--", color=_PAIRS[pair][0], linewidth=1.1)
-        for pair, setting in lines.items():
-            colour, style, width, name = _PAIRS[pair]
-            steady = taken(setting, curves.values(setting, load, measure))
-            known = np.isfinite(steady)
-            axes.plot(w[known], steady[known], style, marker="o", markersize=3, color=colour, linewidth=width, label=name)
-        cut(axes, [taken(s, curves.values(s, load, measure)) for s in (*lines.values(), *light.values())])
-        for pair, setting in lines.items():
-            crosses = np.clip(taken(setting, curves.unstable(setting, load, measure)), *axes.get_ylim())
+    def unstable(axes: Axes) -> None:
+        # Limits by the steady motions: an unstable one far away must not flatten them.
+        values = np.concatenate([line.y for line in lines])
+        values = values[np.isfinite(values)]
+        if values.size:
+            room = 0.07 * max(values.max() - values.min(), 0.01 * abs(values.max()))
+            axes.set_ylim(values.min() - room, values.max() + room)
+        for pair, curve in run.items():
+            crosses = np.clip(k(curve, "unstable"), *axes.get_ylim())
             axes.plot(w, crosses, "x", color=_PAIRS[pair][0], markersize=6, zorder=1, clip_on=False)
-        finish(axes, f"{tilt}, {load:g} N", _SPEED, label, legend=2)
 
-    words = "; ".join(f"{_PAIRS[pair][3]}: {ends(taken(s, curves.values(s, load, measure)))}" for pair, s in lines.items())
-    alternative = f"{label} over w* from 0 to 1, {tilt}: {words}"
-    bad = [curves.unstable(setting, load, measure) for setting in lines.values()]
     caption = "Dashed: the same with weightless balls."
-    if np.isfinite(bad).any():
+    if any(np.isfinite(curve.values(measure, "unstable")).any() for curve in run.values()):
         caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
-    gaps = {
-        f"{row['speed_rpm']:g}" for s in lines.values() for row in curves.rows[s, load] if row["status"] == Status.UNSTEADY
-    }
+    gaps = {f"{row['speed_rpm']:g}" for curve in run.values() for row in curve.rows if row["status"] == Status.UNSTEADY}
     if gaps:
         caption += f" No steady motion is found at {', '.join(sorted(gaps))} r/min; what a ring does there stands in the last table."
-    return Panel(draw, alternative, caption)
-
-
-def _curves_of(curves: Curves, kind: str, number: int, over: str, panel: Callable[..., Panel]) -> list[Picture]:
-    """Figure 10 or 11: k* and K in N/m along one axis, a panel for each tilt boundary; dashed without ball inertia."""
-    return [
-        Picture(
-            f"figure-{number}{name}",
-            f"Figure {number}{title} over {over}, rotating force m e w², {kind} bodies",
-            tuple(panel(curves, kind, tilt, star) for tilt in TILTS),
-        )
-        for name, title, star in (("", ": k*", True), ("-newton-per-metre", " in N/m: K", False))
-    ]
+    words = f"{label} over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends({_PAIRS[pair][3]: k(curve) for pair, curve in run.items()})}"
+    return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption, unstable)
 
 
 def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
-    w, places = np.array(curves.design.relative_speeds), _some(curves.design.loads)
-    names = [f"{load:g} N" for load in curves.design.loads]
+    """Figure 10: at several axial loads; dashed without ball inertia."""
+    w, shown = np.array(curves.design.relative(curves.design.speeds)), _spread(curves.design.loads)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label = _STAR if star else _STIFFNESS
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    for row, colour in zip(shown, _colours(len(shown)), strict=True):
+        lines += [Line(w, k[row], "-", colour, 2.0, marked=False), Line(w, light[row], "--", colour, 1.1, marked=False)]
+        names[f"{curves.design.loads[row]:g} N"] = k[row]
 
-    def draw(axes: Axes) -> None:
-        ends = []
-        for place, colour in zip(places, colours(len(places)), strict=True):
-            axes.plot(w, k[place], "-", color=colour, linewidth=2.0)
-            axes.plot(w, light[place], "--", color=colour, linewidth=1.1)
-            ends.append((float(k[place][-1]), names[place], colour))
+    def ends(axes: Axes) -> None:
         if star:
-            axes.axhline(1.0, color="#8794a0", linewidth=0.8)
+            _reference(axes)
         axes.set_xlim(0.0, 1.2)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
-        finish(axes, TILT_WORDS[tilt], _SPEED, label)
-        end_labels(axes, 1.0, ends)
+        labels = [(float(line.y[-1]), name, line.colour) for name, line in zip(names, lines[::2], strict=True)]
+        _end_labels(axes, 1.0, labels)
 
-    words = "; ".join(f"{names[place]}: {ends(k[place])}" for place in places)
-    return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {words}", "Dashed: weightless balls.")
+    words = f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {_ends(names)}"
+    return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 0, words, "Dashed: weightless balls.", ends)
 
 
 def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
-    loads, places = np.array(curves.design.loads), _some(curves.design.speeds)
-    names = [f"w* = {w:.2g}" for w in curves.design.relative_speeds]
+    """Figure 11: at several speeds; dashed without ball inertia."""
+    loads, shown = np.array(curves.design.loads), _spread(curves.design.speeds)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label = _STAR if star else _STIFFNESS
-
-    def draw(axes: Axes) -> None:
-        for place, colour in zip(places, colours(len(places)), strict=True):
-            axes.plot(loads, light[:, place], "--", color=colour, linewidth=1.1)
-            axes.plot(loads, k[:, place], "-o", markersize=3, color=colour, linewidth=1.9, label=names[place])
-        finish(axes, TILT_WORDS[tilt], _LOAD, label, legend=3)
-
-    words = "; ".join(f"{names[place]}: {ends(k[:, place])}" for place in places)
-    return Panel(draw, f"{label} over the axial load, {TILT_WORDS[tilt]}: {words}", "Dashed: weightless balls.")
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    for column, colour in zip(shown, _colours(len(shown)), strict=True):
+        name = f"w* = {curves.design.relative(curves.design.speeds)[column]:.2g}"
+        lines.append(Line(loads, light[:, column], "--", colour, 1.1, marked=False))
+        lines.append(Line(loads, k[:, column], "-", colour, 1.9, name))
+        names[name] = k[:, column]
+    words = f"{label} over the axial load, {TILT_WORDS[tilt]}: {_ends(names)}"
+    return _panel(lines, (TILT_WORDS[tilt], _LOAD, label), 3, words, "Dashed: weightless balls.")
 
 
 def _with_and_without_inertia(curves: Curves, kind: str, tilt: str, star: bool) -> list[np.ndarray]:
-    return [_surface(curves, Setting(**ROTATING, tilt=tilt, inertia=i, bodies=kind), star) for i in (True, False)]
+    return [
+        _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=inertia, bodies=kind), star) for inertia in (True, False)
+    ]
 
 
 def _surface(curves: Curves, setting: Setting, star: bool) -> np.ndarray:
     """(loads, speeds) k* or k [10^6 N/m]."""
-    values = curves.surface(setting)[0]
+    values = curves.surface(setting).values()
     return np.asarray(values / values[:, :1] if star else values / 1e6)
 
 
-def _surfaces(curves: Curves, kind: str) -> list[Picture]:
-    """Figure 12: k* over speed and axial load, as a map; K in N/m as a surface."""
-    found = []
-    for inertia, name, title in (
-        (True, "figure-12", "ball inertia"),
-        (False, "figure-12-weightless-balls", "weightless balls"),
-    ):
-        panels = tuple(_map(curves, Setting(**ROTATING, tilt=tilt, inertia=inertia, bodies=kind)) for tilt in TILTS)
-        found.append(Picture(name, f"Figure 12: k* over speed and axial load, {title}, {kind} bodies", panels))
-    panels = tuple(_solid(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind)) for tilt in TILTS)
-    found.append(Picture("figure-12-newton-per-metre", f"Figure 12 in N/m: K, {kind} bodies", panels))
-    return found
-
-
 def _map(curves: Curves, setting: Setting) -> Panel:
-    w, loads = np.array(curves.design.relative_speeds), np.array(curves.design.loads)
+    """Figure 12: k* over speed and axial load."""
+    w, loads = np.array(curves.design.relative(curves.design.speeds)), np.array(curves.design.loads)
     star = _surface(curves, setting, True)
-    known = np.isfinite(star)
+    finite = star[np.isfinite(star)]
 
     def draw(axes: Axes) -> None:
         finish(axes, TILT_WORDS[setting.tilt], _SPEED, _LOAD)
         axes.grid(False)
-        if not known.any():
+        if not finite.size:
             axes.text(0.5, 0.5, "no number", transform=axes.transAxes, ha="center")
             return
-        size = max(float(np.abs(star[known] - 1.0).max()), 1e-6)
+        size = max(float(np.abs(finite - 1.0).max()), 1e-6)
         shown = np.ma.masked_invalid(star)
         axes.contourf(w, loads, shown, levels=np.linspace(1.0 - size, 1.0 + size, 41), cmap="RdBu_r", alpha=0.9)
         if size > LEVEL:
@@ -325,13 +320,14 @@ def _map(curves: Curves, setting: Setting) -> Panel:
 
 
 def _range(values: np.ndarray) -> str:
-    known = values[np.isfinite(values)]
-    return f"{known.min():.3f} to {known.max():.3f}" if known.size else "no number"
+    finite = values[np.isfinite(values)]
+    return f"{finite.min():.3f} to {finite.max():.3f}" if finite.size else "no number"
 
 
 def _solid(curves: Curves, setting: Setting) -> Panel:
-    w, loads = np.meshgrid(curves.design.relative_speeds, curves.design.loads)
-    k, light = (_surface(curves, attrs.evolve(setting, inertia=i), False) for i in (True, False))
+    """Figure 12 in N/m: K over speed and axial load, a surface."""
+    w, loads = np.meshgrid(curves.design.relative(curves.design.speeds), curves.design.loads)
+    k, light = (_surface(curves, attrs.evolve(setting, inertia=inertia), False) for inertia in (True, False))
 
     def draw(axes: Any) -> None:
         if np.isfinite(k).all():
@@ -341,9 +337,8 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         if np.isfinite(light).all():
             axes.plot_wireframe(w, loads, light, color="#c8501e", linewidth=0.6)
         axes.set_title(TILT_WORDS[setting.tilt], fontsize=11)
-        axes.set_xlabel(_SPEED, fontsize=9)
-        axes.set_ylabel(_LOAD, fontsize=9)
-        axes.set_zlabel(_STIFFNESS, fontsize=9)
+        for name, label in (("x", _SPEED), ("y", _LOAD), ("z", _STIFFNESS)):
+            getattr(axes, f"set_{name}label")(label, fontsize=9)
         axes.tick_params(labelsize=8)
         axes.set_xticks([0.0, 0.5, 1.0])
         axes.set_yticks([loads.min(), 0.5 * (loads.min() + loads.max()), loads.max()])
@@ -355,85 +350,59 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
     return Panel(draw, words, "Red wires: weightless balls.", solid=True)
 
 
-def _friction(curves: Curves) -> Picture:
-    """k* over speed without friction, and with it on balls that stand and that orbit, at the lightest and heaviest load."""
-    panels = tuple(_friction_panel(curves, tilt) for tilt in TILTS)
-    title = f"What friction does: k* over speed, rotating force m e w², coefficient {curves.design.friction:g}"
-    return Picture("friction", title, panels)
+def _friction(curves: Curves, tilt: str) -> Panel:
+    """k* over speed without friction, and with it on balls that stand and that orbit, at the heaviest and the lightest load."""
+    design, lines, names = curves.design, list[Line](), {}
+    for load, style in ((design.loads[-1], "-"), (design.loads[0], "--")):
+        for friction in design.frictions:
+            setting = Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
+            star, w = curves.curve(setting, load).normalised(), np.array(design.relative(design.speeds_of(setting)))
+            label = FRICTION_WORDS[friction] if style == "-" else None
+            lines.append(Line(w, star, style, _FRICTION_COLOURS[friction], 1.7, label, bridged=True))
+            names[f"{load:g} N, {FRICTION_WORDS[friction]}"] = star
+    words = f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends(names)}"
+    caption = f"Solid: {design.loads[-1]:g} N. Dashed: {design.loads[0]:g} N."
+    return _panel(lines, (TILT_WORDS[tilt], _SPEED, _STAR), 1, words, caption, _reference)
 
 
-def _friction_panel(curves: Curves, tilt: str) -> Panel:
-    loads = (curves.design.loads[-1], curves.design.loads[0])
-    lines = {
-        (friction, load): Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
-        for load in loads
-        for friction in curves.design.frictions
-    }
-    colours = dict(zip(FRICTIONS, ("#55636f", "#c8501e", "#0b5fa5"), strict=True))
-
-    def draw(axes: Axes) -> None:
-        for (friction, load), setting in lines.items():
-            w, star = np.array(curves.design.relative_speeds_of(setting)), curves.normalised(setting, load)
-            known = np.isfinite(star)
-            style, name = ("-", FRICTION_WORDS[friction]) if load == loads[0] else ("--", None)
-            axes.plot(
-                w[known], star[known], style, marker="o", markersize=3, color=colours[friction], linewidth=1.7, label=name
-            )
-        axes.axhline(1.0, color="#8794a0", linewidth=0.8)
-        finish(axes, TILT_WORDS[tilt], _SPEED, _STAR, legend=1)
-
-    words = "; ".join(
-        f"{load:g} N, {FRICTION_WORDS[friction]}: {ends(curves.normalised(setting, load))}"
-        for (friction, load), setting in lines.items()
-    )
-    caption = f"Solid: {loads[0]:g} N. Dashed: {loads[1]:g} N."
-    return Panel(draw, f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {words}", caption)
+def _reference(axes: Axes) -> None:
+    axes.axhline(1.0, color=_REFERENCE, linewidth=0.8)
 
 
 def _tilt_stiffness(study: Article) -> Picture:
-    """k*(1) over the tilt stiffness: what decides whether the bearing hardens."""
-    lines = {load: hardening(rows) for load, rows in study.scan.items()}
+    """k*(1) over the tilt stiffness, which decides whether the bearing hardens."""
+    ratios = {f"{load:g} N": trends.hardening(rows) for load, rows in study.scan.items()}
     shaft = study.curves.design.shaft
 
     def draw(axes: Axes) -> None:
-        for (load, ratio), colour in zip(lines.items(), colours(len(lines)), strict=True):
-            axes.semilogx(runs.STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=f"{load:g} N")
-        axes.axhline(1.0, color="#8794a0", linewidth=0.8)
-        axes.axvline(shaft, color="#8794a0", linewidth=0.8, linestyle="--")
+        for (name, ratio), colour in zip(ratios.items(), _colours(len(ratios)), strict=True):
+            axes.semilogx(trends.STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=name)
+        _reference(axes)
+        axes.axvline(shaft, color=_REFERENCE, linewidth=0.8, linestyle="--")
         axes.annotate("shaft", (shaft, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
                       fontsize=9, color="#55636f")  # fmt: skip
         axes.set_title("Hardening (above 1) or softening", fontsize=11)
         axes.set_xlabel("tilt stiffness of the shaft [N m/rad]", fontsize=10)
         axes.set_ylabel("k* at w* = 1", fontsize=10)
         axes.tick_params(labelsize=9)
-        axes.grid(color=GRID, linewidth=0.7)
+        axes.grid(color=_GRID, linewidth=0.7)
         axes.legend(fontsize=9, frameon=False)
 
-    words = "; ".join(f"{load:g} N: {ends(ratio)}" for load, ratio in lines.items())
-    panel = Panel(draw, f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {words}", "")
-    return Picture("tilt-stiffness", "What decides the trend: the tilt stiffness of the shaft", (panel,))
-
-
-def _bodies(curves: Curves) -> Picture:
-    """Rigid and condensed bodies: the trend, and how much stiffer the one is than the other."""
-    panels = [_both_bodies(curves, tilt, star) for star in (True, False) for tilt in TILTS]
-    return Picture("bodies", "Rigid and condensed bodies, rotating force m e w², ball inertia", tuple(panels))
+    words = f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {_ends(ratios)}"
+    return Picture("tilt-stiffness", "What decides the trend: the tilt stiffness of the shaft", (Panel(draw, words, ""),))
 
 
 def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
-    w, places = np.array(curves.design.relative_speeds), _some(curves.design.loads, 3)
-    first, second = (
-        _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star) for kind in curves.design.bodies
-    )
-    names = curves.design.bodies
-    lines = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
+    """Rigid and condensed bodies: the trend, or how much stiffer the former are than the latter."""
+    design, names = curves.design, curves.design.bodies
+    w, shown = np.array(design.relative(design.speeds)), _spread(design.loads, 3)
+    first, second = (_surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star) for kind in names)
+    surfaces = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
     label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
-
-    def draw(axes: Axes) -> None:
-        for (name, values), style in zip(lines.items(), ("--" if star else "-", "-"), strict=False):
-            for k, colour in zip(places, colours(len(places)), strict=True):
-                axes.plot(w, values[k], style, color=colour, linewidth=1.7, label=f"{curves.design.loads[k]:g} N{name}")
-        finish(axes, TILT_WORDS[tilt], _SPEED, label, legend=2 if star else 3)
-
-    words = "; ".join(f"{curves.design.loads[k]:g} N{name}: {ends(v[k])}" for name, v in lines.items() for k in places)
-    return Panel(draw, f"{label} over w*, {TILT_WORDS[tilt]}: {words}", "")
+    lines = [
+        Line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
+        for (name, values), style in zip(surfaces.items(), ("--" if star else "-", "-"), strict=False)
+        for row, colour in zip(shown, _colours(len(shown)), strict=True)
+    ]
+    words = f"{label} over w*, {TILT_WORDS[tilt]}: {_ends({str(line.label): line.y for line in lines})}"
+    return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 2 if star else 3, words)

@@ -1,8 +1,18 @@
-"""Rules of the claims as functions of arrays, regions in which they hold, exponents of power laws, and the verdict that follows.
+"""Rules of the claims as functions of arrays, exponents of power laws, regions in which a rule holds, and the verdict that follows.
 
-A rule returns None where numbers are missing.
-A number that is missing is nan.  Where ``failed`` is True a run failed or was refused: nothing is judged over such a gap.  The
-other numbers that are missing belong to unstable motions: those between two numbers are bridged, those at an end leave no judgement.
+A rule returns None where numbers are missing.  A number that is missing is nan.  Where ``failed`` is True a run failed or was
+refused: nothing is judged over such a gap.  The other numbers that are missing belong to unstable motions: those between two
+numbers are bridged, those at an end leave no judgement.
+
+Notes
+-----
+For each exponent p a power law is linear in its other numbers.  The interval of p holds every exponent whose sum of squared
+residuals stays below S (1 + t^2 / (n - m)) + 3.84 e^2: S is the least sum, e the root mean square of the runs' errors, n numbers,
+m parameters, t Student's and 3.84 chi squared at 95 %.
+
+References
+----------
+Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of squares).
 """
 
 from __future__ import annotations
@@ -32,63 +42,52 @@ def course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | 
     ----------
     values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failed : (n,) bool
     """
-    if failed.any():
+    finite = np.isfinite(values)
+    if failed.any() or not (finite[0] and finite[-1] and finite.sum() >= 3):
         return None
-    known = np.isfinite(values)
-    if not (known[0] and known[-1] and known.sum() >= 3):
-        return None
-    y = values[known]
+    y = values[finite]
     if np.ptp(y) < LEVEL * abs(y[0]):
         return "level"
-    found = trend(y, errors[known])
-    return found if found == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
+    steps = trend(y, errors[finite])
+    return steps if steps == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
 
 
 def about(value: float, target: float) -> bool:
     return abs(value - target) <= ABOUT * target
 
 
-def change_within(
-    relative_speed: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float
-) -> float | None:
-    """k(last) / k(first) - 1, between neighbours by straight lines; None with a failed run or without numbers around them."""
-    if failed.any():
-        return None
-    known = np.isfinite(values)
-    w, k = relative_speed[known], values[known]
-    if len(w) < 2 or first < w[0] or last > w[-1]:
-        return None
-    ends = np.interp([first, last], w, k)
-    return float(ends[1] / ends[0] - 1.0)
+def change_within(w: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+    """k(last) / k(first) - 1 over the relative speed w (n,); None with a failed run or without numbers around both ends."""
+    ends = None if failed.any() else _between(w, values, np.array([first, last]))
+    return None if ends is None else float(ends[1] / ends[0] - 1.0)
 
 
-def spread(relative_speed: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
-    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it.
-
-    Between neighbours by straight lines; None with a failed run or without numbers around the zone's ends.
+def spread(w: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it; None as in ``change_within``.
 
     Parameters
     ----------
     surface : (loads, speeds), positive;  failed : (loads, speeds) bool
     """
-    if failed.any():
+    zone = np.array([first, *w[(w > first) & (w < last)], last])
+    rows = [None if failed.any() else _between(w, values, zone) for values in surface]
+    complete = [row for row in rows if row is not None]
+    if len(complete) < len(rows):
         return None
-    inside = (relative_speed > first) & (relative_speed < last)
-    places = np.array([first, *relative_speed[inside], last])
-    zone = []
-    for values in surface:
-        known = np.isfinite(values)
-        w = relative_speed[known]
-        if len(w) < 2 or first < w[0] or last > w[-1]:
-            return None
-        zone.append(np.interp(places, w, values[known]))
-    return float((np.max(zone, axis=0) / np.min(zone, axis=0) - 1.0).max())
+    return float((np.max(complete, axis=0) / np.min(complete, axis=0) - 1.0).max())
+
+
+def _between(w: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray | None:
+    """Values at ascending points, between neighbours by straight lines; None where they do not reach both ends."""
+    finite = np.isfinite(values)
+    w, values = w[finite], values[finite]
+    return None if len(w) < 2 or at[0] < w[0] or at[-1] > w[-1] else np.interp(at, w, values)
 
 
 def rises_with_load(surface: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> list[bool | None]:
     """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
-    found = [course(surface[:, k], errors[:, k], failed[:, k]) for k in range(surface.shape[1])]
-    return [None if one is None else one == "rises" for one in found]
+    courses = [course(*column) for column in zip(surface.T, errors.T, failed.T, strict=True)]
+    return [None if outcome is None else outcome == "rises" for outcome in courses]
 
 
 def influence(surface: np.ndarray) -> np.ndarray:
@@ -98,12 +97,10 @@ def influence(surface: np.ndarray) -> np.ndarray:
 
 def influence_grows(surface: np.ndarray, failed: np.ndarray) -> bool | None:
     """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds) each."""
-    if failed.any():
+    size = influence(surface)
+    if failed.any() or not np.isfinite(size).all():
         return None
-    found = influence(surface)
-    if not np.isfinite(found).all():
-        return None
-    return bool((np.diff(found) > 0.0).all())
+    return bool((np.diff(size) > 0.0).all())
 
 
 _EXPONENTS = np.linspace(0.05, 30.0, 2996)
@@ -125,9 +122,6 @@ class Exponent:
         """Nearer to 2 than to any other whole number, and no straight line."""
         return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= STRAIGHT <= self.high
 
-    def __str__(self) -> str:
-        return f"{self.value:.2f} ({self.low:.2f} to {self.high:.2f})"
-
 
 def exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> Exponent | None:
     """p of y = c x^p, or of y = a + c x^p with a ``constant``; None where the numbers are too few for an interval.
@@ -136,25 +130,22 @@ def exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -
     ----------
     x : (n,) positive;  y : (n,), nan where a number is missing;  errors : (n,) absolute
     """
-    known = np.isfinite(y)
-    x, y, errors = x[known], y[known], errors[known]
+    finite = np.isfinite(y)
+    x, y, errors = x[finite], y[finite], errors[finite]
     free = len(y) - 2 - constant
     if free < 1:
         return None
-    sums = _rests(x[None, :] ** _EXPONENTS[:, None], y, constant)
+    sums = _residuals(x[None, :] ** _EXPONENTS[:, None], y, constant)
     best = int(np.argmin(sums))
     limit = sums[best] * (1.0 + stdtrit(free, _CHANCE) ** 2 / free) + _CHI_SQUARED * float((errors**2).mean())
     inside = _EXPONENTS[sums <= limit]
-    # The grid's own step is the least interval that can be told.
-    step = _EXPONENTS[1] - _EXPONENTS[0]
-    low, high = (
-        min(inside.min(initial=np.inf), _EXPONENTS[best] - step),
-        max(inside.max(initial=0.0), _EXPONENTS[best] + step),
-    )
-    return Exponent(float(_EXPONENTS[best]), float(low), float(high))
+    # No interval is narrower than the step of the grid.
+    value, step = _EXPONENTS[best], _EXPONENTS[1] - _EXPONENTS[0]
+    low, high = min(inside.min(initial=np.inf), value - step), max(inside.max(initial=0.0), value + step)
+    return Exponent(float(value), float(low), float(high))
 
 
-def _rests(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
+def _residuals(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
     """Sums of squares (k,) that y (n,) leaves beside the best multiple of each power (k, n), about the means with a constant."""
     if constant:
         powers, y = powers - powers.mean(axis=1, keepdims=True), y - y.mean()
@@ -167,7 +158,7 @@ _ORDER = ("case", "friction", "tilt", "inertia", "bodies", "speed", "load")
 
 @attrs.frozen
 class Finding:
-    """A rule at one place.
+    """Outcome of a rule for one model, load or speed.
 
     Attributes
     ----------
@@ -186,85 +177,78 @@ class Finding:
 
 
 def where(findings: Sequence[Finding], holds: bool | None) -> str:
-    """The places with one outcome; "everywhere", "nowhere", or phrases between semicolons."""
-    keys = [key for key in _ORDER if any(key in one.at for one in findings)]
-    leaves = _leaves([(dict(one.at), one.holds is holds) for one in findings], keys)
-    if leaves is None:
+    """The region with one outcome; "everywhere", "nowhere", or phrases between semicolons."""
+    keys = [key for key in _ORDER if any(key in finding.at for finding in findings)]
+    phrases = _phrases([(dict(finding.at), finding.holds is holds) for finding in findings], keys)
+    if phrases is None:
         return "nowhere"
-    return "; ".join(leaves) if leaves != [""] else "everywhere"
+    return "; ".join(phrases) if phrases != [""] else "everywhere"
 
 
-def _leaves(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | None:
+def _phrases(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | None:
     """[""] for all of the items, None for none, else a phrase for each part."""
-    if all(chosen for _, chosen in items):
+    if all(inside for _, inside in items):
         return [""]
-    if not any(chosen for _, chosen in items) or not keys:
+    if not any(inside for _, inside in items) or not keys:
         return None
-    key, rest = keys[0], keys[1:]
+    key, *remaining = keys
     values = list(dict.fromkeys(at.get(key) for at, _ in items))
-    below = {value: _leaves([item for item in items if item[0].get(key) == value], rest) for value in values}
-    if len({str(one) for one in below.values()}) == 1:
+    below = {value: _phrases([item for item in items if item[0].get(key) == value], remaining) for value in values}
+    if len({str(part) for part in below.values()}) == 1:
         return below[values[0]]
-    found: list[str] = []
-    for leaf in dict.fromkeys(str(one) for one in below.values() if one is not None):
-        same = [value for value in values if str(below[value]) == leaf]
+    phrases: list[str] = []
+    for text in dict.fromkeys(str(part) for part in below.values() if part is not None):
+        same = [value for value in values if str(below[value]) == text]
         name = _named(key, same, values)
-        found += [f"{name}, {phrase}" if phrase else name for phrase in below[same[0]] or []]
-    return found
+        phrases += [f"{name}, {phrase}" if phrase else name for phrase in below[same[0]] or []]
+    return phrases
 
 
-def _named(key: str, chosen: Sequence[Any], every: Sequence[Any]) -> str:
+def _named(key: str, values: Sequence[Any], every: Sequence[Any]) -> str:
+    """Some of all values of a key, in words."""
     if key == "tilt":
-        words = [TILT_WORDS[value].removeprefix("tilt ") for value in chosen]
-        return "tilt " + " or ".join(words)
+        return "tilt " + " or ".join(TILT_WORDS[value].removeprefix("tilt ") for value in values)
     if key == "friction":
-        return " or ".join(FRICTION_WORDS[value] for value in chosen)
+        return " or ".join(FRICTION_WORDS[value] for value in values)
     if key == "inertia":
-        return "with ball inertia" if chosen[0] else "weightless balls"
+        return "with ball inertia" if values[0] else "weightless balls"
     if key == "bodies":
-        return f"{' or '.join(chosen)} bodies"
+        return f"{' or '.join(values)} bodies"
     if key in ("load", "speed"):
-        return _ranges(chosen, every, "N" if key == "load" else "r/min")
-    return " or ".join(str(value) for value in chosen)
+        return _ranges(values, every, "N" if key == "load" else "r/min")
+    return " or ".join(str(value) for value in values)
 
 
-def _ranges(chosen: Sequence[float], every: Sequence[float], unit: str) -> str:
+def _ranges(values: Sequence[float], every: Sequence[float], unit: str) -> str:
     """Neighbours as one range."""
-    runs: list[list[float]] = []
+    runs: list[list[float]] = [[]]
     for value in every:
-        if value not in chosen:
-            runs.append([])
-        elif not runs or not runs[-1]:
-            runs.append([value])
-        else:
+        if value in values:
             runs[-1].append(value)
+        elif runs[-1]:
+            runs.append([])
     words = [f"{run[0]:g}" if len(run) == 1 else f"{run[0]:g} to {run[-1]:g}" for run in runs if run]
     return f"{' and '.join(words)} {unit}"
 
 
 def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", form: str = ".3f") -> str:
     """The range of the values at each tilt boundary, for each kind of friction."""
-    kinds = list(dict.fromkeys(one.at.get("friction") for one in findings))
-    told = [_by_tilt([one for one in findings if one.at.get("friction") == kind], scale, unit, form) for kind in kinds]
-    if len(kinds) < 2:
-        return "".join(told)
-    return ". ".join(f"{FRICTION_WORDS[str(kind)].capitalize()}: {text}" for kind, text in zip(kinds, told, strict=True))
-
-
-def _by_tilt(findings: Sequence[Finding], scale: float, unit: str, form: str) -> str:
-    parts = []
-    for tilt in dict.fromkeys(one.at["tilt"] for one in findings):
-        values = [scale * one.value for one in findings if one.at["tilt"] == tilt and one.value is not None]
-        if not values:
-            parts.append(f"{TILT_WORDS[tilt]}: no number")
-            continue
-        low, high = (f"{value:{form}}" for value in (min(values), max(values)))
-        parts.append(f"{TILT_WORDS[tilt]}: {low if low == high else f'{low} to {high}'}{unit}")
-    return "; ".join(parts)
+    texts = {}
+    for friction in dict.fromkeys(finding.at.get("friction") for finding in findings):
+        some = [finding for finding in findings if finding.at.get("friction") == friction]
+        parts = []
+        for tilt in dict.fromkeys(finding.at["tilt"] for finding in some):
+            values = [scale * f.value for f in some if f.at["tilt"] == tilt and f.value is not None]
+            ends = dict.fromkeys(f"{value:{form}}" for value in (min(values), max(values))) if values else {}
+            parts.append(f"{TILT_WORDS[tilt]}: {' to '.join(ends)}{unit}" if ends else f"{TILT_WORDS[tilt]}: no number")
+        texts[str(friction)] = "; ".join(parts)
+    if len(texts) < 2:
+        return "".join(texts.values())
+    return ". ".join(f"{FRICTION_WORDS[friction].capitalize()}: {text}" for friction, text in texts.items())
 
 
 HOLDS, PARTLY, NOT, FAILED, UNTESTED = "holds", "holds only for", "does not hold", "failed", "cannot be tested"
-#: What every rule does with numbers that are missing; the rules do it, here it is said.
+#: How every rule treats numbers that are missing; the rules do it, this tells the reader.
 BRIDGED = "unstable motions between the ends are left out, a failed run leaves no judgement"
 
 
@@ -290,32 +274,33 @@ class Verdict:
     failed: str = ""
     findings: tuple[Finding, ...] = ()
 
-    @property
-    def words(self) -> str:
-        return f"{self.kind} {self.region}" if self.region else self.kind
+    def row(self) -> Tables:
+        """As a row of a flat table."""
+        words = f"{self.kind} {self.region}" if self.region else self.kind
+        return {**attrs.asdict(self, filter=lambda field, _: field.name != "findings"), "verdict": words}
 
     def to_dict(self) -> Tables:
-        plain = attrs.asdict(self, filter=lambda field, _: field.name != "findings")
-        return {**plain, "verdict": self.words, "findings": [one.to_dict() for one in self.findings]}
+        return {**self.row(), "findings": [finding.to_dict() for finding in self.findings]}
 
 
 def judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:
-    """The verdict that follows from a rule's outcome at every place.
+    """The verdict that follows from the outcomes of a rule.
 
     Notes
     -----
-    Failed places never count as holding: with one of them a claim that holds everywhere else holds only for the rest.
+    Failed places never count as holding: with one of them a claim that holds everywhere else holds only for the remaining ones.
     """
-    judged = [one for one in findings if one.holds is not None]
-    failed = ""
+    judged = [finding.holds for finding in findings if finding.holds is not None]
+    failed = region = ""
     if len(judged) < len(findings):
-        reason = next(one.why for one in findings if one.holds is None)
+        reason = next(finding.why for finding in findings if finding.holds is None)
         failed = f"{where(findings, None)} (the first reason: {reason or 'a run is missing'})"
     if not judged:
         kind = FAILED
-    elif not any(one.holds for one in judged):
+    elif not any(judged):
         kind = NOT
+    elif all(finding.holds for finding in findings):
+        kind = HOLDS
     else:
-        kind = HOLDS if all(one.holds for one in findings) else PARTLY
-    region = where(findings, True) if kind == PARTLY else ""
+        kind, region = PARTLY, where(findings, True)
     return Verdict(number, claim, rule, computed, kind, region, failed, tuple(findings))
