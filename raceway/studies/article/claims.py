@@ -62,7 +62,8 @@ def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
     for measure in MEASURES:
         rows = [*_hardening(curves, measure), *_axial(curves, measure), *_combined(curves, measure)]
         mark, ending = ("", "") if measure == "K" else (f" {measure}", f" k = {measure}.")
-        out += [judge(f"{number}{mark}", f"{claim}{ending}", *judged) for number, claim, *judged in rows]
+        for number, claim, rule, computed, findings in rows:
+            out.append(judge(f"{number}{mark}", f"{claim}{ending}", rule, computed, findings))
     # Each claim for K, and at once for |Z|.
     return sorted(out, key=lambda verdict: verdict.number[0])
 
