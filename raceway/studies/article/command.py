@@ -33,7 +33,7 @@ from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
-    from raceway.cli.progress import ProgressBar
+    from raceway.out.progress import ProgressBar
     from raceway.framework.registry import Registry
     from raceway.storage.tables import Tables
 
