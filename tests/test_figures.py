@@ -131,7 +131,7 @@ def of_a_rig() -> list[Figure]:
             ]
             points.append(
                 SimpleNamespace(
-                    axial=axial, state=state, found=SimpleNamespace(state=state), readings=readings, causes=causes
+                    axial=axial, state=state, identified=SimpleNamespace(state=state), readings=readings, causes=causes
                 )
             )
     study = SimpleNamespace(points=points)

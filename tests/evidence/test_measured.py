@@ -157,8 +157,8 @@ def test_files(claim, tmp_path):
         loaded = with_number(SCENE, "load.axial", point.axial)
         signals, slow = (tmp_path / f"{kind}-{point.name}.csv" for kind in ("signals", "slow-roll"))
         back = identify(signals, loaded, slow_roll=slow)
-        stiffness.append(abs(back.state.stiffness / point.found.state.stiffness - 1.0))
-        wide.append(abs(back.uncertainty[0] / point.found.uncertainty[0] - 1.0))
+        stiffness.append(abs(back.state.stiffness / point.identified.state.stiffness - 1.0))
+        wide.append(abs(back.uncertainty[0] / point.identified.uncertainty[0] - 1.0))
         complete = record(RIG, response(RIG, own, state, drifting), drifting, 1)
         groups = len(complete.time) // 8
         part = complete.part(8 * np.arange(groups) + random.integers(0, 8, groups))

@@ -1,4 +1,4 @@
-"""``raceway study rig`` and ``raceway identify``.  Part of ``raceway.cli.main``."""
+"""``raceway study rig``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -55,28 +55,28 @@ def rig(
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
-    own = rig_of(loaded)
+    inputs = rig_of(loaded)
     folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
     pictures = pictures and has_matplotlib()
     tell_faults(registry)
-    kept = folder / "rig-rows.jsonl"
-    with keeping("points", kept):
+    rows = folder / "rig-rows.jsonl"
+    with keeping("points", rows):
         with show_progress() as progress:
             from raceway.pipeline.result import write_json
             from raceway.studies.rig.study import study
 
-            found = study(loaded, own, registry, progress, kept)
-        content, files = found.to_dict(), list[str]()
-        failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or found.fault
+            result = study(loaded, inputs, registry, progress, rows)
+        content, files = result.to_dict(), list[str]()
+        failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or result.fault
         if pictures and failed is None:
             from raceway.studies.rig.page import write_page
 
-            failed = attempt(lambda: write_page(found, folder), files)
+            failed = attempt(lambda: write_page(result, folder), files)
         if signals and failed is None:
-            written = list[str]()
-            failed = attempt(lambda: found.write_signals(folder), written)
-            files += [f"{len(written)} records, signals-*.csv and slow-roll-*.csv"] if written else []
+            records = list[str]()
+            failed = attempt(lambda: result.write_signals(folder), records)
+            files += [f"{len(records)} records, signals-*.csv and slow-roll-*.csv"] if records else []
     from raceway.studies.rig.page import rig_screen
 
     show(content, as_json, failed, lambda: rig_screen(content, files))
-    return 1 if found.failed else 0
+    return 1 if result.failed else 0

@@ -39,11 +39,11 @@ def procedures(study: RigStudy) -> Figure:
         points = [point for point in study.points if point.axial == axial]
         speeds = [30.0 / np.pi * point.state.speed for point in points]
         panel.plot(speeds, [1e-6 * p.state.stiffness for p in points], color="#1c2733", marker="o", label="true")
-        found = [1e-6 * p.found.state.stiffness for p in points]
-        panel.plot(speeds, found, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
-        for place, style in ((0, "--"), (3, ":"), (5, "-.")):
-            name = points[0].readings[place].correction
-            values = [1e-6 * p.readings[place].stiffness for p in points]
+        inverted = [1e-6 * p.identified.state.stiffness for p in points]
+        panel.plot(speeds, inverted, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
+        for k, style in ((0, "--"), (3, ":"), (5, "-.")):
+            name = points[0].readings[k].correction
+            values = [1e-6 * p.readings[k].stiffness for p in points]
             label = {"none": "no correction"}.get(name, name)
             panel.plot(speeds, values, color=_COLOURS[1], linestyle=style, marker=".", label=label)
         panel.set_title(f"{axial:g} N axial", fontsize=11)
@@ -64,11 +64,11 @@ def causes(study: RigStudy) -> Figure:
     names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
     figure = new_figure(9.2, 0.34 * len(names) + 1.1)
     axes: Axes = figure.subplots()
-    for row, (kind, what) in enumerate(reversed(names)):
-        errors = [100.0 * abs(c.error) for p in study.points for c in p.causes if (c.kind, c.what) == (kind, what)]
+    for row, name in enumerate(reversed(names)):
+        errors = [100.0 * abs(c.error) for p in study.points for c in p.causes if (c.kind, c.what) == name]
         sizes = np.maximum(errors, _LEAST_PERCENT)
-        axes.plot(sizes, np.full(len(sizes), row), "o", color=_KINDS[kind], markersize=5, alpha=0.75)
-    words = [fill(f"{kind}: {what}" if kind != "none" else what, 46) for kind, what in reversed(names)]
+        axes.plot(sizes, np.full(len(sizes), row), "o", color=_KINDS[name[0]], markersize=5, alpha=0.75)
+    words = [fill(f"{kind}: {text}" if kind != "none" else text, 46) for kind, text in reversed(names)]
     axes.set_yticks(range(len(names)), words, fontsize=8)
     axes.set_xscale("log")
     largest = 100.0 * max(abs(cause.error) for point in study.points for cause in point.causes)
@@ -89,13 +89,29 @@ def causes(study: RigStudy) -> Figure:
 _SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
 
 
-def rig_screen(study: ReadTables, files: Sequence[str]) -> RenderableType:
-    """A line for each speed and load: the true bearing, the article's procedure, the beam inverted."""
-    rows = [_point(row) for row in study["rows"]]
-    worst = study["worst"]
-    speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in study["critical_speed_rpm"].items())
-    parts: list[RenderableType] = [
-        Words(study["title"], "bold"),
+def rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """A row for each speed and load: the true bearing, the article's procedure, the beam inverted."""
+    worst, rows = content["worst"], []
+    for row in content["rows"]:
+        true, identified = row["true"], row["identified"]
+        ratios = {reading["correction"]: reading["over_true"] for reading in row["printed"]}
+        rows.append({
+            "r/min": f"{row['speed_rpm']:.0f}",
+            "axial N": f"{row['axial_n']:.0f}",
+            "x µm": f"{1e6 * true['deflection_m']:.2f}",
+            "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
+            "K N/µm": f"{1e-6 * true['equivalent_stiffness']:.2f}",
+            **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
+            "found %": f"{100 * identified['error']:+.3f}",
+            "+- %": f"{100 * identified['relative_uncertainty']:.2f}",
+        })  # fmt: skip
+    causes = [
+        {"cause": cause["kind"], "what": cause["what"], "error %": f"{100 * cause['error']:+.3g}"}
+        for cause in content["worst_by_cause"]
+    ]
+    speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in content["critical_speed_rpm"].items())
+    return Group(
+        Words(content["title"], "bold"),
         Words(f"first critical speed {speeds}", "dim"),
         rows_table(rows),
         Words(
@@ -104,32 +120,14 @@ def rig_screen(study: ReadTables, files: Sequence[str]) -> RenderableType:
         Words(
             f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
         ),
-        rows_table(_causes(study["worst_by_cause"]), "Largest error of K by one cause at a time"),
-    ]
-    parts += [
-        Words(f"failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", "red")
-        for one in study["failed"]
-    ]
-    return Group(*parts, *written(files))
+        rows_table(causes, "Largest error of K by one cause at a time"),
+        *(Words(f"failed: {_failed(point)}", "red") for point in content["failed"]),
+        *written(files),
+    )
 
 
-def _point(row: ReadTables) -> dict[str, str]:
-    true, found = row["true"], row["identified"]
-    ratios = {one["correction"]: one["over_true"] for one in row["printed"]}
-    return {
-        "r/min": f"{row['speed_rpm']:.0f}",
-        "axial N": f"{row['axial_n']:.0f}",
-        "x µm": f"{1e6 * true['deflection_m']:.2f}",
-        "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
-        "K N/µm": f"{1e-6 * true['equivalent_stiffness']:.2f}",
-        **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
-        "found %": f"{100 * found['error']:+.3f}",
-        "+- %": f"{100 * found['relative_uncertainty']:.2f}",
-    }
-
-
-def _causes(causes: Sequence[ReadTables]) -> list[dict[str, str]]:
-    return [{"cause": one["kind"], "what": one["what"], "error %": f"{100 * one['error']:+.3g}"} for one in causes]
+def _failed(point: ReadTables) -> str:
+    return f"{point['speed_rpm']:.0f} r/min, {point['axial_n']:.0f} N: {point['reason']}"
 
 
 def write_page(study: RigStudy, folder: Path) -> list[Path]:
@@ -140,12 +138,8 @@ def write_page(study: RigStudy, folder: Path) -> list[Path]:
     RacewayError
         matplotlib is missing, or a folder that cannot be written.
     """
-    first = study.points[0].found
-    drawn = {
-        "procedures": procedures(study),
-        **figures(first),
-        "error-split": causes(study),
-    }
+    record = figures(study.points[0].identified)
+    drawn = {"procedures": procedures(study), **record, "error-split": causes(study)}
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawn.items()]
     return [page(study, drawn).write(folder / "rig.html"), *files]
 
@@ -161,24 +155,27 @@ _ASSUMED = [
 
 def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
-    content = study.to_dict()
-    worst, rows, own = content["worst"], content["rows"], study.rig
-    out = Page(
-        f"What a sensor beside a bearing tells of it: {study.title}", _rig_words(study), f"Raceway {__version__}, study rig"
+    content, rig, signals = study.to_dict(), study.rig, study.rig.signals
+    worst, rows = content["worst"], content["rows"]
+    words = (
+        f"Shaft {1e3 * rig.shaft_length:g} mm long, {1e3 * rig.shaft_diameter:g} mm thick, disc of {rig.disc_mass:.3g} kg, bearings "
+        f"{1e3 * rig.span:g} mm apart, {1e3 * rig.unbalance_mass:g} g at {1e3 * rig.unbalance_radius:g} mm; sensor "
+        f"{1e3 * rig.sensor_distance:g} mm {rig.sensor_side} the tested bearing"
     )
+    out = Page(f"What a sensor beside a bearing tells of it: {study.title}", words, f"Raceway {__version__}, study rig")
     out.section("Result")
     out.text(
         f"Inverting the beam finds K within {100 * worst['clean']:.2g} % from clean signals, and within "
-        f"{100 * worst['disturbed']:.2g} % with noise of {own.signals.noise_db:g} dB, {1e6 * own.signals.drift:g} µm of drift and "
-        f"{1e6 * own.signals.run_out:g} µm of run-out, less what a slow roll shows.",
+        f"{100 * worst['disturbed']:.2g} % with noise of {signals.noise_db:g} dB, {1e6 * signals.drift:g} µm of drift and "
+        f"{1e6 * signals.run_out:g} µm of run-out, less what a slow roll shows.",
         kind="lead",
     )
-    out.table(*_truth(rows), caption="The tested bearing in the rig, and K as it is identified; uncertainty at 95 %")
-    out.figures(
-        [(drawn["procedures"], "K over speed for each axial load, true and by each procedure", "K by each procedure")]
-    )
-    for one in study.failed:
-        out.text(f"Failed: {one['speed_rpm']:.0f} r/min, {one['axial_n']:.0f} N: {one['reason']}", kind="note")
+    columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
+    out.table(columns, map(_truth, rows), "The tested bearing in the rig, and K as it is identified; uncertainty at 95 %")
+    seen = "K over speed for each axial load, true and by each procedure"
+    out.figures([(drawn["procedures"], seen, "K by each procedure")])
+    for point in study.failed:
+        out.text(f"Failed: {_failed(point)}", kind="note")
     out.section("The article's procedure")
     out.text(
         "Detrend, denoise, whole-turn Fourier transform, F = m e w²/2, less the shaft's deflection as printed, "
@@ -186,77 +183,43 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         "beam bends by m e w² a (3 L² - 4 a²) / (48 E I), which is the printed formula for an L of twice the span; the bearing's "
         "force is amplified, too, because the bow moves the disc outwards.",
     )
-    out.table(*_printed(rows), caption="K over the true K, by the correction for the shaft")
-    _signals(out, study, drawn)
+    names = [_name(row) for row in rows]
+    ratios = zip(*(row["printed"] for row in rows), strict=True)
+    lines = [[readings[0]["correction"], *(f"{reading['over_true']:.3f}" for reading in readings)] for readings in ratios]
+    out.table(["correction", *names], lines, "K over the true K, by the correction for the shaft")
+    _signals(out, rows, drawn, study.points[0].name)
     out.section("What is assumed")
     out.listing(_ASSUMED)
     return out
 
 
-def _signals(out: Page, study: RigStudy, drawn: dict[str, Figure]) -> None:
-    """Signals, spectrum and orbits; the error by its causes."""
+def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str) -> None:
+    """Signals, spectrum and orbits of a point; the error by its causes."""
     out.section("Signals")
-    out.figures(
-        [
-            (
-                drawn["signals"],
-                "gaps along y and z over four turns, and their drift",
-                f"The sensor at {study.points[0].name}",
-            ),
-            (drawn["spectrum"], "amplitude over orders, one peak at 1x forward", "Spectrum over orders"),
-            (
-                drawn["orbits"],
-                "orbits as circles: sensor, bow, bearing",
-                "Orbits: most of what the sensor sees is the shaft's bow",
-            ),
-        ]
-    )
+    out.figures([
+        (drawn["signals"], "gaps along y and z over four turns, and their drift", f"The sensor at {point}"),
+        (drawn["spectrum"], "amplitude over orders, one peak at 1x forward", "Spectrum over orders"),
+        (drawn["orbits"], "orbits as circles: sensor, bow, bearing", "Orbits: most of what the sensor sees is the shaft's bow"),
+    ])  # fmt: skip
     out.section("Where the error comes from")
     out.text("One cause at a time is switched on, all others off. Dashed: 1 % and 3 %; a dot for each speed and load.")
-    out.figures(
-        [(drawn["error-split"], "dots of error for each cause on a logarithmic scale", "Error of K by its causes")],
-        wide=True,
-    )
-    out.table(*_split(study.to_dict()["rows"]), caption="Error of K [%] by one cause at a time")
-
-
-def _rig_words(study: RigStudy) -> str:
-    rig = study.rig
-    return (
-        f"Shaft {1e3 * rig.shaft_length:g} mm long, {1e3 * rig.shaft_diameter:g} mm thick, disc of {rig.disc_mass:.3g} kg, bearings "
-        f"{1e3 * rig.span:g} mm apart, {1e3 * rig.unbalance_mass:g} g at {1e3 * rig.unbalance_radius:g} mm; sensor "
-        f"{1e3 * rig.sensor_distance:g} mm {rig.sensor_side} the tested bearing"
-    )
+    seen = "dots of error for each cause on a logarithmic scale"
+    out.figures([(drawn["error-split"], seen, "Error of K by its causes")], wide=True)
+    causes_of_points = zip(*(row["split"] for row in rows), strict=True)
+    lines = [
+        [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]
+        for cause in causes_of_points
+    ]
+    out.table(["cause", *map(_name, rows)], lines, "Error of K [%] by one cause at a time")
 
 
 def _name(row: Tables) -> str:
     return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
 
 
-def _truth(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
-    columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
-    lines = []
-    for row in rows:
-        true, found = row["true"], row["identified"]["identification"]
-        values = [true["force_n"], true["force_over_half_unbalance"], 1e6 * true["deflection_m"], 1e6 * true["sensor_m"]]
-        k = [true["equivalent_stiffness"], found["equivalent_stiffness"], found["equivalent_stiffness_error"]]
-        cells = [f"{value:.4g}" for value in values] + [f"{1e-6 * value:.3f}" for value in k]
-        lines.append([_name(row), *cells, f"{100 * row['identified']['error']:.3f}"])
-    return columns, lines
-
-
-def _printed(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
-    names = [one["correction"] for one in rows[0]["printed"]]
-    lines = [
-        [name, *(f"{one['over_true']:.3f}" for row in rows for one in row["printed"] if one["correction"] == name)]
-        for name in names
-    ]
-    return ["correction", *(_name(row) for row in rows)], lines
-
-
-def _split(rows: list[Tables]) -> tuple[list[str], list[list[str]]]:
-    lines = []
-    for place, cause in enumerate(rows[0]["split"]):
-        errors = [f"{100 * row['split'][place]['error']:.3g}" for row in rows]
-        lines.append([f"{cause['kind']}: {cause['what']}", *errors])
-    return ["cause", *(_name(row) for row in rows)], lines
+def _truth(row: Tables) -> list[str]:
+    true, identified = row["true"], row["identified"]["identification"]
+    values = [true["force_n"], true["force_over_half_unbalance"], 1e6 * true["deflection_m"], 1e6 * true["sensor_m"]]
+    k = [true["equivalent_stiffness"], identified["equivalent_stiffness"], identified["equivalent_stiffness_error"]]
+    cells = [f"{value:.4g}" for value in values] + [f"{1e-6 * value:.3f}" for value in k]
+    return [_name(row), *cells, f"{100 * row['identified']['error']:.3f}"]

@@ -45,23 +45,25 @@ class Response:
     """Deflection at the sensor [m] over the unbalance's phase, at one to three speeds [rad/s]."""
 
     speeds: tuple[float, ...]
-    lines: tuple[complex, ...]
+    components: tuple[complex, ...]
+
+    @property
+    def middle(self) -> float:
+        return self.speeds[len(self.speeds) // 2]
 
     def at(self, speed: np.ndarray) -> np.ndarray:
-        """By the polynomial through the speeds that are known."""
-        middle = self.speeds[len(self.speeds) // 2]
-        x = np.array(self.speeds) / middle - 1.0
-        return np.polynomial.polynomial.polyval(
-            speed / middle - 1.0, np.linalg.solve(np.vander(x, increasing=True), self.lines)
-        )
+        """By the polynomial through the speeds."""
+        x = np.array(self.speeds) / self.middle - 1.0
+        weights = np.linalg.solve(np.vander(x, increasing=True), self.components)
+        return np.polynomial.polynomial.polyval(speed / self.middle - 1.0, weights)
 
 
-def response(rig: Rig, held: Bearing, state: State, signals: Signals) -> Response:
+def response(rig: Rig, tested: Bearing, state: State, signals: Signals) -> Response:
     """The response around a state's speed, as far as the speed drifts."""
     if signals.speed_drift == 0.0:
         return Response((state.speed,), (state.sensor,))
     speeds = tuple(state.speed * (1.0 + 0.5 * signals.speed_drift * part) for part in (-1.0, 0.0, 1.0))
-    first, last = (balance(rotor(rig, speed), held).sensor for speed in (speeds[0], speeds[2]))
+    first, last = (balance(rotor(rig, speed), tested).sensor for speed in (speeds[0], speeds[2]))
     return Response(speeds, (first, state.sensor, last))
 
 
@@ -78,13 +80,12 @@ def record(rig: Rig, answer: Response, signals: Signals, seed: int, noise: float
     The gap wanders by ``drift``: half of it straight, half as a slow half-wave, along y and z alike.
     """
     random = np.random.default_rng(seed)
-    middle = answer.speeds[len(answer.speeds) // 2]
+    middle = answer.middle
     time = np.arange(int(signals.duration * signals.sampling_hz)) / signals.sampling_hz
     part = time / signals.duration
     speed = middle * (1.0 + signals.speed_drift * (part - 0.5))
     angle = _BEGIN + middle * (time + signals.speed_drift * signals.duration * 0.5 * (part**2 - part))
-    line = answer.at(speed)
-    motion = line * np.exp(1j * (angle + radians(rig.unbalance_angle_deg)))
+    motion = answer.at(speed) * np.exp(1j * (angle + radians(rig.unbalance_angle_deg)))
     track = signals.run_out * np.exp(1j * (angle + radians(signals.run_out_angle_deg)))
     wandering = 0.5 * signals.drift * (part + np.sin(pi * part)) * (1.0 + 1.0j)
     if noise is None:
@@ -97,20 +98,16 @@ def record(rig: Rig, answer: Response, signals: Signals, seed: int, noise: float
 
 def white_noise(answer: Response, signals: Signals) -> float:
     """rms of the noise of each channel [m]."""
-    return (
-        float(abs(answer.at(np.array(answer.speeds[len(answer.speeds) // 2]))))
-        / np.sqrt(2.0)
-        * 10.0 ** (-signals.noise_db / 20.0)
-    )
+    return float(abs(answer.at(np.array(answer.middle)))) / np.sqrt(2.0) * 10.0 ** (-signals.noise_db / 20.0)
 
 
-def slow_roll_record(rig: Rig, held: Bearing, signals: Signals, seed: int, noise: float) -> Recording:
+def slow_roll_record(rig: Rig, tested: Bearing, signals: Signals, seed: int, noise: float) -> Recording:
     """A record at the slow roll's speed, long enough for ten turns."""
     speed = signals.slow_roll_rpm * pi / 30.0
-    line = rotor(rig, speed)
-    load = np.linalg.solve(held.compliance - line.ring[:, 1:], line.ring[:, 0] * line.unbalance_force)
+    free = rotor(rig, speed)
+    load = np.linalg.solve(tested.compliance - free.ring[:, 1:], free.ring[:, 0] * free.unbalance_force)
     slow = attrs.evolve(signals, speed_drift=0.0, duration=max(signals.duration, 11.5 * 2.0 * pi / speed))
-    return record(rig, Response((speed,), (line.at_sensor(*load),)), slow, seed, noise)
+    return record(rig, Response((speed,), (free.at_sensor(*load),)), slow, seed, noise)
 
 
 def _mark(angle: np.ndarray) -> np.ndarray:
@@ -135,7 +132,7 @@ class Reading:
 
 
 def amplitude(rotation: Rotation) -> complex:
-    """1x line of the y channel [m], phase against the mark, as the article has it."""
+    """1x component of the y channel [m], phase against the mark, as the article has it."""
     from scipy.signal import butter, sosfiltfilt
 
     time, y = rotation.recording.time, rotation.recording.y
@@ -146,48 +143,49 @@ def amplitude(rotation: Rotation) -> complex:
     denoised = sosfiltfilt(butter(4, corner, fs=rate, output="sos"), straight)
     samples = round(rotation.turns * 2.0 * pi / mean * rate)
     denoised = denoised[:samples]
-    line = 2.0 * np.fft.rfft(denoised)[rotation.turns] / len(denoised)
-    return complex(line * np.exp(-1j * rotation.angle[0]))
+    component = 2.0 * np.fft.rfft(denoised)[rotation.turns] / len(denoised)
+    return complex(component * np.exp(-1j * rotation.angle[0]))
 
 
-def critical_speed(rig: Rig, held: Bearing | None) -> float:
+def critical_speed(rig: Rig, tested: Bearing | None) -> float:
     """First critical speed [rad/s] on the bearings' stiffness at rest, or on rigid supports that let the shaft tilt."""
-    line = shaft(rig)
-    radial, tilt = (1e12, 0.0) if held is None else np.diag(np.linalg.inv(held.compliance))
-    for place in rig.bearings:
-        line = line.with_spring(place, radial, tilt)
-    return float(line.critical_speeds()[0])
+    beam = shaft(rig)
+    radial, tilt = (1e12, 0.0) if tested is None else np.diag(np.linalg.inv(tested.compliance))
+    for position in rig.bearings:
+        beam = beam.with_spring(position, radial, tilt)
+    return float(beam.critical_speeds()[0])
 
 
-def readings(rig: Rig, held: Bearing, speed: float, line: complex) -> list[Reading]:
-    """K and C from the 1x line at the sensor [m] against the unbalance, by the article's correction and others."""
+def readings(rig: Rig, tested: Bearing, speed: float, component: complex) -> list[Reading]:
+    """K and C from the 1x component at the sensor [m] against the unbalance, by the article's correction and others."""
     inertia = pi / 64.0 * rig.shaft_diameter**4
-    whole, a = rig.unbalance * speed**2, rig.sensor_distance
+    force, a = rig.unbalance * speed**2, rig.sensor_distance
 
     def printed(span: float) -> float:
-        return whole * a * (3.0 * span**2 - 16.0 * a**2) / (192.0 * rig.young * inertia)
+        return force * a * (3.0 * span**2 - 16.0 * a**2) / (192.0 * rig.young * inertia)
 
     def supported(span: float) -> float:
         if rig.sensor_side == "outside":
-            return -whole * a * span**2 / (16.0 * rig.young * inertia)
-        return whole * a * (3.0 * span**2 - 4.0 * a**2) / (48.0 * rig.young * inertia)
+            return -force * a * span**2 / (16.0 * rig.young * inertia)
+        return force * a * (3.0 * span**2 - 4.0 * a**2) / (48.0 * rig.young * inertia)
 
-    def grown(other: Bearing | None) -> float:
-        return 1.0 / (1.0 - (speed / critical_speed(rig, other)) ** 2)
+    def grown(supports: Bearing | None) -> float:
+        return 1.0 / (1.0 - (speed / critical_speed(rig, supports)) ** 2)
 
-    def reading(words: str, bow: float, force: float) -> Reading:
-        z = force / (line - bow)
-        return Reading(words, z.real + held.mass * speed**2, z.imag / speed)
-
-    half, elastic = 0.5 * whole, grown(held)
-    return [
-        reading("as printed", printed(rig.span) * elastic, half),
-        reading("as printed, critical speed on rigid supports", printed(rig.span) * grown(None), half),
-        reading("as printed, with L twice the span", printed(2.0 * rig.span) * elastic, half),
-        reading("none", 0.0, half),
-        reading("simply supported beam, amplified bow", supported(rig.span) * elastic, half),
-        reading("simply supported beam, amplified bow and force", supported(rig.span) * elastic, half * elastic),
-    ]
+    half, elastic = 0.5 * force, grown(tested)
+    corrections = {
+        "as printed": (printed(rig.span) * elastic, half),
+        "as printed, critical speed on rigid supports": (printed(rig.span) * grown(None), half),
+        "as printed, with L twice the span": (printed(2.0 * rig.span) * elastic, half),
+        "none": (0.0, half),
+        "simply supported beam, amplified bow": (supported(rig.span) * elastic, half),
+        "simply supported beam, amplified bow and force": (supported(rig.span) * elastic, half * elastic),
+    }
+    rows = []
+    for correction, (bow, share) in corrections.items():
+        z = share / (component - bow)
+        rows.append(Reading(correction, z.real + tested.mass * speed**2, z.imag / speed))
+    return rows
 
 
 #: No noise to speak of: below the rounding of a double.
@@ -209,82 +207,53 @@ def silent(signals: Signals) -> Signals:
     return attrs.evolve(signals, noise_db=_SILENT_DB, mark_noise=0.0, drift=0.0, run_out=0.0, speed_drift=0.0)
 
 
-def split(rig: Rig, held: Bearing, state: State) -> list[Cause]:
+def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     """Every cause by itself, for a bearing in a known state."""
-    quiet, line = silent(rig.signals), rotor(rig, state.speed)
-    clean = record(rig, response(rig, held, state, quiet), quiet, rig.signals.seed)
-    causes = [
-        Cause(
-            "none", "clean signals, order tracking, beam inverted", _error(identify_recording(clean, rig, held).state, state)
-        )
-    ]
-    causes += _correction(rig, held, state, clean)
-    causes += _disturbed(rig, held, state, quiet)
-    causes += _window(line, held, state, clean)
-    causes += _model(rig, line, held, state)
-    return causes
-
-
-def _error(found: State, true: State) -> float:
-    return found.stiffness / true.stiffness - 1.0
-
-
-def _correction(rig: Rig, held: Bearing, state: State, clean: Recording) -> list[Cause]:
-    line = amplitude(rotation_of(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
-    found = readings(rig, held, state.speed, line)
-    return [Cause("correction", one.correction, one.stiffness / state.stiffness - 1.0) for one in found]
-
-
-def _disturbed(rig: Rig, held: Bearing, state: State, quiet: Signals) -> list[Cause]:
-    own = rig.signals
-
-    def read(kind: str, what: str, signals: Signals, roll: bool = False) -> Cause:
-        answer = response(rig, held, state, signals)
-        noise = white_noise(answer, signals)
-        slow = slow_roll(slow_roll_record(rig, held, signals, own.seed + 1, noise)) if roll else None
-        return Cause(
-            kind, what, _error(identify_recording(record(rig, answer, signals, own.seed), rig, held, slow).state, state)
-        )
-
-    run_out = attrs.evolve(quiet, run_out=own.run_out)
-    size = f"{1e6 * own.run_out:g} µm"
-    return [
-        read("noise", f"white noise, {own.noise_db:g} dB below the response", attrs.evolve(quiet, noise_db=own.noise_db)),
-        read("noise", f"drift of {1e6 * own.drift:g} µm", attrs.evolve(quiet, drift=own.drift)),
-        read("run-out", f"{size}, slow roll subtracted", run_out, roll=True),
-        read("run-out", f"{size}, left in", run_out),
-        read("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", attrs.evolve(quiet, speed_drift=_SPEED_DRIFT)),
-    ]
-
-
-def _window(line: Rotor, held: Bearing, state: State, clean: Recording) -> list[Cause]:
-    """The line by a Fourier transform of all samples, whole turns or not."""
-    y = clean.y - clean.y.mean()
-    lines = 2.0 * np.fft.rfft(y) / len(y)
-    found = complex(lines[int(np.argmax(np.abs(lines)))])
-    size = abs(found) * state.sensor / abs(state.sensor)  # its phase means nothing over a broken turn
-    what = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
-    return [Cause("window", what, _error(invert(line, held, size), state))]
-
-
-def _model(rig: Rig, line: Rotor, held: Bearing, state: State) -> list[Cause]:
-    sensor = state.sensor
-    thin = rotor(rig, state.speed, shaft(rig, shear=False))
-    moved = changed_rotors(rig, state.speed)
-    found = {
-        "bearing taken to resist no tilt": with_moment(line, sensor, 0.0, state),
-        "tilt stiffness of the bearing at rest": _at_rest(line, held, sensor),
+    signals, quiet, free = rig.signals, silent(rig.signals), rotor(rig, state.speed)
+    clean = record(rig, response(rig, tested, state, quiet), quiet, signals.seed)
+    component = amplitude(rotation_of(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    causes = [("none", "clean signals, order tracking, beam inverted", identify_recording(clean, rig, tested).state)]
+    causes += [("correction", row.correction, row) for row in readings(rig, tested, state.speed, component)]
+    for kind, words, disturbance, rolled in (
+        ("noise", f"white noise, {signals.noise_db:g} dB below the response", {"noise_db": signals.noise_db}, False),
+        ("noise", f"drift of {1e6 * signals.drift:g} µm", {"drift": signals.drift}, False),
+        ("run-out", f"{1e6 * signals.run_out:g} µm, slow roll subtracted", {"run_out": signals.run_out}, True),
+        ("run-out", f"{1e6 * signals.run_out:g} µm, left in", {"run_out": signals.run_out}, False),
+        ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", {"speed_drift": _SPEED_DRIFT}, False),
+    ):
+        causes.append((kind, words, _disturbed(rig, tested, state, attrs.evolve(quiet, **disturbance), rolled)))
+    words = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
+    causes.append(("window", words, invert(free, tested, _highest_line(clean) * state.sensor / abs(state.sensor))))
+    thin, sensor = rotor(rig, state.speed, shaft(rig, shear=False)), state.sensor
+    models = {
+        "bearing taken to resist no tilt": with_moment(free, sensor, 0.0, state),
+        "tilt stiffness of the bearing at rest": _at_rest(free, tested, sensor),
         "Euler-Bernoulli shaft without rotary inertia": with_tilt_of(thin, state, sensor),
-        **{words: with_tilt_of(other, state, sensor) for words, other in moved.items()},
+        **{change: with_tilt_of(model, state, sensor) for change, model in changed_rotors(rig, state.speed).items()},
     }
-    return [Cause("model", words, _error(other, state)) for words, other in found.items()]
+    causes += [("model", words, inverted) for words, inverted in models.items()]
+    return [Cause(kind, words, identified.stiffness / state.stiffness - 1.0) for kind, words, identified in causes]
 
 
-def _at_rest(line: Rotor, held: Bearing, sensor: complex) -> State:
+def _disturbed(rig: Rig, tested: Bearing, state: State, signals: Signals, rolled: bool) -> State:
+    """The state that is identified from signals, less the run-out of a slow roll where one is ``rolled``."""
+    answer, seed = response(rig, tested, state, signals), rig.signals.seed
+    slow = slow_roll_record(rig, tested, signals, seed + 1, white_noise(answer, signals)) if rolled else None
+    signals_record = record(rig, answer, signals, seed)
+    return identify_recording(signals_record, rig, tested, None if slow is None else slow_roll(slow)).state
+
+
+def _highest_line(recording: Recording) -> float:
+    """Amplitude of y [m] by a Fourier transform of all samples, whole turns or not; its phase means nothing over a broken turn."""
+    y = recording.y - recording.y.mean()
+    components = 2.0 * np.fft.rfft(y) / len(y)
+    return abs(complex(components[int(np.argmax(np.abs(components)))]))
+
+
+def _at_rest(free: Rotor, tested: Bearing, sensor: complex) -> State:
     """The inversion with the bearing's tilt by its tangent under the axial load alone."""
-    slope = held.compliance[1] - line.ring[1, 1:]
-    known = np.array([sensor - line.sensor[0] * line.unbalance_force, line.ring[1, 0] * line.unbalance_force])
-    matrix = np.array([line.sensor[1:], slope])
+    unbalance = np.array([sensor - free.sensor[0] * free.unbalance_force, free.ring[1, 0] * free.unbalance_force])
+    matrix = np.array([free.sensor[1:], tested.compliance[1] - free.ring[1, 1:]])
     rows = np.abs(matrix).max(axis=1)
-    moment = np.linalg.solve(matrix / rows[:, None], known / rows)[1]
-    return with_moment(line, sensor, moment, held)
+    moment = np.linalg.solve(matrix / rows[:, None], unbalance / rows)[1]
+    return with_moment(free, sensor, moment, tested)

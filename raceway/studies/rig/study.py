@@ -46,7 +46,7 @@ class Point:
     Attributes
     ----------
     state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
-    signals, slow : the records;  found : what is identified from them
+    signals, slow : the records;  identified : what is identified from them
     readings : by the article's procedure, on the same signals
     causes : ``error_split``
     """
@@ -56,7 +56,7 @@ class Point:
     unbalance_force: float
     signals: Recording
     slow: Recording
-    found: Identified
+    identified: Identified
     readings: list[Reading]
     causes: list[Cause]
 
@@ -65,7 +65,7 @@ class Point:
         return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
 
     def to_dict(self) -> Tables:
-        state, true = self.state, self.state.stiffness
+        state, true, identified = self.state, self.state.stiffness, self.identified.content()
         return {
             "speed_rpm": state.speed * 30.0 / pi,
             "axial_n": self.axial,
@@ -83,27 +83,22 @@ class Point:
                 "runs": state.runs,
             },
             "printed": [
-                {
-                    "correction": one.correction,
-                    "equivalent_stiffness": one.stiffness,
-                    "over_true": one.stiffness / true,
-                }
-                for one in self.readings
+                {"correction": row.correction, "equivalent_stiffness": row.stiffness, "over_true": row.stiffness / true}
+                for row in self.readings
             ],
-            "identified": self._identified(),
+            "identified": {
+                **identified,
+                "error": self.identified.state.stiffness / true - 1.0,
+                "relative_uncertainty": identified["identification"]["equivalent_stiffness_error"] / true,
+            },
             "split": [attrs.asdict(cause) for cause in self.causes],
         }
-
-    def _identified(self) -> Tables:
-        found, true = self.found.content(), self.state.stiffness
-        uncertain = found["identification"]["equivalent_stiffness_error"] / true
-        return {**found, "error": self.found.state.stiffness / true - 1.0, "relative_uncertainty": uncertain}
 
 
 @attrs.frozen(eq=False)
 class RigStudy:
     """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and
-    why; ``fault``: why points could not be kept."""
+    why; ``fault``: why points could not be stored."""
 
     title: str
     scene: Scene
@@ -132,16 +127,17 @@ class RigStudy:
     def worst_by_cause(self) -> list[Tables]:
         """Of each cause alone the error of K that is largest over all points, with its sign."""
         worst: dict[tuple[str, str], float] = {}
-        for cause in (cause for point in self.points for cause in point.causes):
-            key = (cause.kind, cause.what)
-            worst[key] = max(worst.get(key, 0.0), cause.error, key=abs)
+        for point in self.points:
+            for cause in point.causes:
+                key = (cause.kind, cause.what)
+                worst[key] = max(worst.get(key, 0.0), cause.error, key=abs)
         return [{"kind": kind, "what": what, "error": error} for (kind, what), error in worst.items()]
 
     @property
     def worst(self) -> dict[str, float]:
         """Largest errors of K over all points: clean signals, and signals with all that disturbs them."""
         clean = max(abs(cause.error) for point in self.points for cause in point.causes if cause.kind == "none")
-        noisy = max(abs(point.found.state.stiffness / point.state.stiffness - 1.0) for point in self.points)
+        noisy = max(abs(point.identified.state.stiffness / point.state.stiffness - 1.0) for point in self.points)
         return {"clean": clean, "disturbed": noisy}
 
     def write_signals(self, folder: Path) -> list[Path]:
@@ -167,7 +163,7 @@ def study(
     Parameters
     ----------
     on_progress : called as ``on_progress(what, done, total)`` after each point; an exception stops the study
-    store : file that finished points are kept in and taken from
+    store : file that finished points are stored in and taken from
 
     Raises
     ------
@@ -176,53 +172,49 @@ def study(
     ConvergenceError
         No point at which shaft and bearing find a common motion.
     """
-    grid = [(axial, speed) for axial in rig.axial_loads for speed in rig.speeds_rpm]
-    kept = RowStore(store)
-    under = {axial: bearing(scene, axial, registry) for axial in rig.axial_loads}
-    critical = {"rigid supports": critical_speed(rig, None) * 30.0 / pi}
-    critical |= {f"bearings under {axial:g} N": critical_speed(rig, held) * 30.0 / pi for axial, held in under.items()}
-    made: dict[int, Point] = {}
+    grid = list(enumerate((axial, rpm) for axial in rig.axial_loads for rpm in rig.speeds_rpm))
+    bearings = {axial: bearing(scene, axial, registry) for axial in rig.axial_loads}
+    supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
+    critical = {name: critical_speed(rig, tested) * 30.0 / pi for name, tested in supports.items()}
+    points: dict[int, Point] = {}
 
-    def point(place: int, held: Bearing) -> Point:
-        return _point(rig, held, grid[place][1] * pi / 30.0, rig.signals.seed + 2 * place)
-
-    def row_at(place: int, _registry: Registry) -> Tables:
-        """What the bearing answered: nearly all of the time; signals, and what is read from them, follow again from that."""
-        held = under[grid[place][0]].anew()
+    def compute(inputs: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
+        """The bearing's answers: nearly all of the time; signals, and what is read from them, follow again from those."""
+        k, (axial, rpm) = inputs
+        tested = bearings[axial].anew()
         try:
-            made[place] = point(place, held)
+            points[k] = _point(rig, tested, rpm, k)
         except (ConvergenceError, BeyondPlanError) as why:
             return {"answers": [], "reason": str(why)}
-        return {"answers": held.given, "reason": ""}
+        return {"answers": tested.answers, "reason": ""}
 
-    items = [
-        Item(
-            row_key(scene, registry, ["rig", attrs.asdict(rig), axial, rpm, place]), f"{rpm:.0f} r/min, {axial:.0f} N", place
-        )
-        for place, (axial, rpm) in enumerate(grid)
-    ]
-    rows, _ = work_through(row_at, items, kept, local(registry, 0), registry, on_progress=on_progress)
+    table, items = attrs.asdict(rig), []
+    for k, (axial, rpm) in grid:
+        key = row_key(scene, registry, ["rig", table, axial, rpm, k])
+        items.append(Item(key, f"{rpm:.0f} r/min, {axial:.0f} N", (k, (axial, rpm))))
+    finished = RowStore(store)
+    rows, _ = work_through(compute, items, finished, local(registry, 0), registry, on_progress=on_progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
-    found, failed = [], []
-    for place, row in enumerate(rows):
-        axial, rpm = grid[place]
+    failed = []
+    for (k, (axial, rpm)), row in zip(grid, rows, strict=True):
         if row["reason"]:
             failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
-        else:
-            found.append(made.get(place) or point(place, under[axial].anew(row["answers"])))
-    return RigStudy(scene.title, scene, rig, critical, found, failed, kept.fault)
+        elif k not in points:
+            points[k] = _point(rig, bearings[axial].anew(row["answers"]), rpm, k)
+    ordered = [points[k] for k in sorted(points)]
+    return RigStudy(scene.title, scene, rig, critical, ordered, failed, finished.fault)
 
 
-def _point(rig: Rig, held: Bearing, speed: float, seed: int) -> Point:
-    """One speed [rad/s]: the true motion, its signals, and what is read from them."""
-    line = rotor(rig, speed)
-    state = balance(line, held)
-    answer = response(rig, held, state, rig.signals)
+def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> Point:
+    """One speed: the true motion, its signals with noise of their ``number``, and what is read from them."""
+    free, seed = rotor(rig, rpm * pi / 30.0), rig.signals.seed + 2 * number
+    state = balance(free, tested)
+    answer = response(rig, tested, state, rig.signals)
     signals = record(rig, answer, rig.signals, seed)
-    slow = slow_roll_record(rig, held, rig.signals, seed + 1, white_noise(answer, rig.signals))
-    found = identify_recording(signals, rig, held, slow_roll(slow))
-    seen = amplitude(rotation_of(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
-    by_article = readings(rig, held, speed, seen)
-    causes = split(rig, held, state)
-    return Point(held.scene.load.axial, state, line.unbalance_force, signals, slow, found, by_article, causes)
+    slow = slow_roll_record(rig, tested, rig.signals, seed + 1, white_noise(answer, rig.signals))
+    identified = identify_recording(signals, rig, tested, slow_roll(slow))
+    component = amplitude(rotation_of(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
+    by_article = readings(rig, tested, state.speed, component)
+    causes = split(rig, tested, state)
+    return Point(tested.scene.load.axial, state, free.unbalance_force, signals, slow, identified, by_article, causes)

@@ -64,7 +64,7 @@ class Bearing:
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
     mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
     last : the last result, if there is one, whose motion the next one continues; see ``anew``
-    given : the answers since ``anew``, four numbers each;  known : answers that a course of the same questions got before
+    answers : since ``anew``, four numbers each;  replayed : answers that the same loads in the same order gave before
     """
 
     scene: Scene
@@ -72,17 +72,17 @@ class Bearing:
     compliance: np.ndarray
     mass: float
     last: list[Result] = attrs.field(factory=list, repr=False)
-    given: list[list[float]] = attrs.field(factory=list, repr=False)
-    known: list[list[float]] = attrs.field(factory=list, repr=False)
+    answers: list[list[float]] = attrs.field(factory=list, repr=False)
+    replayed: list[list[float]] = attrs.field(factory=list, repr=False)
 
-    def anew(self, known: Iterable[list[float]] = ()) -> Bearing:
-        """The same bearing without a motion to continue: what is found with it depends on nothing that was found before.
+    def anew(self, replayed: Iterable[list[float]] = ()) -> Bearing:
+        """The same bearing without a motion to continue: its answers depend on none before.
 
         Parameters
         ----------
-        known : ``given`` at the end of an earlier course, which the same questions get again without a run
+        replayed : ``answers`` of an earlier course, which the same loads get again without a run
         """
-        return attrs.evolve(self, last=[], given=[], known=list(known))
+        return attrs.evolve(self, last=[], answers=[], replayed=list(replayed))
 
     @property
     def coupling(self) -> float:
@@ -101,20 +101,19 @@ class Bearing:
         ConvergenceError
             No steady motion.
         """
-        if len(self.given) < len(self.known):
-            self.given.append(self.known[len(self.given)])
-            return np.array(self.given[-1]).view(complex)
+        if len(self.answers) < len(self.replayed):
+            self.answers.append(self.replayed[len(self.answers)])
+            return np.array(self.answers[-1]).view(complex)
         scene = attrs.evolve(self.scene, excitation=whirling_load(speed, force, moment))
         # Loads that are tried one after another belong to one motion of the rig.
-        found = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
-        self.last[:] = [found]
-        simulation = found.simulation
-        assert simulation is not None  # a scene with an excitation and an identifier that needs a record
-        record = simulation.record
+        result = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
+        self.last[:] = [result]
+        assert result.simulation is not None  # a scene with an excitation and an identifier that needs a record
+        record = result.simulation.record
         q = record.displacement
         turning = np.exp(-1j * speed * record.time) / len(record.time)
         answer = np.array([turning @ (q[:, 1] + 1j * q[:, 2]), turning @ (q[:, 4] - 1j * q[:, 3])])
-        self.given.append(answer.view(float).tolist())
+        self.answers.append(answer.view(float).tolist())
         return answer
 
 
@@ -140,10 +139,9 @@ def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:
         excitation=None,
         identifier=Identifying(method=registry.find("identifier", "fft_1x").plugin()),  # the motion is read here, not there
     )
-    still = run(free, registry)
-    stiffness = still.equilibrium.stiffness
-    chosen = np.ix_([1, 4], [1, 4])  # y and theta_z; by symmetry the same for z and -theta_y
-    return Bearing(free, registry, np.linalg.inv(stiffness[chosen]), still.model.mass_used)
+    static = run(free, registry)
+    plane = np.ix_([1, 4], [1, 4])  # y and theta_z; by symmetry the same for z and -theta_y
+    return Bearing(free, registry, np.linalg.inv(static.equilibrium.stiffness[plane]), static.model.mass_used)
 
 
 #: Agreement of shaft and bearing, over the bearing's motion: a hundredth of what is asked of the identification, squared.
@@ -200,7 +198,7 @@ class State:
         return z.real + self.mass * self.speed**2, z.imag / self.speed
 
 
-def balance(line: Rotor, held: Bearing) -> State:
+def balance(line: Rotor, tested: Bearing) -> State:
     """Force and moment at which the ring and the shaft in it move alike.
 
     Raises
@@ -209,16 +207,16 @@ def balance(line: Rotor, held: Bearing) -> State:
         No such force and moment found.
     """
     speed = line.speed
-    gain = held.compliance - line.ring[:, 1:]
+    gain = tested.compliance - line.ring[:, 1:]
     start = np.linalg.solve(gain, line.ring[:, 0] * line.unbalance_force)
 
     def apart(load: np.ndarray) -> np.ndarray:
-        return held.answer(speed, load[0], load[1]) - line.at_ring(load[0], load[1])
+        return tested.answer(speed, load[0], load[1]) - line.at_ring(load[0], load[1])
 
-    size = np.abs(held.compliance @ start)
+    size = np.abs(tested.compliance @ start)
     load, runs = find_root(apart, start.astype(complex), gain, size)
     deflection, slope = line.at_ring(*load)
-    return State(speed, load[0], load[1], deflection, slope, line.at_sensor(*load), held.mass, held.coupling, runs)
+    return State(speed, load[0], load[1], deflection, slope, line.at_sensor(*load), tested.mass, tested.coupling, runs)
 
 
 def find_root(
@@ -243,8 +241,8 @@ def find_root(
     scale = np.concatenate([size, size])
 
     def value(u: np.ndarray) -> np.ndarray:
-        found = apart(u[:n] + 1j * u[n:])
-        return np.concatenate([found.real, found.imag]) / scale
+        apart_by = apart(u[:n] + 1j * u[n:])
+        return np.concatenate([apart_by.real, apart_by.imag]) / scale
 
     jacobian = jacobian / scale[:, None]
     u = np.concatenate([start.real, start.imag])

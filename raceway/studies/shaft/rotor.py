@@ -47,26 +47,26 @@ class Beam:
     rotary: np.ndarray
     polar: np.ndarray
 
-    def node(self, place: float) -> int:
-        """The node at a place [m]."""
-        return int(np.argmin(np.abs(self.nodes - place)))
+    def node(self, position: float) -> int:
+        """The node at a position [m]."""
+        return int(np.argmin(np.abs(self.nodes - position)))
 
     def dynamic(self, whirl: float, spin: float) -> np.ndarray:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
-    def with_disc(self, place: float, mass: float, transverse: float, polar: float) -> Beam:
+    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
         """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
-        k = 2 * self.node(place)
+        k = 2 * self.node(position)
         m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
         m[k, k] += mass
         r[k + 1, k + 1] += transverse
         p[k + 1, k + 1] += polar
         return attrs.evolve(self, mass=m, rotary=r, polar=p)
 
-    def with_spring(self, place: float, stiffness: float, tilt: float = 0.0) -> Beam:
+    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
-        k = 2 * self.node(place)
+        k = 2 * self.node(position)
         s = self.stiffness.copy()
         s[k, k] += stiffness
         s[k + 1, k + 1] += tilt
@@ -220,7 +220,7 @@ def rotor(rig: Rig, speed: float, line: Beam | None = None) -> Rotor:
     line : another model of the shaft
     """
     line = line or shaft(rig)
-    left, right = (2 * line.node(place) for place in rig.bearings)
+    left, right = (2 * line.node(position) for position in rig.bearings)
     disc, sensor = 2 * line.node(0.5 * rig.shaft_length), 2 * line.node(rig.sensor)
     sign = 1.0 if rig.arrangement == "DB" else -1.0
     loads = np.zeros((len(line.stiffness), 3))
