@@ -33,8 +33,8 @@ from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
-    from raceway.out.progress import ProgressBar
     from raceway.framework.registry import Registry
+    from raceway.out.progress import ProgressBar
     from raceway.storage.tables import Tables
 
 

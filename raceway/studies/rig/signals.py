@@ -212,16 +212,28 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     signals, quiet, free = rig.signals, silent(rig.signals), rotor(rig, state.speed)
     clean = record(rig, response(rig, tested, state, quiet), quiet, signals.seed)
     component = amplitude(rotation_of(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
-    causes = [("none", "clean signals, order tracking, beam inverted", identify_recording(clean, rig, tested).state)]
+    causes: list[tuple[str, str, State | Reading]] = [
+        ("none", "clean signals, order tracking, beam inverted", identify_recording(clean, rig, tested).state)
+    ]
     causes += [("correction", row.correction, row) for row in readings(rig, tested, state.speed, component)]
-    for kind, words, disturbance, rolled in (
-        ("noise", f"white noise, {signals.noise_db:g} dB below the response", {"noise_db": signals.noise_db}, False),
-        ("noise", f"drift of {1e6 * signals.drift:g} µm", {"drift": signals.drift}, False),
-        ("run-out", f"{1e6 * signals.run_out:g} µm, slow roll subtracted", {"run_out": signals.run_out}, True),
-        ("run-out", f"{1e6 * signals.run_out:g} µm, left in", {"run_out": signals.run_out}, False),
-        ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", {"speed_drift": _SPEED_DRIFT}, False),
+    for kind, words, disturbed, rolled in (
+        (
+            "noise",
+            f"white noise, {signals.noise_db:g} dB below the response",
+            attrs.evolve(quiet, noise_db=signals.noise_db),
+            False,
+        ),
+        ("noise", f"drift of {1e6 * signals.drift:g} µm", attrs.evolve(quiet, drift=signals.drift), False),
+        (
+            "run-out",
+            f"{1e6 * signals.run_out:g} µm, slow roll subtracted",
+            attrs.evolve(quiet, run_out=signals.run_out),
+            True,
+        ),
+        ("run-out", f"{1e6 * signals.run_out:g} µm, left in", attrs.evolve(quiet, run_out=signals.run_out), False),
+        ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", attrs.evolve(quiet, speed_drift=_SPEED_DRIFT), False),
     ):
-        causes.append((kind, words, _disturbed(rig, tested, state, attrs.evolve(quiet, **disturbance), rolled)))
+        causes.append((kind, words, _disturbed(rig, tested, state, disturbed, rolled)))
     words = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
     causes.append(("window", words, invert(free, tested, _highest_line(clean) * state.sensor / abs(state.sensor))))
     thin, sensor = rotor(rig, state.speed, shaft(rig, shear=False)), state.sensor
@@ -239,8 +251,8 @@ def _disturbed(rig: Rig, tested: Bearing, state: State, signals: Signals, rolled
     """The state that is identified from signals, less the run-out of a slow roll where one is ``rolled``."""
     answer, seed = response(rig, tested, state, signals), rig.signals.seed
     slow = slow_roll_record(rig, tested, signals, seed + 1, white_noise(answer, signals)) if rolled else None
-    signals_record = record(rig, answer, signals, seed)
-    return identify_recording(signals_record, rig, tested, None if slow is None else slow_roll(slow)).state
+    recording = record(rig, answer, signals, seed)
+    return identify_recording(recording, rig, tested, None if slow is None else slow_roll(slow)).state
 
 
 def _highest_line(recording: Recording) -> float:
