@@ -76,7 +76,7 @@ def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
             raise BeyondPlanError("stopped far beyond the plan")
         check(self, what, done, total)
 
-    monkeypatch.setattr("raceway.pipeline.transient_error.last_turn", lambda *_: None)
+    monkeypatch.setattr("raceway.pipeline.simulate.last_turn", lambda *_: None)
     scene = scene_from_dict(article(800.0, start="ramp", turns=24))
     whole = run(scene)
     monkeypatch.setattr(Allowance, "check", stop)

@@ -11,7 +11,7 @@ from raceway import run
 from raceway.out.table import number_within
 from raceway.pipeline import error as error_estimate
 from raceway.pipeline.error import more_equilibria
-from raceway.pipeline.transient_error import _at_speed, settles_elsewhere
+from raceway.pipeline.simulate import _at_speed, settles_elsewhere
 from raceway.planning.recording import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
 from validation.error_estimate import judge, named, right
@@ -90,7 +90,7 @@ def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatc
     tables["identifier"] = {"kind": "order_tracking"}
     speeds = []
     monkeypatch.setattr(
-        "raceway.pipeline.transient_error._at_speed", lambda *given: (speeds.append(given[1]), _at_speed(*given))[1]
+        "raceway.pipeline.simulate._at_speed", lambda *given: (speeds.append(given[1]), _at_speed(*given))[1]
     )
     found = run(tables)
     assert speeds == [speed for speed, _ in found.identification.series]  # for both error and series: once

@@ -38,11 +38,11 @@ def test_the_stable_limit_is_that_of_the_orbit_where_it_is_stiffer_than_the_equi
     assert found.critical_time_step == pytest.approx(on_orbit, rel=1e-12)
     between = int(np.ceil(model.excitation.period_s / np.sqrt(on_orbit * at_rest)))
     with pytest.raises(StabilityError, match="above the stable limit"):
-        simulate(model, equilibrium, steps_per_turn=between, begun=found)
+        simulate(model, equilibrium, steps_per_turn=between, start=found.start)
     # "auto" stays below 0.8 of the limit and is silent; what stands above it is told.
     assert not any("of the stable limit" in text for text in found.warnings)
     just_below = int(np.ceil(model.excitation.period_s / (0.95 * on_orbit)))
-    told = simulate(model, equilibrium, steps_per_turn=just_below, begun=found).warnings
+    told = simulate(model, equilibrium, steps_per_turn=just_below, start=found.start).warnings
     assert any("0.9" in text and "of the stable limit" in text for text in told)
 
 

@@ -32,7 +32,7 @@ from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.system import by_address
 from raceway.core.time.schemes import integrate
 from raceway.integrators.periodic import Periodic
-from raceway.pipeline.transient_error import steady_record
+from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, settle
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
 from validation.command_line import ARTICLE, invoke

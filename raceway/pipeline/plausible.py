@@ -36,8 +36,7 @@ from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.settle import pressures, settle
-from raceway.pipeline.simulate import Simulation
-from raceway.pipeline.transient_error import last_turn
+from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -46,8 +45,22 @@ from raceway.storage.tables import Tables
 _SAMPLES = 60
 #: Part of what a body gives way, by which it lags behind, that is worth a sentence.
 _LAG = 0.01
-#: Axial force of a row over the centrifugal force of its balls below which Hirano saw gross sliding, and below which it is told.
+#: Axial force of a row over the centrifugal force of its balls below which Hirano saw gross sliding, and below which a warning says so.
 _ROLLING, _SLIDING = 10.0, 1.0
+#: Keys of ``[kinematics]`` that are hypotheses, with the values beside each default.
+HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("outer_race", "shared"), "ring_growth": (True,)}
+_QUANTITIES = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
+#: Relative change of a stiffness that is not worth a solution or a sentence.
+NEGLIGIBLE = 1e-3
+#: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
+_ORBIT_TIMES, _TOLERANCE, _ROUGH = 17, 1e-7, 1e-4
+#: Iterations from the motion under the scene's own hypotheses, after which one from the linear response is tried.
+_LIMIT = 12
+#: Distance of the steady orbit's Z from the identified one, over its size, up to which that orbit is the motion.
+_SAME = 0.05
+_MOMENTS, _GROWTH = 3.0, 1.0
+
+Secant = Callable[[Model, Equilibrium], float]
 
 
 def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) -> None:
@@ -85,45 +98,36 @@ def pressure_warnings(model: Model, force: np.ndarray) -> list[str]:
 
 def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
     """Sentences about the last turn of a record, each said once."""
-    z = model.system.ball_count
-    chosen = np.unique(np.linspace(max(len(record.time) - _turn(record), 0), len(record.time) - 1, _SAMPLES).astype(int))
-    found = []
-    open_balls = int((record.contact_force[chosen, :z] == 0.0).any(axis=0).sum())
+    z, bearing, end = model.system.ball_count, model.bearing, len(record.time)
+    per_turn = max(record.schedule.steps_per_turn // record.schedule.stride, 1)
+    samples = np.unique(np.linspace(max(end - per_turn, 0), end - 1, _SAMPLES).astype(int))
+    warnings, force = [], record.contact_force[samples]
+    open_balls = int((force[:, :z] == 0.0).any(axis=0).sum())
     if open_balls:
-        found.append(f"{open_balls} of {z} balls lose contact with the inner race during a turn")
-    inner, outer = _angles(model, record, chosen)
-    force = record.contact_force[chosen]
-    over = model.bearing.over_edges(model, inner, outer, force)
+        warnings.append(f"{open_balls} of {z} balls lose contact with the inner race during a turn")
+    inner, outer = _angles(model, record, samples)
     beyond: dict[str, str] = {text: text for text in pressure_warnings(model, force.max(axis=0))}
-    for k in np.flatnonzero(over):
-        model.bearing.refuse_impossible(model, force[k])
-        for text in model.bearing.edge_warnings(model, inner[k], outer[k], force[k]):
+    for k in np.flatnonzero(bearing.over_edges(model, inner, outer, force)):
+        bearing.refuse_impossible(model, force[k])
+        for text in bearing.edge_warnings(model, inner[k], outer[k], force[k]):
             beyond.setdefault(text.split(" reaches ")[0], text)
     b = model.scene.bearing
     if b.radial_clearance is None and b.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
-        found.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
-    return (*found, *(f"during a turn {text}" for text in beyond.values()))
+        warnings.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
+    return (*warnings, *(f"during a turn {text}" for text in beyond.values()))
 
 
-def _angles(model: Model, record: Record, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _angles(model: Model, record: Record, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (n, Z) [rad] of some samples."""
+    columns = record.displacement, record.ball, record.contact_force, record.time
     if model.system.spin is None:
-        parts = record.displacement, record.ball, record.contact_force, record.time
-        return model.bearing.contact_angles(model, *(part[chosen] for part in parts))
-    found = []
-    for k in chosen:
-        now = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
-        found.append(
-            model.bearing.contact_angles(
-                now, record.displacement[k], record.ball[k], record.contact_force[k], record.time[k]
-            )
-        )
-    inner, outer = zip(*found, strict=True)
+        return model.bearing.contact_angles(model, *(column[samples] for column in columns))
+    angles = []
+    for k in samples:
+        at_time = attrs.evolve(model, system=model.system.at_speed(record.time[k]))
+        angles.append(model.bearing.contact_angles(at_time, *(column[k] for column in columns)))
+    inner, outer = zip(*angles, strict=True)
     return np.array(inner), np.array(outer)
-
-
-def _turn(record: Record) -> int:
-    return max(record.schedule.steps_per_turn // record.schedule.stride, 1)
 
 
 def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
@@ -139,27 +143,29 @@ def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
     ----------
     Hirano, Motion of a ball in angular-contact ball bearing, ASLE Transactions 8 (1965) 425-434.
     """
-    z, found = model.system.ball_count, []
+    z, rows = model.system.ball_count, []
     load, angle, push = equilibrium.contact_force[:z], equilibrium.angle_inner, model.system.table[:, CENTRIFUGAL]
     for row in range(len(model.scene.bearing.rows)):
         balls = model.basis.row == row
         axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
         if axial < _SLIDING * push[balls].sum():
             ratio = f"{axial / push[balls].sum():.2g} times the centrifugal force of its balls"
-            found.append(f"row {row + 1} is pressed together axially with {axial:.4g} N, {ratio}")
-    told = (
-        f"below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than their speeds here say"
-    )
-    return [f"{', '.join(found)}: {told}. Preload more, or take lighter balls (balls.material)"] if found else []
+            rows.append(f"row {row + 1} is pressed together axially with {axial:.4g} N, {ratio}")
+    if not rows:
+        return []
+    return [
+        f"{', '.join(rows)}: below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than their speeds "
+        "here say. Preload more, or take lighter balls (balls.material)"
+    ]
 
 
 def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
     """Where motions that follow at once are off by more than a result's stated error says, and by more than 1 %."""
-    found = {} if table is None else table.get("inertia") or {}
+    inertia = {} if table is None else table.get("inertia") or {}
     parts = {
-        "the inner ring": found.get("inner_supported_error"),
-        "the outer ring": found.get("outer_supported_error"),
-        "a ball along its grooves": found.get("ball_along_grooves_error"),
+        "the inner ring": inertia.get("inner_supported_error"),
+        "the outer ring": inertia.get("outer_supported_error"),
+        "a ball along its grooves": inertia.get("ball_along_grooves_error"),
     }
     limit = max(_LAG, total or 0.0)
     beyond = {name: share for name, share in parts.items() if share is not None and share > limit}
@@ -172,24 +178,8 @@ def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
     ]
 
 
-#: Keys of ``[kinematics]`` that are hypotheses, with the values beside each default.
-HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("outer_race", "shared"), "ring_growth": (True,)}
-_QUANTITIES = ("equivalent_stiffness", "kyy", "kyy_tilts_follow")
-#: Relative change of a stiffness that is not worth a solution or a sentence.
-NEGLIGIBLE = 1e-3
-#: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
-_ORBIT_TIMES, _TOLERANCE, _ROUGH = 17, 1e-7, 1e-4
-#: Iterations from the motion under the scene's own hypotheses, after which one from the linear response is tried.
-_LIMIT = 12
-#: Distance of the steady orbit's Z from the identified one, over its size, up to which that orbit is the motion.
-_SAME = 0.05
-_MOMENTS, _GROWTH = 3.0, 1.0
-
-Secant = Callable[[Model, Equilibrium], float]
-
-
 def model_spread(
-    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None
+    model: Model, equilibrium: Equilibrium, identification: Identification | None, simulation: Simulation | None
 ) -> tuple[Tables | None, Note]:
     """``error.model`` of result.json, and ``error.how.model``."""
     values, why = _alternatives(model)
@@ -198,24 +188,23 @@ def model_spread(
     bound = _bound(model, equilibrium, values)
     if bound < NEGLIGIBLE:
         return _table([], bound), Estimate.BOUND(bound=bound, why=why)
-    secant, how = _secant(model, equilibrium, found, simulation)
-    scene, own = model.scene, {key: getattr(model.scene.kinematics, key) for key in values}
+    secant, how = _secant(model, equilibrium, identification, simulation)
+    kinematics, tilt = model.scene.kinematics, model.scene.supports.tilt
+    default = {key: getattr(kinematics, key) for key in values}
     rows: list[tuple[Tables, Tables]] = []
-    for chosen in product(*([own[key], *values[key]] for key in values)):
-        changed = {key: value for key, value in zip(values, chosen, strict=True) if value != own[key]}
+    for combination in product(*([default[key], *values[key]] for key in values)):
+        changed = {key: value for key, value in zip(values, combination, strict=True) if value != default[key]}
         if not changed:
             continue
-        other = attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **changed))
         change: Tables = dict.fromkeys(_QUANTITIES)
         try:
-            one, there = _under(model, other, equilibrium)
-            before, now = (
-                (each.stiffness[1, 1], tilts_follow(each.stiffness, scene.supports.tilt)) for each in (equilibrium, there)
-            )
-            for name, a, b in zip(_QUANTITIES[1:], before, now, strict=True):
+            scene = attrs.evolve(model.scene, kinematics=attrs.evolve(kinematics, **changed))
+            variant, state = _under(model, scene, equilibrium)
+            before, after = ((e.stiffness[1, 1], tilts_follow(e.stiffness, tilt)) for e in (equilibrium, state))
+            for name, a, b in zip(_QUANTITIES[1:], before, after, strict=True):
                 change[name] = None if a is None or b is None else float((b - a) / abs(a))
-            moved = np.nan if secant is None else secant(one, there)
-            change["equivalent_stiffness"] = moved if np.isfinite(moved) else None
+            of_secant = np.nan if secant is None else secant(variant, state)
+            change["equivalent_stiffness"] = of_secant if np.isfinite(of_secant) else None
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
             how += f"; not under {changed}: {str(error).splitlines()[0]}"
         rows.append((changed, change))
@@ -233,8 +222,8 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     scene = model.scene
     if scene.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
-    left = [key for key in HYPOTHESES if not scene.says(f"kinematics.{key}")]
-    if not left:
+    unstated = [key for key in HYPOTHESES if not scene.says(f"kinematics.{key}")]
+    if not unstated:
         return {}, Estimate.HYPOTHESES_STATED()
     if compiled(model.system) is None:
         return {}, Estimate.POINTS_TOO_SLOW(kind=scene.bodies.name)
@@ -242,7 +231,7 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
         return {}, Estimate.NO_STEADY_MOTION()
     values: dict[str, list[Any]] = {}
     why = ""
-    for key in left:
+    for key in unstated:
         for value in HYPOTHESES[key]:
             try:
                 refuse_what_cannot_run(attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **{key: value})))
@@ -255,29 +244,25 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
 
 def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> float:
     inner = equilibrium.contact_force[: model.system.ball_count]
-    loaded, out = inner > 0.0, 0.0
+    loaded, bound = inner > 0.0, 0.0
     if not loaded.any():
         return np.inf
     if "gyroscopic" in keys:
-        out += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
+        bound += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
     if "ring_growth" in keys:
         grown = attrs.evolve(model.scene, kinematics=attrs.evolve(model.scene.kinematics, ring_growth=True))
         more, now = growth_of(grown, model.basis.row), model.basis.growth
         radial = np.abs(more.common[1] + more.own[:, 1] - now.common[1] - now.own[:, 1]).max()
-        out += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
-    return out
+        bound += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
+    return bound
 
 
 def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equilibrium]:
     """The model and its equilibrium under other ``[kinematics]``, without building its bodies again."""
-    before = compiled(model.system)
-    assert before is not None, "refused above"
-    growth, scalars, table, kernel = (
-        growth_of(scene, model.basis.row),
-        before.scalars.copy(),
-        before.table.copy(),
-        before.kernel,
-    )
+    ring = compiled(model.system)
+    assert ring is not None, "refused above"
+    growth, kernel = growth_of(scene, model.basis.row), ring.kernel
+    scalars, table = ring.scalars.copy(), ring.table.copy()
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
     table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.own - model.basis.growth.own
     if scene.kinematics.gyroscopic != "none":
@@ -285,81 +270,82 @@ def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equili
         from raceway.core.ring.kernels.tangential import rigid_tangential
 
         add_moments(scalars, scene, model.geometry)
-        kernel = condensed(rigid_tangential) if before.condensed else rigid_tangential
-    system = attrs.evolve(before, scalars=scalars, table=table, kernel=kernel)
+        kernel = condensed(rigid_tangential) if ring.condensed else rigid_tangential
+    system = attrs.evolve(ring, scalars=scalars, table=table, kernel=kernel)
     if system.mounted_params is not None and system.reach is not None:  # a law is renewed from standstill, as in a run
         system = system.running(system.mounted_params, np.zeros_like(system.reach))
     basis, q = attrs.evolve(model.basis, growth=growth), near.displacement
     if renews(scene.contact.law) or (scene.bearing.preloaded and scene.bearing.preload_kind == "spring"):
         q = place_ring(scene, basis, system)
     system = by_address(system)
-    other = attrs.evolve(
-        model, scene=scene, system=system, bearing=attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
-    )
-    return other, settle(other)
+    bearing = attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
+    variant = attrs.evolve(model, scene=scene, system=system, bearing=bearing)
+    return variant, settle(variant)
 
 
 def _secant(
-    model: Model, equilibrium: Equilibrium, found: Identification | None, simulation: Simulation | None
+    model: Model, equilibrium: Equilibrium, identification: Identification | None, simulation: Simulation | None
 ) -> tuple[Secant | None, str]:
     """Relative change of K by another model with its equilibrium, or None; and how, or why not."""
-    if found is None:
+    if identification is None:
         return None, "the scene is static"
     method, identifier, period = model.scene.integrator.method, model.scene.identifier.method, model.excitation.period_s
     if "speeds" in identifier.needs:
         return None, "not estimated: it is fitted over several speeds"
     if "record" not in identifier.needs:
-        here = found.equivalent_stiffness
-        return (
-            lambda other, there: float((identifier.identify([], there, other).equivalent_stiffness - here) / abs(here)),
-            f"identifier '{model.scene.identifier.kind}' at each equilibrium",
-        )
+        k = identification.equivalent_stiffness
+
+        def of_equilibrium(variant: Model, state: Equilibrium) -> float:
+            return float((identifier.identify([], state, variant).equivalent_stiffness - k) / abs(k))
+
+        return of_equilibrium, f"identifier '{model.scene.identifier.kind}' at each equilibrium"
     turn = None if simulation is None or period is None else last_turn(simulation.whole, period)
     if model.scene.contact.friction > 0.0 or turn is None:
         return None, "not estimated: with friction, or without whole turns, there is no steady orbit to compare with"
     half = np.fft.rfft(turn.displacement, axis=0)[: _ORBIT_TIMES // 2 + 1] / len(turn.displacement)
     first = _ORBIT_TIMES * np.fft.irfft(half, _ORBIT_TIMES, axis=0)
 
-    def orbit(one: Model, at: np.ndarray, limit: int) -> Orbit:
-        ring = one.bearing.orbiting(one.system)
-        return orbit_near(ring, period, at, _ORBIT_TIMES, method.inertial, _TOLERANCE, limit)
+    def orbit(variant: Model, displacement: np.ndarray, limit: int) -> Orbit:
+        ring = variant.bearing.orbiting(variant.system)
+        return orbit_near(ring, period, displacement, _ORBIT_TIMES, method.inertial, _TOLERANCE, limit)
 
-    def value(one: Orbit) -> complex:
+    def value(orbit: Orbit) -> complex:
         waves = 2.0 / _ORBIT_TIMES * np.exp(-2j * np.pi * np.arange(_ORBIT_TIMES) / _ORBIT_TIMES)
-        return stiffness(waves @ one.force, waves @ one.displacement)
+        return stiffness(waves @ orbit.force, waves @ orbit.displacement)
 
     try:
-        own = orbit(model, first, 5 * _LIMIT)
+        recorded = orbit(model, first, 5 * _LIMIT)
     except RacewayError as error:
         return None, f"not estimated: {str(error).splitlines()[0]}"
-    base = value(own)
-    if not abs(base - found.dynamic_stiffness) <= _SAME * abs(base):
+    base = value(recorded)
+    if not abs(base - identification.dynamic_stiffness) <= _SAME * abs(base):
         return None, "not estimated: the motion that was identified is no steady orbit"
+    speed = identification.speed
 
-    def secant(other: Model, there: Equilibrium) -> float:
-        apart = there.displacement - equilibrium.displacement
+    def of_orbit(variant: Model, state: Equilibrium) -> float:
+        apart = state.displacement - equilibrium.displacement
         try:
-            now = value(orbit(other, own.displacement + apart, _LIMIT))
+            z = value(orbit(variant, recorded.displacement + apart, _LIMIT))
         except RacewayError:  # balls lift off: from the linear response, on a mesh that follows the motion
             if not method.inertial:
                 raise
             from raceway.core.periodic.search import directly, problem_of
             from raceway.core.periodic.steady import first_line
 
-            q, system = there.displacement, surrogate(other.bearing.orbiting(other.system))
-            problem = problem_of(system, found.speed, q)
-            now = first_line(directly(problem, q, there.stiffness, _ROUGH).solved)[0]
-        return float((now.real - base.real) / abs(base.real + model.mass_used * found.speed**2))
+            q, system = state.displacement, surrogate(variant.bearing.orbiting(variant.system))
+            problem = problem_of(system, speed, q)
+            z = first_line(directly(problem, q, state.stiffness, _ROUGH).solved)[0]
+        return float((z.real - base.real) / abs(base.real + model.mass_used * speed**2))
 
-    return secant, "of the steady orbit near the recorded one"
+    return of_orbit, "of the steady orbit near the recorded one"
 
 
 def _table(rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
     """``error.model``: ranges over all rows and 0, None where a row lacks the number; each hypothesis by itself; the bound."""
-    found: Tables = {}
+    ranges: Tables = {}
     for name in _QUANTITIES:
         numbers = [change[name] for _, change in rows]
-        found[name] = [min(0.0, *numbers), max(0.0, *numbers)] if numbers and None not in numbers else None
+        ranges[name] = [min(0.0, *numbers), max(0.0, *numbers)] if numbers and None not in numbers else None
     alone = [(key, value, change) for changed, change in rows for key, value in changed.items() if len(changed) == 1]
     hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in alone]
-    return {**found, "hypotheses": hypotheses, "bound": bound}
+    return {**ranges, "hypotheses": hypotheses, "bound": bound}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
@@ -15,14 +14,11 @@ import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
-from raceway.bodies.mounting import held_table, preload_table
-from raceway.bodies.running import report_of
-from raceway.core.ring.ring import COORDINATES
 from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
 from raceway.pipeline.plausible import NEGLIGIBLE
-from raceway.pipeline.settle import ball_pass_table, largest_contacts, motion_table, pressures
+from raceway.pipeline.settle import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import plot
@@ -109,8 +105,7 @@ class Result(Shown):
     @property
     def speed_rpm(self) -> float | None:
         """Speed of the force whose 1x response is identified [r/min]; None in a static scene."""
-        found = self.identification
-        return None if found is None else found.frequency_hz * 60.0
+        return None if self.identification is None else self.identification.frequency_hz * 60.0
 
     @property
     def dynamic_stiffness(self) -> complex | None:
@@ -136,8 +131,8 @@ class Result(Shown):
     @property
     def equivalent_damping_error(self) -> float | None:
         """Estimated absolute error of C [N s/m]; None where it is not estimated.  A smaller C is not resolved."""
-        across, found = self._across(), self.identification
-        return None if across is None or found is None else across * abs(found.dynamic_stiffness) / found.speed
+        across, z = self._across(), self.identification
+        return None if across is None or z is None else across * abs(z.dynamic_stiffness) / z.speed
 
     def gradient(self, path: str) -> Gradient:
         """Derivatives by the number at one key: of displacement, stiffness and ball loads, and of Z, K, C where there is an excitation.
@@ -193,14 +188,14 @@ class Result(Shown):
     def geometry(self) -> Tables | None:
         """What is inferred of the preset's geometry, and how well that knows the stiffness; None where a source states it."""
         scene = self.model.scene
-        said = scene.source if scene.given is None else scene.given.merged()
-        return geometry_of(scene.source["bearing"], said.get("bearing", {}))
+        tables = scene.source if scene.given is None else scene.given.merged()
+        return geometry_of(scene.source["bearing"], tables.get("bearing", {}))
 
     @property
     def orbit(self) -> tuple[float, float] | None:
         """Major and minor semi-axis of the 1x orbit [m]; None in a static scene.  ``to_xarray().motion`` is the path itself."""
-        found = self.identification
-        return None if found is None else (found.orbit_major, found.orbit_minor)
+        z = self.identification
+        return None if z is None else (z.orbit_major, z.orbit_minor)
 
     def to_xarray(self) -> xarray.Dataset:
         """Equilibrium, recorded motion, ball loads and identified numbers with coordinates and units.
@@ -268,61 +263,55 @@ class Result(Shown):
         return {**self.error, "model": model, "how": how, "short": few}
 
     def _motion(self) -> Tables | None:
-        found = self.simulation
-        return None if found is None else {**motion_table(self.model, found.record), "orbits": found.orbits}
+        motion = self.simulation
+        return None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits}
 
     def _identification(self) -> Tables | None:
-        found = self.identification
-        if found is None:
+        z = self.identification
+        if z is None:
             return None
-        z, across = found.dynamic_stiffness, self._across()
+        across = self._across()
+        lines = {
+            "name": "name",
+            "frequency_hz": "frequency_hz",
+            "forward_m": "forward",
+            "backward_m": "backward",
+            "axial_m": "axial",
+        }
         return {
-            "definition": found.definition,
-            "speed_rpm": found.frequency_hz * 60.0,
-            "frequency_hz": found.frequency_hz,
-            "force_amplitude_n": found.force_amplitude,
-            "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
-            "dynamic_stiffness_imag_error": None if across is None else across * abs(z),
-            "equivalent_stiffness": found.equivalent_stiffness,
+            "definition": z.definition,
+            "speed_rpm": self.speed_rpm,
+            "frequency_hz": z.frequency_hz,
+            "force_amplitude_n": z.force_amplitude,
+            "dynamic_stiffness": _complex(z.dynamic_stiffness),
+            "dynamic_stiffness_imag_error": None if across is None else across * abs(z.dynamic_stiffness),
+            "equivalent_stiffness": z.equivalent_stiffness,
             "equivalent_stiffness_error": self.equivalent_stiffness_error,
-            "equivalent_damping": found.equivalent_damping,
+            "equivalent_damping": z.equivalent_damping,
             "equivalent_damping_error": self.equivalent_damping_error,
             "damping_origin": damping_origin(self.model.scene),
             "band": self.band,
-            "mass_used_kg": found.mass_used,
+            "mass_used_kg": z.mass_used,
             "tilt": self.model.scene.supports.tilt,
-            "phase_lag_deg": found.phase_lag_deg,
+            "phase_lag_deg": z.phase_lag_deg,
             "phase_lag_error_deg": None if across is None else math.degrees(across),
-            "forward_amplitude_m": found.forward_amplitude,
-            "backward_amplitude_m": found.backward_amplitude,
-            "orbit": {"major_m": found.orbit_major, "minor_m": found.orbit_minor},
-            "residual": found.residual,
-            "spread": found.spread,
-            "lines": [
-                {
-                    "name": line.name,
-                    "frequency_hz": line.frequency_hz,
-                    "forward_m": line.forward,
-                    "backward_m": line.backward,
-                    "axial_m": line.axial,
-                }
-                for line in self.lines
-            ],
+            "forward_amplitude_m": z.forward_amplitude,
+            "backward_amplitude_m": z.backward_amplitude,
+            "orbit": {"major_m": z.orbit_major, "minor_m": z.orbit_minor},
+            "residual": z.residual,
+            "spread": z.spread,
+            "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
             "series": [
-                {"speed_rpm": speed * 30.0 / math.pi, "real": one.real, "imag": one.imag, "abs": abs(one), "error": wrong}
-                for (speed, one), wrong in zip_longest(found.series, found.series_error)
+                {"speed_rpm": speed * 30.0 / math.pi, **_complex(value), "error": error}
+                for (speed, value), error in zip_longest(z.series, z.series_error)
             ],
         }
 
     def _across(self) -> float | None:
         """Error of Z across its own direction, over |Z|: mesh and calibration change the size of a stiffness and turn no phase."""
-        total, bodies = self.error["total"], self.error.get("bodies") or 0.0
-        return None if total is None else max(total - bodies, 0.0) + bodies * self._turned()
-
-    def _turned(self) -> float:
-        """The smaller part of Z over |Z|."""
-        z = self.identification.dynamic_stiffness if self.identification is not None else 1.0 + 0.0j
-        return abs(z.imag) / abs(z) if abs(z) else 0.0
+        total, bodies, z = self.error["total"], self.error.get("bodies") or 0.0, self.dynamic_stiffness
+        turned = abs(z.imag) / abs(z) if z else 0.0
+        return None if total is None else max(total - bodies, 0.0) + bodies * turned
 
     def save(self, folder: Path) -> Path:
         """Write result.json into a folder, whole or not at all.
@@ -335,43 +324,21 @@ class Result(Shown):
         return write_json(self.to_dict(), folder / "result.json")
 
 
-def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
-    """The table ``equilibrium`` of result.json."""
-    z = model.system.ball_count
-    load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
-    columns = {
-        "azimuth_deg": np.degrees(model.azimuth) % 360.0,
-        "load_inner_n": load_inner,
-        "load_outer_n": load_outer,
-        "contact_angle_inner_deg": np.degrees(equilibrium.angle_inner),
-        "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
-    }
-    for race, (word, load) in enumerate((("inner", load_inner), ("outer", load_outer))):
-        pressure, a, b = model.bearing.contact_ellipse(model, race, load)
-        columns[f"peak_pressure_{word}_pa"] = pressure
-        columns[f"semi_major_{word}_m"] = a
-        columns[f"semi_minor_{word}_m"] = b
-    columns |= model.bearing.ball_columns(model, equilibrium)
-    law = report_of(model, equilibrium)
-    for name, values in {} if law is None else law.columns.items():
-        columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
-    several = len(model.scene.bearing.rows) > 1
-    rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
-    peaks = np.concatenate([columns["peak_pressure_inner_pa"], columns["peak_pressure_outer_pa"]])
+def _complex(z: complex) -> Tables:
+    return {"real": z.real, "imag": z.imag, "abs": abs(z)}
+
+
+def band_table(ends: list[Result]) -> Tables:
+    """``identification.band``: numbers of the results at both ends of the band of time constants, [low, high]."""
+    identified = [end.identification for end in ends if end.identification is not None]
+    assert len(identified) == len(ends), "static scenes have no band"
     return {
-        "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
-        "stiffness": equilibrium.stiffness.tolist(),
-        "damping": equilibrium.damping.tolist(),
-        "stiffness_rows_held": None if model.system.sliding is None else equilibrium.stiffness_rows_held.tolist(),
-        "damping_rows_held": None if model.system.sliding is None else equilibrium.damping_rows_held.tolist(),
-        "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
-        "free_contact_angle_deg": math.degrees(model.scene.bearing.contact_angle),
-        **largest_contacts(equilibrium.contact_force, peaks, "largest"),
-        "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
-        "law": None if law is None else dict(law.table),
-        "preload": preload_table(model, equilibrium),
-        "held_axial": held_table(model, equilibrium),
-        "iterations": equilibrium.iterations,
+        "time_constant_s": list(TIME_CONSTANTS),
+        "equivalent_damping": [z.equivalent_damping for z in identified],
+        "equivalent_damping_error": [end.equivalent_damping_error for end in ends],
+        "equivalent_stiffness": [z.equivalent_stiffness for z in identified],
+        "loss_factor": [z.equivalent_damping * z.speed / z.equivalent_stiffness for z in identified],
+        "phase_lag_deg": [z.phase_lag_deg for z in identified],
     }
 
 
@@ -405,128 +372,73 @@ DRY = "dry: no damping is modelled"
 
 def damping_origin(scene: Scene) -> str:
     """What damps a scene, in words."""
-    contact, found = scene.contact, []
-    low, high = TIME_CONSTANTS
+    contact, (low, high) = scene.contact, TIME_CONSTANTS
     if contact.in_a_band:
-        found.append(
-            f"c = tau k at the contacts, tau from {low:g} to {high:g} s: the band of rolling bearings (Kraemer 1993)"
-        )
+        origin = f"c = tau k at the contacts, tau from {low:g} to {high:g} s: the band of rolling bearings (Kraemer 1993)"
     elif contact.loss_factor is not None:
-        found.append(
-            f"contact.loss_factor {contact.loss_factor:g}: c = tau k at the contacts, tau = {scene.time_constant:.4g} s"
-        )
+        tau = f"tau = {scene.time_constant:.4g} s"
+        origin = f"contact.loss_factor {contact.loss_factor:g}: c = tau k at the contacts, {tau}"
     elif contact.time_constant is not None:
-        found.append(f"contact.time_constant: c = tau k at the contacts, tau = {contact.time_constant:g} s")
-    elif contact.dashpot > 0.0:
-        found.append(f"contact.damping: {contact.dashpot:g} N s/m at each contact")
-    if contact.law.dissipative:
-        found.append(f"contact law '{contact.kind}'")
-    if contact.friction > 0.0:
-        found.append("contact.friction")
-    if scene.rotor.damping > 0.0:
-        found.append(f"rotor.damping: {scene.rotor.damping:g} N s/m")
-    return "; ".join(found) or DRY
-
-
-def run_band(scene: Scene, run: Callable[[Scene], Result]) -> Result:
-    """The result at the low end of the band, with ``band`` from both ends; cost is that of both runs."""
-    ends = [
-        run(attrs.evolve(scene, contact=attrs.evolve(scene.contact, damping=0.0, time_constant=tau)))
-        for tau in TIME_CONSTANTS
-    ]
-    low, high = ends
-    both = {key: value + high.cost[key] for key, value in low.cost.items() if key not in ("peak_memory_bytes", "threads")}
-    model = attrs.evolve(low.model, scene=attrs.evolve(low.model.scene, contact=scene.contact))
-    warnings = tuple(dict.fromkeys((*low.warnings, *high.warnings)))
-    return attrs.evolve(low, model=model, cost={**high.cost, **both}, band=_band(ends), warnings=warnings)
-
-
-def _band(ends: list[Result]) -> Tables:
-    """``identification.band``: numbers of both ends, [low, high]."""
-    found = [one.identification for one in ends]
-    assert all(one is not None for one in found), "static scenes have no band"
-    known = [one for one in found if one is not None]
-    return {
-        "time_constant_s": list(TIME_CONSTANTS),
-        "equivalent_damping": [one.equivalent_damping for one in known],
-        "equivalent_damping_error": [one.equivalent_damping_error for one in ends],
-        "equivalent_stiffness": [one.equivalent_stiffness for one in known],
-        "loss_factor": [one.equivalent_damping * one.speed / one.equivalent_stiffness for one in known],
-        "phase_lag_deg": [one.phase_lag_deg for one in known],
+        origin = f"contact.time_constant: c = tau k at the contacts, tau = {contact.time_constant:g} s"
+    else:
+        origin = f"contact.damping: {contact.dashpot:g} N s/m at each contact" if contact.dashpot > 0.0 else ""
+    origins = {
+        origin: bool(origin),
+        f"contact law '{contact.kind}'": contact.law.dissipative,
+        "contact.friction": contact.friction > 0.0,
+        f"rotor.damping: {scene.rotor.damping:g} N s/m": scene.rotor.damping > 0.0,
     }
+    return "; ".join(words for words, damps in origins.items() if damps) or DRY
 
 
 def facts(result: Result) -> list[Fact]:
-    """Name, value with unit, remark."""
+    """Name, value with unit, remark of what a result shows in short: K with its error first."""
     count = len(result.warnings)
-    warned = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
-    return [*_identified(result), *warned, *_equilibrium(result), *_computed(result)]
+    warning = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
+    return [*_identified_facts(result), *warning, *_equilibrium_facts(result), *_computed_facts(result)]
 
 
-def _identified(result: Result) -> list[Fact]:
-    found = result.identification
-    if found is None:
+def _identified_facts(result: Result) -> list[Fact]:
+    z, band, total = result.identification, result.band, result.error["total"]
+    if z is None:
         return []
-    k, c, z = found.equivalent_stiffness, found.equivalent_damping, found.dynamic_stiffness
-    band = result.band
-    total, damping_error = result.error["total"], result.equivalent_damping_error
-    held = tilt_words(result.model.scene.supports.tilt)
+    speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.scene.supports.tilt)}"
+    damping = within("damping C", z.equivalent_damping, result.equivalent_damping_error, 1.0, "N s/m", "Im Z / w")
+    if band is not None:
+        low, high = band["equivalent_damping"]
+        remark = "both ends of the band of time constants; all else is the low end's"
+        damping = ("damping C", f"{low:.3g} to {high:.3g} N s/m", remark)
     rows = [
-        within(
-            "stiffness K", k, result.equivalent_stiffness_error, 1e-6, "N/µm", f"{60.0 * found.frequency_hz:g} r/min, {held}"
-        ),
-        within("damping C", c, damping_error, 1.0, "N s/m", "Im Z / w")
-        if band is None
-        else _ends(band["equivalent_damping"]),
-        ("|Z|", number(1e-6 * abs(z), "N/µm"), "force over displacement of the 1x line"),
-        ("orbit", f"{in_micro(found.orbit_major)} x {in_micro(found.orbit_minor)} µm", "semi-axes of the 1x line"),
+        within("stiffness K", z.equivalent_stiffness, result.equivalent_stiffness_error, 1e-6, "N/µm", speed),
+        damping,
+        ("|Z|", number(1e-6 * abs(z.dynamic_stiffness), "N/µm"), "force over displacement of the 1x line"),
+        ("orbit", f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm", "semi-axes of the 1x line"),
     ]
     rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
-    return [
-        *rows,
-        *_spread(result),
-        ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated"),
-    ]
+    spread = (result.model_spread[0] or {}).get("equivalent_stiffness")
+    if spread and max(map(abs, spread)) >= NEGLIGIBLE:
+        rows.append(("model of K", percents(*spread), "hypotheses left at their defaults: .model_spread"))
+    return [*rows, ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated")]
 
 
-def _spread(result: Result) -> list[Fact]:
-    """Change of K by hypotheses left at their defaults, where it is worth a sentence."""
-    ends = (result.model_spread[0] or {}).get("equivalent_stiffness")
-    if not ends or max(map(abs, ends)) < NEGLIGIBLE:
-        return []
-    return [("model of K", percents(*ends), "hypotheses left at their defaults: .model_spread")]
-
-
-def _ends(ends: list[float]) -> Fact:
-    return (
-        "damping C",
-        f"{ends[0]:.3g} to {ends[1]:.3g} N s/m",
-        "both ends of the band of time constants; all else is the low end's",
-    )
-
-
-def _equilibrium(result: Result) -> list[Fact]:
-    k, moved, loads = result.stiffness, result.displacement, result.ball_loads
-    forces, follows = result.equilibrium.contact_force, result.kyy_tilts_follow
+def _equilibrium_facts(result: Result) -> list[Fact]:
+    k, loads, forces = result.stiffness, result.ball_loads, result.equilibrium.contact_force
+    follows = result.kyy_tilts_follow
     return [
         ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
         *([] if follows is None else [("kyy tilts follow", f"{1e-6 * follows:.5g} N/µm", "static, x and z held")]),
-        ("displacement x", number(1e6 * moved[0], "µm"), "static, axial"),
+        ("displacement x", number(1e6 * result.displacement[0], "µm"), "static, axial"),
         ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
         *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
     ]
 
 
-def _computed(result: Result) -> list[Fact]:
+def _computed_facts(result: Result) -> list[Fact]:
     scene, cost = result.model.scene, result.cost
-    bearing: Tables = scene.source["bearing"]
     kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
     compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
-    rows: list[Fact] = [
-        ("bearing", str(bearing.get("preset") or "own geometry"), kind),
-        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
-    ]
+    rows: list[Fact] = [("bearing", str(scene.source["bearing"].get("preset") or "own geometry"), kind)]
     if result.geometry is not None:
-        rows.insert(1, ("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
-    return rows
+        rows.append(("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
+    return [*rows, ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}")]

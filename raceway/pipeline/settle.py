@@ -21,9 +21,9 @@ from math import acos, cos, degrees, pi
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
+from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
-from raceway.bodies.mounting import lost_preload
+from raceway.bodies.mounting import held_table, lost_preload, preload_table
 from raceway.bodies.running import report_of
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
@@ -65,9 +65,9 @@ def settle(
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     state = now.ball, now.gap, now.contact_force, inner, outer
-    found = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
-    law = report_of(model, found)
-    return found if law is None else attrs.evolve(found, warnings=(*law.warnings, *warnings))
+    equilibrium = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
+    law = report_of(model, equilibrium)
+    return equilibrium if law is None else attrs.evolve(equilibrium, warnings=(*law.warnings, *warnings))
 
 
 def _refuse_no_load(model: Model) -> None:
@@ -91,8 +91,8 @@ def _foresee_free_motion(model: Model) -> None:
 
 def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:
     system = model.system
-    chosen = np.flatnonzero(system.free > 0.0)
-    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
+    free = np.flatnonzero(system.free > 0.0)
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[free]
     scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
     values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
     loose = values <= 1e-12 * max(values[-1], 0.0)
@@ -100,7 +100,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
         return
     # Of several free motions any combination is one: the parts of all of them, equal ones in the order of coordinates.
     motion = np.round(np.linalg.norm(vectors[:, loose], axis=1), 3)
-    names = [COORDINATES[chosen[k]] for k in np.argsort(-motion, kind="stable") if motion[k] > 0.3 * motion.max()]
+    names = [COORDINATES[free[k]] for k in np.argsort(-motion, kind="stable") if motion[k] > 0.3 * motion.max()]
     held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
     why = lost_preload(model) or f"Hold it ({held}) or load more balls."
     raise ConvergenceError(
@@ -111,31 +111,73 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
 
 def _seating(model: Model, inner: np.ndarray) -> list[str]:
     """Rows that lift off, and rows with a loaded ball at half its free contact angle or less; those with a clearance run at any."""
-    bearing, found = model.scene.bearing, list[str]()
+    bearing, warnings = model.scene.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
         least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), free_angle(model.scene, k)
         if least == np.inf:
-            found.append(f"{name} lifts off: none of its balls touches the inner race")
+            warnings.append(f"{name} lifts off: none of its balls touches the inner race")
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:
             angles = f"{np.degrees(least):.2f} deg, {np.degrees(free):.3g} deg without loads"
-            found.append(
+            warnings.append(
                 f"{name} unseats: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
             )
-    return found
+    return warnings
 
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
-    found = _seating(model, inner)
-    if any(model.scene.load.moment) and model.scene.supports.tilt == "locked":
-        found.append("`load.moment` has no effect: supports.tilt is locked")
-    if model.scene.contact.friction > 0.0 and traits_of(model.scene).every_node:
-        found.append(
+    warnings, scene = _seating(model, inner), model.scene
+    if any(scene.load.moment) and scene.supports.tilt == "locked":
+        warnings.append("`load.moment` has no effect: supports.tilt is locked")
+    if scene.contact.friction > 0.0 and traits_of(scene).every_node:
+        warnings.append(
             "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
         )
-    elif model.scene.contact.friction > 0.0:
-        found.append("friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have")
-    return (*found, *model.bearing.edge_warnings(model, inner, outer, force))
+    elif scene.contact.friction > 0.0:
+        warnings.append(
+            "friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have"
+        )
+    return (*warnings, *model.bearing.edge_warnings(model, inner, outer, force))
+
+
+def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
+    """The table ``equilibrium`` of result.json."""
+    z = model.system.ball_count
+    load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
+    columns = {
+        "azimuth_deg": np.degrees(model.azimuth) % 360.0,
+        "load_inner_n": load_inner,
+        "load_outer_n": load_outer,
+        "contact_angle_inner_deg": np.degrees(equilibrium.angle_inner),
+        "contact_angle_outer_deg": np.degrees(equilibrium.angle_outer),
+    }
+    for race, (word, load) in enumerate((("inner", load_inner), ("outer", load_outer))):
+        pressure, a, b = model.bearing.contact_ellipse(model, race, load)
+        columns[f"peak_pressure_{word}_pa"] = pressure
+        columns[f"semi_major_{word}_m"] = a
+        columns[f"semi_minor_{word}_m"] = b
+    columns |= model.bearing.ball_columns(model, equilibrium)
+    law = report_of(model, equilibrium)
+    for name, values in {} if law is None else law.columns.items():
+        columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
+    several = len(model.scene.bearing.rows) > 1
+    rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
+    peaks = np.concatenate([columns["peak_pressure_inner_pa"], columns["peak_pressure_outer_pa"]])
+    return {
+        "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
+        "stiffness": equilibrium.stiffness.tolist(),
+        "damping": equilibrium.damping.tolist(),
+        "stiffness_rows_held": None if model.system.sliding is None else equilibrium.stiffness_rows_held.tolist(),
+        "damping_rows_held": None if model.system.sliding is None else equilibrium.damping_rows_held.tolist(),
+        "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
+        "free_contact_angle_deg": degrees(model.scene.bearing.contact_angle),
+        **largest_contacts(equilibrium.contact_force, peaks, "largest"),
+        "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
+        "law": None if law is None else dict(law.table),
+        "preload": preload_table(model, equilibrium),
+        "held_axial": held_table(model, equilibrium),
+        "iterations": equilibrium.iterations,
+    }
 
 
 def motion_table(model: Model, record: Record) -> Tables:
@@ -157,12 +199,12 @@ def pressures(model: Model, loads: np.ndarray) -> np.ndarray:
 
 def largest_contacts(loads: np.ndarray, pressures: np.ndarray, word: str) -> Tables:
     """Of loads and pressures (2 Z,) [N, Pa] the largest of both races, its race, and each race's; ``word`` begins the names."""
-    found: Tables = {}
+    table: Tables = {}
     for name, unit, values in (("ball_load", "n", loads), ("pressure", "pa", pressures)):
         ends = values.reshape(2, -1).max(axis=1).tolist()
-        found |= {f"{word}_{name}_{unit}": max(ends), f"{word}_{name}_race": race_of(*ends)}
-        found |= {f"{word}_{name}_{race}_{unit}": end for race, end in zip(("inner", "outer"), ends, strict=True)}
-    return found
+        table |= {f"{word}_{name}_{unit}": max(ends), f"{word}_{name}_race": race_of(*ends)}
+        table |= {f"{word}_{name}_{race}_{unit}": end for race, end in zip(("inner", "outer"), ends, strict=True)}
+    return table
 
 
 def race_of(inner: float, outer: float) -> str:
@@ -179,10 +221,6 @@ def peak(samples: np.ndarray) -> float:
     before, after = float(samples[row - 1, column]), float(samples[row + 1, column])
     bend = before - 2.0 * top + after
     return top if bend >= 0.0 else top - (before - after) ** 2 / (8.0 * bend)
-
-
-#: Names in the order in which they are told.
-NAMES = ("ftf", "bpfo", "bpfi", "bsf")
 
 
 def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, contact_angle: float) -> dict[str, float]:
@@ -207,7 +245,7 @@ def ball_pass_table(model: Model, equilibrium: Equilibrium) -> Tables:
         loaded = (model.basis.row == k) & np.isfinite(cosine)  # by both races
         a = acos(float(cosine[loaded].mean())) if loaded.any() else b.contact_angle
         times = ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, a)
-        hertz = {f"{name}_hz": speed * times[name] if speed else None for name in NAMES}
+        hertz = {f"{name}_hz": speed * times[name] if speed else None for name in times}
         in_forces = {"ftf_in_forces": model.basis.geometries[k].cage_speed(1.0)}
         rows.append({"contact_angle_deg": degrees(a), **times, **hertz, **in_forces})
     return {"speed_rpm": 60.0 * speed, "rows": rows}

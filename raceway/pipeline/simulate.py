@@ -1,9 +1,9 @@
-"""From a model and its equilibrium to recorded motion: how it begins, with which steps, and the integration."""
+"""From a model and its equilibrium to motion: integrated from its start, or the steady motion that it would settle on, solved for."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil
+from math import ceil, pi
 from typing import Any
 
 import attrs
@@ -15,20 +15,30 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
+from raceway.core.signals import fourier_line, stiffness
 from raceway.core.time.schemes import integrate
-from raceway.errors import ConvergenceError, StabilityError
+from raceway.errors import ConvergenceError, SceneError, StabilityError
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.planning.steady_orbits import searches_orbits
 from raceway.storage.tables import Tables
 
+#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
+OnProgress = Callable[[str, int, int], None]
+#: Called in the search for orbits; what it raises ends the search.
 Watch = Callable[[], None]
 #: Slips that a start leaves in contacts which stick stay there.
 _STICKS = (
     "friction: where contacts stick depends on how the motion began, so that several steady motions exist: "
     "integrator.start = 'orbit', 'ramp' and 'static' lead to different ones"
 )
+#: Samples of a steady turn, and the error of its displacement over its amplitude.
+_SAMPLES, _TOLERANCE = 360, 1e-8
+#: Speeds in a row without a steady motion after which none is searched for.
+_GIVEN_UP = 3
+#: Two turns that differ by less than this share of their distance from the steady motion repeat each other.
+_REPEATS = 0.01
 
 
 @attrs.frozen(eq=False)
@@ -51,91 +61,30 @@ class Start:
     warnings: tuple[str, ...] = ()
 
 
-def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
-    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning.
-
-    Parameters
-    ----------
-    watch : called in the search for orbits, which what it raises ends
-    """
-    scene, method = model.scene, model.scene.integrator.method
-    if method.steady:
-        return Start("static")
-    kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
-    if scene.contact.friction > 0.0:
-        begun = _begun(model, equilibrium, kind, watch)
-        return attrs.evolve(begun, warnings=(*begun.warnings, _STICKS))
-    return _begun(model, equilibrium, kind, watch)
-
-
-def _begun(model: Model, equilibrium: Equilibrium, kind: str, watch: Watch | None) -> Start:
-    if kind != "orbit" or not model.scene.integrator.method.inertial:
-        return Start(kind)
-    excitation, system = model.excitation, model.bearing.orbiting(model.system.at_speed(0.0))
-    if excitation.period_s is None:
-        # What changes its speed starts on the orbit of its first moment.
-        steady = getattr(excitation, "steady", None)
-        if steady is None:
-            why = "the excitation does not repeat every turn: started with a ramp instead of on the orbit"
-            return Start("ramp", settled=False, warnings=(why,))
-        excitation = steady()
-        system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
-    return _on_orbit(model, equilibrium, system, excitation.period_s, watch)
-
-
-def _on_orbit(model: Model, equilibrium: Equilibrium, system: Ring, period: float, watch: Watch | None) -> Start:
-    """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
-    q = equilibrium.displacement
-    try:
-        ring = compiled(system)
-        if searches_orbits(model.scene) and ring is not None:
-            from raceway.core.periodic.steady import beginning
-
-            found = beginning(ring, period, q, watch)
-            if found is not None and not found.told:
-                return Start("orbit", found.orbit)
-            if found is not None:
-                return _told(model, found.orbit, found.told, found.warnings)
-        return Start("orbit", steady_orbit(system, period, q))
-    except ConvergenceError as why:
-        return Start("ramp", settled=False, warnings=(f"{why}: started with a ramp instead",))
-
-
-def _told(model: Model, orbit: Orbit, orbits: list[dict[str, Any]], warnings: tuple[str, ...]) -> Start:
-    """Of a scene whose motion is not that of its start, the orbits are told in warnings only."""
-    scene = model.scene
-    other = {
-        "without friction": scene.contact.friction > 0.0,
-        "with balls that do not orbit": scene.kinematics.orbiting,
-        "at its first speed": model.excitation.period_s is None,
-    }
-    words = ", ".join(word for word, here in other.items() if here)
-    if words:
-        return Start("orbit", orbit, (), orbits[0]["stable"], tuple(f"{words}: {text}" for text in warnings))
-    return Start("orbit", orbit, tuple(orbits), orbits[0]["stable"], warnings)
-
-
-#: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
-OnProgress = Callable[[str, int, int], None]
-
-
 @attrs.frozen(eq=False)
 class Simulation:
     """A recorded motion.
 
     Attributes
     ----------
+    model, equilibrium : that it is a motion of, and about
     record : the turns that identification uses;  whole : all of them
     critical_time_step : stable limit of explicit steps at the stiffest state known before the run [s]
     start : how it began
     warnings : what a user should know
     """
 
+    model: Model
+    equilibrium: Equilibrium
     record: Record
     whole: Record
     critical_time_step: float | None
     start: Start
     warnings: tuple[str, ...]
+
+    @property
+    def steps_per_turn(self) -> int:
+        return self.whole.schedule.steps_per_turn
 
     @property
     def orbits(self) -> list[Tables]:
@@ -148,7 +97,7 @@ def simulate(
     equilibrium: Equilibrium,
     on_progress: OnProgress | None = None,
     steps_per_turn: int | None = None,
-    begun: Simulation | None = None,
+    start: Start | None = None,
     near: Simulation | None = None,
     stay: bool = False,
 ) -> Simulation:
@@ -157,7 +106,7 @@ def simulate(
     Parameters
     ----------
     steps_per_turn : instead of the scene's
-    begun : of the same scene with other steps, whose start is taken
+    start : None: that of the scene
     near : of a similar scene by the same integrator, for integrators that can start from it
     stay : on the motion of ``near`` where several may exist
 
@@ -166,35 +115,91 @@ def simulate(
     ConvergenceError, StabilityError
         A failed integration, or an explicit step above its stable limit.
     """
-    system, method, scene = model.system, model.scene.integrator.method, model.scene
+    method, turns = model.scene.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
-    begin = chosen_start(model, equilibrium, watch) if begun is None else begun.start
-    start, orbit, warnings = begin.kind, begin.orbit, begin.warnings
-    critical = _critical_step(model, equilibrium, orbit) if method.inertial else None
+    start = start or chosen_start(model, equilibrium, watch)
+    critical = _critical_step(model, equilibrium, start.orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
-    dt = period / steps_per_turn
-    warnings += _step_warnings(model, equilibrium, period, steps_per_turn, critical)
-    ramp_turns = _ramp_turns(model) if start == "ramp" else 0.0
-    ramp_turns = min(ramp_turns, float(model.plan.turns))
-    schedule = Schedule(
-        dt,
-        steps_per_turn,
-        model.plan.turns,
-        _stride(steps_per_turn, model.plan.turns, method.inertial),
-        ramp_turns * period,
-    )
-    motion = _motion(model, equilibrium, start, orbit, dt)
+    step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
+    ramp_turns = min(_ramp_turns(model), float(turns)) if start.kind == "ramp" else 0.0
+    stride = _stride(steps_per_turn, turns, method.inertial)
+    schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp_turns * period)
+    motion = _motion(model, equilibrium, start, schedule.dt)
     if near is not None:
         motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
-    label = f"{scene.integrator.kind}, {schedule.steps} steps"
+    label = f"{model.scene.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
-    whole = integrate(method, system, motion, schedule, progress)
-    used = model.plan.turns - ceil(ramp_turns)
-    if start == "static" and method.inertial and not method.steady:
+    record = integrate(method, model.system, motion, schedule, progress)
+    used = turns - ceil(ramp_turns)
+    if start.kind == "static" and method.inertial and not method.steady:
         used = max(model.plan.turns // 3, 1)
-    warnings += tuple(whole.counts.get("warnings", ()))
-    return Simulation(whole.last(max(used, 1)), whole, critical, begin, warnings)
+    warnings = (*start.warnings, *step_warnings, *record.counts.get("warnings", ()))
+    return Simulation(model, equilibrium, record.last(max(used, 1)), record, critical, start, warnings)
+
+
+def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
+    """A motion for each of the identifier's ``speeds_rpm`` of the whirl; spin and force stay the same."""
+    motions, force = [], model.scene.excitation
+    kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
+    for speed in model.scene.identifier.method.speeds_rpm:
+        rpm = float(speed)
+        excitation = force.at_whirl(rpm) if hasattr(force, "at_whirl") else attrs.evolve(force, speed_rpm=rpm)
+        scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
+        at_speed = build_model(scene, make_plan(scene))
+        motions.append(simulate(at_speed, settle(at_speed), on_progress))
+    return motions
+
+
+def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
+    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
+    scene, method = model.scene, model.scene.integrator.method
+    if method.steady:
+        return Start("static")
+    kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
+    start = _orbit_start(model, equilibrium, watch) if kind == "orbit" and method.inertial else Start(kind)
+    return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if scene.contact.friction > 0.0 else start
+
+
+def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) -> Start:
+    """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
+    excitation, system = model.excitation, model.bearing.orbiting(model.system.at_speed(0.0))
+    if excitation.period_s is None:
+        # What changes its speed starts on the orbit of its first moment.
+        steady = getattr(excitation, "steady", None)
+        if steady is None:
+            why = "the excitation does not repeat every turn: started with a ramp instead of on the orbit"
+            return Start("ramp", settled=False, warnings=(why,))
+        excitation = steady()
+        system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
+    try:
+        return _searched_start(model, system, excitation.period_s, equilibrium.displacement, watch)
+    except ConvergenceError as why:
+        return Start("ramp", settled=False, warnings=(f"{why}: started with a ramp instead",))
+
+
+def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, watch: Watch | None) -> Start:
+    ring = compiled(system)
+    if ring is None or not searches_orbits(model.scene):
+        return Start("orbit", steady_orbit(system, period, q))
+    from raceway.core.periodic.steady import beginning
+
+    search = beginning(ring, period, q, watch)
+    if search is None:
+        return Start("orbit", steady_orbit(system, period, q))
+    if not search.told:
+        return Start("orbit", search.orbit)
+    # Orbits of another motion than that of the scene are stated in warnings only.
+    differences = {
+        "without friction": model.scene.contact.friction > 0.0,
+        "with balls that do not orbit": model.scene.kinematics.orbiting,
+        "at its first speed": model.excitation.period_s is None,
+    }
+    prefix = ", ".join(words for words, differs in differences.items() if differs)
+    orbits, warnings = tuple(search.told), search.warnings
+    if prefix:
+        orbits, warnings = (), tuple(f"{prefix}: {text}" for text in warnings)
+    return Start("orbit", search.orbit, orbits, search.told[0]["stable"], warnings)
 
 
 def _step_warnings(
@@ -219,23 +224,28 @@ def _step_warnings(
     return ()
 
 
-def _motion(model: Model, equilibrium: Equilibrium, start: str, orbit: Orbit | None, dt: float) -> Motion:
-    q, ball, system = equilibrium.displacement, equilibrium.ball, model.system.at_speed(0.0)
-    if model.scene.integrator.method.steady:
+def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> Motion:
+    """The first moment."""
+    q, ball, system, method = (
+        equilibrium.displacement,
+        equilibrium.ball,
+        model.system.at_speed(0.0),
+        model.scene.integrator.method,
+    )
+    if method.steady:
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
-    if model.system.spin is not None and orbit is None:
+    if model.system.spin is not None and start.orbit is None:
         q, ball, _ = system.settle(q)
-    if not model.scene.integrator.method.inertial:
-        return model.bearing.at_equilibrium(system, q, ball, start == "ramp")
-    if orbit is not None:
-        return model.bearing.on_orbit(system, orbit, dt)
-    return model.bearing.at_rest(system, q, ball, start == "ramp")
+    if not method.inertial:
+        return model.bearing.at_equilibrium(system, q, ball, start.kind == "ramp")
+    if start.orbit is not None:
+        return model.bearing.on_orbit(system, start.orbit, dt)
+    return model.bearing.at_rest(system, q, ball, start.kind == "ramp")
 
 
 def _ramp_turns(model: Model) -> float:
-    given = float(getattr(model.scene.excitation, "ramp_turns", 0.0))
-    return given if given > 0.0 else 2.0 * model.plan.turns / 3.0
+    return float(getattr(model.scene.excitation, "ramp_turns", 0.0)) or 2.0 * model.plan.turns / 3.0
 
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
@@ -246,9 +256,9 @@ def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) 
 
 
 def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
-    given = model.scene.integrator.steps_per_turn
-    if isinstance(given, int):
-        return given
+    steps = model.scene.integrator.steps_per_turn
+    if isinstance(steps, int):
+        return steps
     if model.scene.integrator.method.implicit or critical is None:
         return STEPS_PER_TURN
     return stable_steps_per_turn(period, critical)
@@ -259,14 +269,113 @@ def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
     return steps_per_turn // recorded_per_turn(steps_per_turn, turns, inertial)
 
 
-def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[tuple[Model, Simulation]]:
-    """Model and simulation for each of the identifier's ``speeds_rpm`` of the whirl; spin and force stay the same."""
-    found = []
-    kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
-    for rpm in model.scene.identifier.method.speeds_rpm:
-        given = model.scene.excitation
-        excitation = given.at_whirl(float(rpm)) if hasattr(given, "at_whirl") else attrs.evolve(given, speed_rpm=float(rpm))
-        scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
-        one = build_model(scene, make_plan(scene))
-        found.append((one, simulate(one, settle(one), on_progress)))
-    return found
+@attrs.define
+class SteadyMotions:
+    """Steady motions of an excitation that changes its speed, speed by speed; each is solved for once.
+
+    Attributes
+    ----------
+    on_progress : called in the searches, which what it raises ends
+    values : Z [N/m] by speed [rad/s]
+    last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
+    missed : speeds in a row without a motion; after some, none is searched for
+    """
+
+    model: Model
+    on_progress: OnProgress | None = None
+    values: dict[float, complex | None] = attrs.field(factory=dict)
+    last: Record | None = None
+    missed: int = 0
+
+    def value(self, speed: float) -> complex | None:
+        """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""
+        if speed not in self.values:
+            self.values[speed] = self._solved(speed)
+        return self.values[speed]
+
+    def _solved(self, speed: float) -> complex | None:
+        model = _at_speed(self.model, speed)
+        if model is None or self.missed >= _GIVEN_UP:
+            return None
+        near = None if self.last is None else self.last.solution
+        record = _steady(model, settle(model), near, self.on_progress)
+        self.missed = self.missed + 1 if record is None else 0
+        if record is None:
+            return None
+        self.last = record
+        frequency = model.excitation.frequency_hz
+        return stiffness(*(fourier_line(record.time, signal, frequency) for signal in (record.force, record.displacement)))
+
+
+def _at_speed(model: Model, speed: float) -> Model | None:
+    """The same scene at one speed [rad/s], of an excitation that has a steady form."""
+    steady = getattr(model.excitation, "steady", None)
+    if steady is None:
+        return None
+    scene = attrs.evolve(model.scene, excitation=attrs.evolve(steady(), speed_rpm=speed * 30.0 / pi))
+    return build_model(scene, model.plan)
+
+
+def steady_record(
+    model: Model, equilibrium: Equilibrium, motion: Simulation | None = None, on_progress: OnProgress | None = None
+) -> Record | None:
+    """One turn of the steady motion; None where there is none that can be solved for, or none is found.
+
+    Parameters
+    ----------
+    motion : that settles on it: where several exist, the one near its last turn is taken
+    on_progress : called in the search, which what it raises ends
+    """
+    period = model.excitation.period_s
+    near = None if motion is None or period is None else last_turn(motion.whole, period)
+    return _steady(model, equilibrium, near, on_progress)
+
+
+def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnProgress | None) -> Record | None:
+    from raceway.core.periodic.steady import steady
+
+    if model.excitation.period_s is None:
+        return None
+    q, ball = equilibrium.displacement, equilibrium.ball
+    start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=True)
+    schedule = Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1)
+    watch = None if on_progress is None else (lambda step, total: on_progress("the steady motion", step, total))
+    try:
+        return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
+    except (ConvergenceError, SceneError):
+        return None
+
+
+def last_turn(record: Record, period: float) -> Any:
+    """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
+    from raceway.core.periodic.search import Recorded
+
+    steps, stride = record.schedule.steps_per_turn, record.schedule.stride
+    n = steps // stride
+    if n * stride != steps or len(record.time) < n or record.schedule.steps % steps:
+        return None
+    # Samples end each turn: the last one of a turn is the first moment of the next.
+    q, v = (np.roll(values[-n:], 1, axis=0) for values in (record.displacement, record.velocity))
+    lines = np.fft.rfft(v, axis=0) * (2j * pi / period * np.arange(n // 2 + 1))[:, None]
+    return Recorded(period, q, v, np.fft.irfft(lines, n, axis=0))
+
+
+def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> bool:
+    """Whether a motion repeats itself turn by turn on another orbit than the steady motion: several exist.
+
+    Notes
+    -----
+    What is left of a free vibration near this orbit changes from turn to turn by as much as it is far from the orbit, unless
+    its frequency is a multiple of the force's to some thousandths.
+    """
+    record, frequency = simulation.whole, model.excitation.frequency_hz
+    per_turn = record.schedule.steps_per_turn // record.schedule.stride
+    if len(record.time) < 2 * per_turn:
+        return False
+    last, before = record.displacement[-per_turn:, :3], record.displacement[-2 * per_turn : -per_turn, :3]
+    recorded, steady = (
+        fourier_line(turn.time[-n:], turn.displacement[-n:, :3], frequency)
+        for turn, n in ((record, per_turn), (settled, _SAMPLES))
+    )
+    change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))
+    return change < _REPEATS * float(np.linalg.norm(recorded - steady))

@@ -36,181 +36,94 @@ Harris, Proc. IEEE 66 (1978), 51 (windows); Nayfeh, Mook, Nonlinear Oscillations
 from __future__ import annotations
 
 from math import pi
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
-from raceway.core.record import Motion, Record, Schedule
+from raceway.bodies.model import Model
+from raceway.core.record import Record
 from raceway.core.signals import Identification, fourier_line, stiffness, without_drift
-from raceway.errors import BeyondPlanError, ConvergenceError, SceneError, StabilityError
+from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.estimate import Estimate, Note
-from raceway.pipeline.settle import settle
-from raceway.pipeline.simulate import OnProgress, Simulation, simulate
+from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
 from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
 from raceway.plugins.identifiers import Tangent, whole_turns
 from raceway.storage.tables import Tables
 
-#: Samples of the steady turn, and the error of its displacement over its amplitude.
-_SAMPLES, _TOLERANCE = 360, 1e-8
-#: Speeds in a row without a steady motion after which none is searched for.
-_GIVEN_UP = 3
-#: Two turns that differ by less than this share of their distance from the steady motion repeat each other.
-_REPEATS = 0.01
+#: Free vibrations below this share of the 1x power shift nothing that can be seen.
+_LEAST_FREE = 1e-10
+#: Relative error of Z in a window above which a warning states it.
+_MUCH = 0.05
+#: Other starts in the order in which they are tried.
+_OTHERS: dict[str, tuple[str, ...]] = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
+#: A series of equilibria knows no velocities: it begins under the force or under one that grows.
+_SERIES: dict[str, tuple[str, ...]] = {"orbit": ("ramp",), "ramp": ("static",), "static": ("ramp",)}
 
 
-def settled_value(
-    model: Model,
-    equilibrium: Equilibrium,
-    motions: list[tuple[Model, Simulation]],
-    found: Identification,
-    steady: Settled,
-    on_progress: OnProgress | None = None,
-) -> complex | None:
-    """Z [N/m] that the scene's identifier finds in steady motions instead of the recorded ones.
+@attrs.frozen(eq=False)
+class Identified:
+    """Motions of a scene, and what is identified from them: of this errors are estimated.
 
-    Parameters
+    Attributes
     ----------
-    motions : model and motion of each speed
-    found : what was identified in them; of a speed that changes, the steady motion at the speed of its Z counts
-    steady : motions of an excitation that changes its speed
-    on_progress : called in the search, which what it raises ends
+    model, equilibrium : of the scene
+    motions : one at each speed; empty where the identifier needs no motion
+    on_progress : called in further runs and searches; the error of one that it ends is not known
+    steady : steady motions of an excitation that changes its speed
+    """
+
+    model: Model
+    equilibrium: Equilibrium
+    motions: list[Simulation]
+    identification: Identification
+    on_progress: OnProgress | None = None
+    steady: SteadyMotions = attrs.field(init=False)
+
+    @steady.default
+    def _steady_motions(self) -> SteadyMotions:
+        return SteadyMotions(self.model, self.on_progress)
+
+    @property
+    def motion(self) -> Simulation:
+        """That at the last speed."""
+        return self.motions[-1]
+
+    @property
+    def value(self) -> complex:
+        """Z [N/m]."""
+        return self.identification.dynamic_stiffness
+
+    @property
+    def several_speeds(self) -> bool:
+        return "speeds" in self.model.scene.identifier.method.needs
+
+    def identify(self, records: list[Record]) -> complex:
+        """Z [N/m] by the scene's identifier."""
+        return self.model.scene.identifier.method.identify(records, self.equilibrium, self.model).dynamic_stiffness
+
+
+def settled_value(run: Identified) -> complex | None:
+    """Z [N/m] that the scene's identifier finds in steady motions instead of the recorded ones.
 
     Returns
     -------
     complex or None
         None where a steady motion cannot be solved for (friction, laws with memory, bodies that are stepped from Python), is
-        not found, or is another one than the transient settles on.
+        not found, or is another one than the transient settles on.  Of a speed that changes, that at the speed of the stated Z.
     """
-    if model.excitation.period_s is None:
+    if run.model.excitation.period_s is None:
         # The windows before lead to that one's motion, where several exist.
-        for speed, _ in found.series[:-1]:
-            steady.value(speed, on_progress)
-        return steady.value(found.speed, on_progress)
+        for speed, _ in run.identification.series[:-1]:
+            run.steady.value(speed)
+        return run.steady.value(run.identification.speed)
     records = []
-    for one, motion in motions:
-        settled = steady_record(one, equilibrium if one is model else settle(one), motion, on_progress)
-        if settled is None or settles_elsewhere(one, motion, settled):
+    for motion in run.motions:
+        settled = steady_record(motion.model, motion.equilibrium, motion, run.on_progress)
+        if settled is None or settles_elsewhere(motion.model, motion, settled):
             return None
         records.append(settled)
-    return model.scene.identifier.method.identify(records, equilibrium, model).dynamic_stiffness
-
-
-@attrs.define
-class Settled:
-    """Steady motions of an excitation that changes its speed, speed by speed; each is solved for once.
-
-    Attributes
-    ----------
-    values : Z [N/m] by speed [rad/s]
-    last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
-    missed : speeds in a row without a motion; after some, none is searched for
-    """
-
-    model: Model
-    values: dict[float, complex | None] = attrs.field(factory=dict)
-    last: Record | None = None
-    missed: int = 0
-
-    def value(self, speed: float, on_progress: OnProgress | None = None) -> complex | None:
-        """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""
-        if speed not in self.values:
-            self.values[speed] = self._solved(speed, on_progress)
-        return self.values[speed]
-
-    def _solved(self, speed: float, on_progress: OnProgress | None) -> complex | None:
-        one = _at_speed(self.model, speed)
-        if one is None or self.missed >= _GIVEN_UP:
-            return None
-        near = None if self.last is None else self.last.solution
-        record = _steady(one, settle(one), near, on_progress)
-        self.missed = self.missed + 1 if record is None else 0
-        if record is None:
-            return None
-        self.last = record
-        frequency = one.excitation.frequency_hz
-        return stiffness(*(fourier_line(record.time, part, frequency) for part in (record.force, record.displacement)))
-
-
-def _at_speed(model: Model, speed: float) -> Model | None:
-    """The same scene at one speed [rad/s], of an excitation that tells what it is there."""
-    begun = getattr(model.excitation, "steady", None)
-    if begun is None:
-        return None
-    scene = attrs.evolve(model.scene, excitation=attrs.evolve(begun(), speed_rpm=speed * 30.0 / pi))
-    return build_model(scene, model.plan)
-
-
-def steady_record(
-    model: Model, equilibrium: Equilibrium, motion: Simulation | None = None, on_progress: OnProgress | None = None
-) -> Record | None:
-    """One turn of the steady motion; None where there is none that can be solved for, or none is found.
-
-    Parameters
-    ----------
-    motion : that settles on it: where several exist, the one near its last turn is taken
-    on_progress : called in the search, which what it raises ends
-    """
-    period = model.excitation.period_s
-    near = None if motion is None or period is None else last_turn(motion.whole, period)
-    return _steady(model, equilibrium, near, on_progress)
-
-
-def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnProgress | None) -> Record | None:
-    from raceway.core.periodic.steady import steady
-
-    if model.excitation.period_s is None:
-        return None
-    q, ball = equilibrium.displacement, equilibrium.ball
-    start = Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy(), near=near, stay=True)
-    schedule = Schedule(model.excitation.period_s / _SAMPLES, _SAMPLES, 1)
-    watch = None if on_progress is None else (lambda done, total: on_progress("the steady motion", done, total))
-    try:
-        return steady(model.system, start, schedule, _TOLERANCE, on_chunk=watch)
-    except (ConvergenceError, SceneError):
-        return None
-
-
-def last_turn(whole: Record, period: float) -> Any:
-    """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
-    from raceway.core.periodic.search import Recorded
-
-    steps, stride = whole.schedule.steps_per_turn, whole.schedule.stride
-    n = steps // stride
-    if n * stride != steps or len(whole.time) < n or whole.schedule.steps % steps:
-        return None
-    # Samples end each turn: the last one of a turn is the first moment of the next.
-    q, v = (np.roll(values[-n:], 1, axis=0) for values in (whole.displacement, whole.velocity))
-    lines = np.fft.rfft(v, axis=0) * (2j * pi / period * np.arange(n // 2 + 1))[:, None]
-    return Recorded(period, q, v, np.fft.irfft(lines, n, axis=0))
-
-
-def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> bool:
-    """Whether a motion repeats itself turn by turn on another orbit than the steady motion: several exist.
-
-    Notes
-    -----
-    What is left of a free vibration near this orbit changes from turn to turn by as much as it is far from the orbit, unless
-    its frequency is a multiple of the force's to some thousandths.
-    """
-    whole, frequency = simulation.whole, model.excitation.frequency_hz
-    per_turn = whole.schedule.steps_per_turn // whole.schedule.stride
-    if len(whole.time) < 2 * per_turn:
-        return False
-    last, before = whole.displacement[-per_turn:, :3], whole.displacement[-2 * per_turn : -per_turn, :3]
-    lines = [
-        fourier_line(one.time[-n:], one.displacement[-n:, :3], frequency)
-        for one, n in ((whole, per_turn), (settled, _SAMPLES))
-    ]
-    apart = float(np.linalg.norm(lines[0] - lines[1]))
-    change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))
-    return change < _REPEATS * apart
-
-
-#: Free vibrations below this share of the 1x power shift nothing that can be seen.
-_LEAST_FREE = 1e-10
+    return run.identify(records)
 
 
 @attrs.frozen
@@ -228,23 +141,22 @@ class Clean:
     halves: float | None = None
 
 
-def without_free_vibration(model: Model, equilibrium: Equilibrium, simulation: Simulation) -> Clean | None:
+def without_free_vibration(motion: Simulation) -> Clean | None:
     """Z of the turns that are used, by Hann's window; of a single turn by what does not close; None where neither can be."""
-    if model.excitation.period_s is None:
+    if motion.model.excitation.period_s is None:
         return None
-    record, whole = whole_turns(simulation.record), simulation.whole
-    per_turn = whole.schedule.steps_per_turn // whole.schedule.stride
+    record = whole_turns(motion.record)
+    per_turn = motion.steps_per_turn // motion.whole.schedule.stride
     if len(record.time) >= 2 * per_turn:
-        frequency, samples = model.excitation.frequency_hz, len(record.time)
+        frequency, samples = motion.model.excitation.frequency_hz, len(record.time)
         value, half = _windowed(record, slice(None), frequency), samples // per_turn // 2 * per_turn
         ends = (slice(half), slice(samples - half, None))
-        parts = [_windowed(record, one, frequency) for one in ends] if half >= 2 * per_turn else []
-        halves = abs(parts[0] - parts[1]) if parts else None
-        return Clean(value, _lasting(model, equilibrium, record, value), Estimate.LEAKAGE(), halves)
-    if len(whole.time) <= per_turn or not model.scene.integrator.method.inertial:
+        values = [_windowed(record, end, frequency) for end in ends] if half >= 2 * per_turn else []
+        halves = abs(values[0] - values[1]) if values else None
+        return Clean(value, _lasting(motion, record, value), Estimate.LEAKAGE(), halves)
+    if len(motion.whole.time) <= per_turn or not motion.model.scene.integrator.method.inertial:
         return None
-    value = _closed(model, equilibrium, whole, per_turn)
-    return Clean(value, 0j, Estimate.OPEN_TURN())
+    return Clean(_closed(motion, per_turn), 0j, Estimate.OPEN_TURN())
 
 
 def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:
@@ -253,23 +165,23 @@ def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:
     return stiffness(lines[:5], lines[5:])
 
 
-def _closed(model: Model, equilibrium: Equilibrium, whole: Record, per_turn: int) -> complex:
+def _closed(motion: Simulation, per_turn: int) -> complex:
     """Z of the last turn less what its free vibration leaves in the 1x line."""
     from scipy.linalg import eigh
 
-    system, w = model.system, 2.0 * np.pi * model.excitation.frequency_hz
-    chosen = np.flatnonzero(system.free > 0.0)
-    tangent = 0.5 * (equilibrium.stiffness_rows_held + equilibrium.stiffness_rows_held.T)
+    record, system, w = motion.whole, motion.model.system, 2.0 * np.pi * motion.model.excitation.frequency_hz
+    free = np.flatnonzero(system.free > 0.0)
+    tangent = 0.5 * (motion.equilibrium.stiffness_rows_held + motion.equilibrium.stiffness_rows_held.T)
     squares, modes = eigh(system.reduced(tangent + system.stiffness), system.reduced(system.mass))
     jump, slope = (
-        modes.T @ system.reduced(system.mass) @ (signal[-1] - signal[-1 - per_turn])[chosen]
-        for signal in (whole.displacement, whole.velocity)
+        modes.T @ system.reduced(system.mass) @ (signal[-1] - signal[-1 - per_turn])[free]
+        for signal in (record.displacement, record.velocity)
     )
     turn = slice(-per_turn, None)
-    line = fourier_line(whole.time[turn], whole.displacement[turn], w / (2.0 * np.pi))
-    seam = np.exp(-1j * w * whole.time[-1])
-    line[chosen] -= w / np.pi * seam * modes @ ((slope + 1j * w * jump) / (w**2 - squares))
-    return stiffness(fourier_line(whole.time[turn], whole.force[turn], w / (2.0 * np.pi)), line)
+    line = fourier_line(record.time[turn], record.displacement[turn], w / (2.0 * np.pi))
+    seam = np.exp(-1j * w * record.time[-1])
+    line[free] -= w / np.pi * seam * modes @ ((slope + 1j * w * jump) / (w**2 - squares))
+    return stiffness(fourier_line(record.time[turn], record.force[turn], w / (2.0 * np.pi)), line)
 
 
 def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
@@ -284,7 +196,7 @@ def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.n
     return 2.0 * (kernel[:, None] * without_drift(time, signal, frequency_hz)).mean(axis=0)
 
 
-def _lasting(model: Model, equilibrium: Equilibrium, record: Record, value: complex) -> complex:
+def _lasting(motion: Simulation, record: Record, value: complex) -> complex:
     """Shift of Z [N/m] by the free vibration."""
     per_turn = record.schedule.steps_per_turn // record.schedule.stride
     turns = len(record.time) // per_turn
@@ -295,62 +207,9 @@ def _lasting(model: Model, equilibrium: Equilibrium, record: Record, value: comp
     forced = float(((periodic - periodic.mean(axis=0)) ** 2).sum(axis=1).mean())
     if forced == 0.0 or free < _LEAST_FREE * forced:
         return 0j
-    tangent = Tangent().identify([], equilibrium, model).dynamic_stiffness
+    tangent = Tangent().identify([], motion.equilibrium, motion.model).dynamic_stiffness
     share = 2.0 * free / forced
     return share / (1.0 + share) * (value - tangent)
-
-
-#: Relative error of Z in a window above which it is told.
-_MUCH = 0.05
-
-
-def with_series_error(
-    model: Model, found: Identification, error: Tables, steady: Settled, on_progress: OnProgress | None = None
-) -> Identification:
-    """The same with ``series_error`` held against steady motions where the speed changes.
-
-    Parameters
-    ----------
-    error : table ``error`` of the result;  steady : motions that it was made with
-    on_progress : called in searches for steady motions; of windows whose search it ends no error is stated
-    """
-    if not found.series_error:
-        return found
-    held = model.excitation.period_s is None and compares_with_steady_motion(model.scene)
-    told: list[float | None] = []
-    for (speed, z), own in zip(found.series, found.series_error, strict=True):
-        try:
-            settled = steady.value(speed, on_progress) if held else None
-        except BeyondPlanError:  # of this window and of those to come nothing is known
-            told += [None] * (len(found.series) - len(told))
-            break
-        if settled is not None:
-            told.append(abs(z - settled) / min(abs(z), abs(settled)))
-        else:
-            told.append(None if own is None else own + (error["time_step"] or 0.0))
-    return attrs.evolve(found, series_error=tuple(told))
-
-
-def series_warnings(found: Identification | None) -> list[str]:
-    """Says where windows of a run-up do not tell Z."""
-    if found is None:
-        return []
-    known = [(size, speed) for size, (speed, _) in zip(found.series_error, found.series, strict=False) if size is not None]
-    bad = [speed * 30.0 / pi for size, speed in known if not size <= _MUCH]
-    if not bad:
-        return []
-    size, speed = max(known)
-    return [
-        f"the motion does not follow the speed in {len(bad)} of {len(found.series)} windows, {min(bad):.0f} to {max(bad):.0f} r/min: "
-        f"the error of Z is up to {size:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or run "
-        "these speeds one by one"
-    ]
-
-
-#: Other starts in the order in which they are tried.
-_OTHERS: dict[str, tuple[str, ...]] = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
-#: A series of equilibria knows no velocities: it begins under the force or under one that grows.
-_SERIES: dict[str, tuple[str, ...]] = {"orbit": ("ramp",), "ramp": ("static",), "static": ("ramp",)}
 
 
 @attrs.frozen
@@ -361,49 +220,45 @@ class Run:
     steps: int
 
     @classmethod
-    def of(cls, model: Model, equilibrium: Equilibrium, motion: Simulation) -> Run:
-        clean = without_free_vibration(model, equilibrium, motion)
+    def of(cls, motion: Simulation) -> Run:
+        clean, model = without_free_vibration(motion), motion.model
         if clean is not None:
-            return cls(clean.value, motion.whole.schedule.steps_per_turn)
-        found = model.scene.identifier.method.identify([motion.record], equilibrium, model)
-        return cls(found.dynamic_stiffness, motion.whole.schedule.steps_per_turn)
+            return cls(clean.value, motion.steps_per_turn)
+        identification = model.scene.identifier.method.identify([motion.record], motion.equilibrium, model)
+        return cls(identification.dynamic_stiffness, motion.steps_per_turn)
 
 
-def distance(
-    model: Model, equilibrium: Equilibrium, first: Simulation, run: Run, on_progress: OnProgress | None = None
-) -> tuple[float, str]:
+def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None) -> tuple[float, str]:
     """Distance of Z from that of another start, over the smaller Z, and the name of that start.
 
     Parameters
     ----------
-    first : the motion from the scene's own start;  run : from the same start, over as many turns
+    motion : from the scene's own start;  run : from the same start, over as many turns
 
     Raises
     ------
     ConvergenceError, StabilityError
         No other start gives a motion.
     """
-    kinds = (_OTHERS if model.scene.integrator.method.inertial else _SERIES)[first.start.kind]
-    if not first.start.settled:
+    kinds = (_OTHERS if motion.model.scene.integrator.method.inertial else _SERIES)[motion.start.kind]
+    if not motion.start.settled:
         kinds = tuple(kind for kind in kinds if kind != "orbit")  # searched for in vain
-    failed: ConvergenceError | StabilityError | None = None
+    failure: ConvergenceError | StabilityError | None = None
     for kind in kinds:
-        one = _begun_by(model, kind)
         try:
-            motion = simulate(one, equilibrium, on_progress, run.steps)
+            restarted = simulate(_started_by(motion.model, kind), motion.equilibrium, on_progress, run.steps)
         except (ConvergenceError, StabilityError) as error:
-            failed = error
+            failure = error
             continue
-        if motion.start.kind == kind:
-            other = Run.of(one, equilibrium, motion).value
-            return abs(run.value - other) / min(abs(run.value), abs(other)), kind
-    raise failed or ConvergenceError("no orbit was found to start on")
+        if restarted.start.kind == kind:
+            value = Run.of(restarted).value
+            return abs(run.value - value) / min(abs(run.value), abs(value)), kind
+    raise failure or ConvergenceError("no orbit was found to start on")
 
 
-def _begun_by(model: Model, kind: str) -> Model:
+def _started_by(model: Model, kind: str) -> Model:
     """The same scene with another start."""
-    scene = model.scene
-    excitation = scene.excitation
+    scene, excitation = model.scene, model.scene.excitation
     if getattr(excitation, "ramp_turns", 0.0) > 0.0:
         excitation = attrs.evolve(excitation, ramp_turns=0.0)
     scene = attrs.evolve(scene, excitation=excitation, integrator=attrs.evolve(scene.integrator, start=kind))
@@ -416,4 +271,49 @@ def start_warnings(model: Model, error: Tables) -> list[str]:
         return []
     return [
         f"friction: how far the answer depends on the motion's start is not known, and so is its error: {error['how']['transient']}"
+    ]
+
+
+def with_series_error(run: Identified, time_step: float | None) -> Identification:
+    """The identification with ``series_error`` from steady motions where the speed changes.
+
+    Parameters
+    ----------
+    time_step : relative error of the time step
+
+    Notes
+    -----
+    Of windows whose search is ended by ``run.on_progress`` no error is stated.
+    """
+    identification, errors = run.identification, list[float | None]()
+    if not identification.series_error:
+        return identification
+    compared = run.model.excitation.period_s is None and compares_with_steady_motion(run.model.scene)
+    for (speed, z), stated in zip(identification.series, identification.series_error, strict=True):
+        try:
+            settled = run.steady.value(speed) if compared else None
+        except BeyondPlanError:  # of this window and of those to come nothing is known
+            errors += [None] * (len(identification.series) - len(errors))
+            break
+        if settled is not None:
+            errors.append(abs(z - settled) / min(abs(z), abs(settled)))
+        else:
+            errors.append(None if stated is None else stated + (time_step or 0.0))
+    return attrs.evolve(identification, series_error=tuple(errors))
+
+
+def series_warnings(identification: Identification | None) -> list[str]:
+    """Says in which windows of a run-up Z is not that of the speed."""
+    if identification is None:
+        return []
+    windows = zip(identification.series_error, identification.series, strict=False)
+    errors = [(error, speed) for error, (speed, _) in windows if error is not None]
+    bad = [speed * 30.0 / pi for error, speed in errors if not error <= _MUCH]
+    if not bad:
+        return []
+    error, speed = max(errors)
+    return [
+        f"the motion does not follow the speed in {len(bad)} of {len(identification.series)} windows, {min(bad):.0f} to {max(bad):.0f} "
+        f"r/min: the error of Z is up to {error:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or "
+        "run these speeds one by one"
     ]
