@@ -105,7 +105,7 @@ class Copy:
         try:
             with tempfile.TemporaryDirectory(dir=self.place.parent) as folder:
                 cache = Path(folder)
-                if fault.file.startswith("raceway/core/"):
+                if fault.file.startswith(("raceway/core/", "raceway/elastic/")):
                     carry_over(self.good, self.place, fault.file, self.environment(cache))
                 else:  # another key would mean other kernels
                     cache = self.good
