@@ -122,8 +122,12 @@ def fit(options: FitOptions) -> int:
         failed = attempt(
             lambda: answer.pictures(folder) if isinstance(answer, Identified) else [answer.picture(folder)], files
         )
-    screen = fit_screen if options.free else identify_screen
-    show(content, options.as_json, failed, lambda: screen(content, files))
+    show(
+        content,
+        options.as_json,
+        failed,
+        lambda: identify_screen(answer, files) if isinstance(answer, Identified) else fit_screen(answer, files),
+    )
     return 0
 
 

@@ -16,7 +16,7 @@ from raceway.framework.shown import Fact, Shown, number, number_within, read_in
 from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.scene.given import as_scene
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 from raceway.studies.fit.column_headers import quantity_of
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
 from raceway.studies.fit.signals import headers_of, signals_of, table_of
@@ -194,16 +194,11 @@ class Fitted(Shown):
 
 def interval(name: str, value: float, half: float, unit: str, remark: str = "") -> Fact:
     """A number with its half-width at 95 %, in the unit in which people read it."""
-    value, half, unit = _readable(value, half, unit)
+    (value, word), size = read_in(value, unit), read_in(half, unit)[0]
     if not np.isfinite(half):
-        return name, number(value, unit, 4), "not determined"
-    words = f"+- {number(half, unit, 2)} at 95 %"
-    return name, number_within(value, half, unit), f"{words}; {remark}" if remark else words
-
-
-def _readable(value: float, half: float, unit: str) -> tuple[float, float, str]:
-    read, word = read_in(value, unit)
-    return read, read_in(half, unit)[0], word
+        return name, number(value, word, 4), "not determined"
+    words = f"+- {number(size, word, 2)} at 95 %"
+    return name, number_within(value, size, word), f"{words}; {remark}" if remark else words
 
 
 def _sentence(combination: Combination, numbers: Mapping[str, tuple[float, float, str]]) -> str:
@@ -309,40 +304,29 @@ def _refuse(wrong: bool, path: str, why: str) -> None:
         raise SceneError.at(path, None, why)
 
 
-def fit_screen(content: ReadTables, files: list[str]) -> RenderableType:
-    """Free numbers with their intervals, what follows from them; below, how well the model meets the data, and warnings."""
+def fit_screen(answer: Fitted, files: list[str]) -> RenderableType:
+    """Numbers with their intervals by cause; below, how well the model meets the data, warnings, and the files that were written."""
     from rich.console import Group
 
     from raceway.out.table import rows_table, written
     from raceway.out.wrapping import Words
 
+    estimate, starts, parts = answer.estimate, {}, answer.estimate.parts
+    if answer.kind != "record":
+        starts = {key.name: number(key.start, key.unit, 6) for key in estimate.free}
     rows = []
-    for free in content["free"]:
-        start = "" if content["kind"] == "record" else number(free["start"], free["unit"], 6)
-        rows.append(_row(free["key"], start, free["value"], free["error"], free["unit"]))
-        if free["determined"] and len(free["parts"]) > 1:
-            rows[-1]["of which"] = _parts(free)
-    rows += [_row(n["name"], "", n["value"], n["half"], n["unit"]) for n in content["derived"]]
-    fit = content["fit"]
-    words = f"{fit['data']} data, {len(content['free'])} free, {fit['evaluations']} evaluations"
-    if fit["scatter"] is not None and content["kind"] != "record":
-        stated = content["stated"]
-        words += f"; residuals {fit['scatter']:.2g} of the stated errors" if stated else ""
-        words += "" if stated else f"; residuals scatter by {100.0 * fit['scatter']:.2g} % of the data"
-    lines = [Words(words), *(Words(text, "yellow") for text in content["warnings"])]
-    return Group(rows_table(rows, f"{content['title']}\nfitted to {content['file']}"), *lines, *written(files))
-
-
-def _row(name: str, start: str, value: float, half: float | None, unit: str) -> dict[str, str]:
-    value, size, unit = _readable(value, half or 0.0, unit)
-    if half is None:
-        return {"free": name, "from": start, "found": number(value, unit, 4), "at 95 %": "not determined"}
-    width = f"± {number(size, unit, 2)}"
-    return {"free": name, "from": start, "found": number_within(value, size, unit), "at 95 %": width}
-
-
-def _parts(free: ReadTables) -> str:
-    """Half-widths by cause, the larger ones first."""
-    parts = sorted(free["parts"].items(), key=lambda part: -part[1])
-    readable = [(cause, _readable(0.0, half, free["unit"])) for cause, half in parts if half > _SMALL * free["error"]]
-    return ", ".join(f"{cause} {number(half, unit, 2)}" for cause, (_, half, unit) in readable)
+    for k, (name, (value, half, unit)) in enumerate(answer._numbers.items()):
+        _, read, width = interval(name, value, half, unit)
+        width = width.removesuffix(" at 95 %").replace("+-", "±")
+        rows.append({"free": name, "from": starts.get(name, ""), "found": read, "at 95 %": width})
+        if k < len(estimate.free) and len(parts) > 1 and np.isfinite(half):
+            shares = sorted(((float(sizes[k]), cause) for cause, sizes in parts.items()), reverse=True)
+            large = [f"{cause} {number(*read_in(size, unit), 2)}" for size, cause in shares if size > _SMALL * half]
+            rows[-1]["of which"] = ", ".join(large)
+    words = f"{len(estimate.residuals)} data, {len(estimate.free)} free, {estimate.evaluations} evaluations"
+    if estimate.scatter is not None and answer.kind != "record":
+        of = "of the stated errors" if answer.stated else "of the data"
+        size = f"{estimate.scatter:.2g}" if answer.stated else f"{100.0 * estimate.scatter:.2g} %"
+        words += f"; residuals {size} {of}"
+    lines = [Words(words), *(Words(text, "yellow") for text in answer.warnings)]
+    return Group(rows_table(rows, f"{answer.title}\nfitted to {answer.source}"), *lines, *written(files))

@@ -23,7 +23,7 @@ from raceway.scene.given import as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.rig import Rig
 from raceway.storage.files import writable
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fit import interval
 from raceway.studies.fit.rig import (
@@ -285,16 +285,24 @@ class Identified(Shown):
             axes.legend(frameon=False, fontsize=8)
         return axes
 
-    def _shown(self) -> tuple[str, list[Fact]]:
-        c, wide = self.equivalent_damping, self.equivalent_damping_error
-        facts = [interval("K", self.equivalent_stiffness, self.uncertainty[0], "N/m", "tilt as in the rig")]
+    def _coefficients(self) -> list[Fact]:
+        """K and C with their half-widths, and K of the scene."""
+        c, wide, state = self.equivalent_damping, self.equivalent_damping_error, self.state
+        facts = [
+            interval("K", self.equivalent_stiffness, self.uncertainty[0], "N/m", f"Re Z + m w^2, m = {state.mass:.4g} kg")
+        ]
         if c is not None and wide is not None:
             value = number(c, "N s/m", 4) if abs(c) > wide else "not resolved"
             facts.append(("C", value, f"+- {number(wide, 'N s/m', 2)} at 95 %"))
-        facts.append(interval("K, tilt locked", self.state.locked[0], self.uncertainty[2], "N/m"))
-        facts.append(("K of the scene", number(1e-6 * self.scene_stiffness, "N/µm"), "under the same force and moment"))
+        locked = interval(
+            "K, tilt locked", state.locked[0], self.uncertainty[2], "N/m", "less the force of the bearing's tilt"
+        )
+        scene = number(1e-6 * self.scene_stiffness, "N/µm")
+        return [*facts, ("K of the scene's bearing", scene, "under the same force and moment"), locked]
+
+    def _shown(self) -> tuple[str, list[Fact]]:
         title = f"Identified from {self.source} at {self.speed_rpm:.1f} r/min\n{self.title.splitlines()[0]}"
-        return title, [*facts, *(("warning", "", text) for text in self.warnings)]
+        return title, [*self._coefficients(), *(("warning", "", text) for text in self.warnings)]
 
 
 @door
@@ -411,45 +419,30 @@ def identify_recording(
     return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)
 
 
-def identify_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """Signals, 1x component, bearing, K and C."""
+def identify_screen(answer: Identified, files: Sequence[str]) -> RenderableType:
+    """Signals, 1x component, bearing, K and C, and the files that were written."""
     from rich.console import Group
 
     from raceway.out.table import sections, written
     from raceway.out.wrapping import Words
 
-    signals, line, run_out, bearing = content["signals"], content["line"], content["run_out"], content["bearing"]
-    answer, speed = content["identification"], signals["speed_rpm"]
-    locked = answer["tilt_locked"]
-    angle = "" if line["angle_deg"] is None else f"{line['angle_deg']:.2f} deg from the mark"
-
-    def error(table: ReadTables) -> str:
-        return f"+- {number(1e-6 * table['equivalent_stiffness_error'], 'N/µm', 2)} at 95 %"
-
+    content, component, state, run_out = answer.content(), answer.component, answer.state, answer.run_out
+    signals, speed = content["signals"], content["signals"]["speed_rpm"]
+    angle = f"{content['line']['angle_deg']:.2f} deg from the mark" if component.marked else ""
     rows = [
         ("Signals", "", f"{signals['samples']} samples, {signals['turns']} turns, angle from {signals['angle_from']}"),
         ("speed", number(speed["mean"], "r/min", 6), f"{speed['lowest']:.1f} to {speed['highest']:.1f} r/min"),
-        ("1x line, forward", number(1e6 * line["forward_m"], "µm"), angle),
-        ("1x line, backward", number(1e6 * line["backward_m"], "µm", 3), f"fit leaves {100 * line['residual']:.2g} %"),
-        ("run-out", number(1e6 * run_out["amplitude_m"], "µm", 4), run_out["how"]),
-        ("Bearing", "", "what the inverted beam makes of it"),
-        ("deflection", number(1e6 * bearing["deflection_m"], "µm"), f"of {1e6 * bearing['sensor_m']:.4g} µm at the sensor"),
-        ("force, moment", number(bearing["force_n"], "N"), f"{bearing['moment_nm']:.4g} N m, slope {bearing['slope_rad']:.3g} rad"),
-        (f"Dynamic stiffness at {answer['speed_rpm']:.0f} r/min", "", answer["definition"]),
-        ("|Z|", number(1e-6 * answer["dynamic_stiffness"]["abs"], "N/µm"), "force over deflection"),
-        ("K", number(1e-6 * answer["equivalent_stiffness"], "N/µm"), f"{error(answer)}; Re Z + m w^2, m = {answer['mass_used_kg']:.4g} kg"),
+        ("1x component, forward", number(1e6 * abs(component.forward), "µm"), angle),
+        ("1x component, backward", number(1e6 * component.backward, "µm", 3), f"residual of the fit {100 * component.residual:.2g} %"),
+        ("run-out", number(1e6 * abs(run_out.vector), "µm", 4), run_out.how),
+        ("Bearing", "", "by inversion of the beam"),
+        ("deflection", number(1e6 * abs(state.deflection), "µm"), f"of {1e6 * abs(state.sensor):.4g} µm at the sensor"),
+        ("force, moment", number(abs(state.force), "N"), f"{abs(state.moment):.4g} N m, slope {abs(state.slope):.3g} rad"),
+        (f"Dynamic stiffness at {answer.speed_rpm:.0f} r/min", "", content["identification"]["definition"]),
+        ("|Z|", number(1e-6 * abs(state.dynamic_stiffness), "N/µm"), "force over deflection"),
+        *answer._coefficients(),
+        ("Relative change of K by", "", "a change of what is taken as known"),
+        *((str(change["change"]), f"{100 * float(change['stiffness']):+.2f} %", "") for change in answer.changes),
     ]  # fmt: skip
-    if answer["equivalent_damping"] is not None:
-        wide = answer["equivalent_damping_error"]
-        resolved = abs(answer["equivalent_damping"]) > wide
-        value = number(answer["equivalent_damping"], "N s/m", 4) if resolved else "not resolved"
-        remark = f"+- {wide:.2g} N s/m at 95 %" if resolved else f"below its uncertainty of {wide:.2g} N s/m"
-        rows.append(("C", value, remark))
-    rows += [
-        ("K of the scene's bearing", number(1e-6 * answer["scene_stiffness"], "N/µm"), "under the same force and moment"),
-        ("K, tilt locked", number(1e-6 * locked["equivalent_stiffness"], "N/µm"), f"{error(locked)}; {locked['definition']}"),
-        ("Relative change of K if", "", "what is taken as known were otherwise"),
-        *((change["change"], f"{100 * change['stiffness']:+.2f} %", "") for change in content["sensitivities"]),
-    ]  # fmt: skip
-    warnings = [Words(f"warning: {text}", "yellow") for text in content["warnings"]]
-    return Group(Words(content["title"], "bold"), sections(rows), *warnings, *written(files))
+    warnings = [Words(f"warning: {text}", "yellow") for text in answer.warnings]
+    return Group(Words(answer.title, "bold"), sections(rows), *warnings, *written(files))
