@@ -14,7 +14,6 @@ from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Instead
 from raceway.scene.file import read_toml
 from raceway.studies.article import study as driver
-from raceway.studies.article import trends
 from raceway.studies.article.design import (
     ARTICLE,
     FRICTIONS,
@@ -35,8 +34,8 @@ from validation.command_line import EXAMPLES, invoke
 def quick(monkeypatch):
     """Leave out what other tests compute: static pressures, and all but two tilt stiffnesses and one trend."""
     monkeypatch.setattr(driver, "static_pressures", lambda *_: [])
-    monkeypatch.setattr(trends, "STIFFNESSES", (1e3, 1e6))
-    monkeypatch.setattr(trends, "TRENDS", dict(list(trends.TRENDS.items())[-1:]))
+    monkeypatch.setattr(driver, "STIFFNESSES", (1e3, 1e6))
+    monkeypatch.setattr(driver, "TRENDS", dict(list(driver.TRENDS.items())[-1:]))
 
 
 @pytest.mark.slow

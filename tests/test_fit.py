@@ -18,8 +18,7 @@ from raceway.studies.fit.signals import signals_of, write_recording
 from raceway.studies.fit.table import TableResiduals, measurements_in
 from raceway.studies.rig.signals import record as rig_record
 from raceway.studies.rig.signals import response, slow_roll_record, white_noise
-from raceway.studies.shaft.bearing import balance, bearing
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import b7206c, default_registry
 from validation.command_line import EXAMPLES, invoke
 from validation.shaker import hammer_record, record, turning_record

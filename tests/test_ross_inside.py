@@ -13,9 +13,9 @@ import pytest
 
 import raceway as rw
 from raceway import RacewayError, SceneError
+from raceway.plugins.excitations import harmonic_load
 from raceway.studies.rotor.node_bearing import node_bearing, secant
 from raceway.studies.rotor.ross_file import ross
-from raceway.studies.shaft.bearing import harmonic_load
 from validation.command_line import EXAMPLES
 
 SPEED = 12000.0 * np.pi / 30.0

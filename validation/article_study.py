@@ -7,7 +7,8 @@ from typing import Any
 
 from raceway.scene.file import read_toml
 from raceway.storage.tables import Tables
-from raceway.studies.article import elastic, trends
+from raceway.studies.article import elastic
+from raceway.studies.article import study as driver
 from raceway.studies.article.design import Curves, article_tables, design
 from raceway.studies.article.elastic import ElasticArticle, Run
 from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
@@ -59,12 +60,12 @@ def static(deviation: float | None) -> list[dict[str, Any]]:
 def study(found: Curves) -> Article:
     """A whole study around invented curves."""
     compared = tuple(
-        trends.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in trends.TRENDS.items()
+        driver.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in driver.TRENDS.items()
     )
     scan = {
-        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(trends.STIFFNESSES))
+        load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(driver.STIFFNESSES))
                for speed in (10980.0, 15000.0)]
-        for load in trends.scan_loads(found.design)
+        for load in driver.scan_loads(found.design)
     }  # fmt: skip
     rig = tuple(
         {"tilt": tilt, "bodies": "rigid", **row(speed, load, 2e8)}

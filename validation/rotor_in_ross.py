@@ -14,7 +14,7 @@ import numpy as np
 from raceway import RacewayError, load_scene
 from raceway.scene.reading import rig_of
 from raceway.studies.rotor.ross_file import ross
-from raceway.studies.shaft.rotor import Beam, rotor, shaft
+from raceway.studies.shaft import Beam, rotor, shaft
 from validation.command_line import EXAMPLES
 
 AXIAL = 2000.0  # N

@@ -1,4 +1,5 @@
-"""Forces by a closed formula: harmonic along one direction, turning with the rotor, turning while the speed changes."""
+"""Forces by a closed formula: harmonic along one direction, turning with the rotor, turning while the speed changes; loads of whirling
+shafts, which studies make and no scene names."""
 
 from __future__ import annotations
 
@@ -238,3 +239,30 @@ class RunUp:
         from raceway.core.excitations.run_up import run_up
 
         return run_up
+
+
+@attrs.frozen(kw_only=True)
+class HarmonicLoad(Bidirectional):
+    """Complex amplitudes (5,) of F_x, F_y, F_z [N], M_y, M_z [N m]; the load is their real part times e^{jwt}."""
+
+    amplitudes: tuple[complex, ...] = (0.0,) * 5
+
+    def parameters(self) -> np.ndarray:
+        import numpy as np
+
+        return np.concatenate([[self.whirl_speed], np.array(self.amplitudes, dtype=complex).view(float)])
+
+    def kernel(self) -> Kernel:
+        from raceway.core.excitations.harmonic import harmonic_load
+
+        return harmonic_load
+
+
+def harmonic_load(speed: float, load: np.ndarray) -> HarmonicLoad:
+    """The excitation of a load (5,) [N, N m] at a speed [rad/s]."""
+    import numpy as np
+
+    largest = float(np.abs(load[:3]).max())
+    return HarmonicLoad(
+        speed_rpm=speed * 30.0 / pi, amplitude="constant", force=largest, amplitudes=tuple(map(complex, load))
+    )

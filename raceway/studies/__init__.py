@@ -50,5 +50,5 @@ def raceway_studies() -> list[type]:
             "The article's figures 9 to 12 and a verdict on each of its claims.",
             "raceway.studies.article.command:article",
         ),
-        _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.command:rig"),
+        _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.page:rig"),
     ]

@@ -29,8 +29,7 @@ from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise
 from raceway.studies.rig.study import study
-from raceway.studies.shaft.bearing import balance, bearing
-from raceway.studies.shaft.rotor import beam, rotor, shaft
+from raceway.studies.shaft import balance, beam, bearing, rotor, shaft
 from raceway.testing import b7206c, default_registry
 from validation.shaker import hammer_record
 from validation.shaker import record as record_of_shaker

@@ -14,7 +14,7 @@ import pytest
 from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
-from raceway.studies.article.trends import SOLVER_SPEEDS, TRENDS
+from raceway.studies.article.study import SOLVER_SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settle, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
@@ -24,7 +24,7 @@ from validation.scenes import random_tables
 from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 SOLVER = "another rigid-ring solver (validation/expected_values.py)"
-TURNING = "another rigid-ring solver (raceway/studies/article/trends.py)"
+TURNING = "another rigid-ring solver (raceway/studies/article/study.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}
 CONVEX = "the potential of loaded rings is convex: there is an equilibrium"

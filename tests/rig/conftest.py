@@ -8,8 +8,7 @@ import pytest
 
 from raceway import load_scene
 from raceway.scene.rig import Rig
-from raceway.studies.shaft.bearing import balance, bearing
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from validation.command_line import EXAMPLES
 

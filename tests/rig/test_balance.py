@@ -8,8 +8,7 @@ import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.studies.fit.rig import coefficients, invert, standard_errors, with_moment, with_tilt_of
-from raceway.studies.shaft.bearing import bearing, find_root, whirling_load
-from raceway.studies.shaft.rotor import rotor, shaft
+from raceway.studies.shaft import bearing, find_root, rotor, shaft, whirling_load
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES

@@ -9,7 +9,7 @@ import pytest
 
 from raceway.scene.rig import Rig
 from raceway.studies.rig.signals import critical_speed, readings
-from raceway.studies.shaft.rotor import beam, shaft
+from raceway.studies.shaft import beam, shaft
 from tests.rig.conftest import SPEED
 
 E, NU, RHO, D = 212e9, 0.29, 7810.0, 0.03

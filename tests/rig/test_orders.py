@@ -13,7 +13,7 @@ from raceway import RacewayError
 from raceway.studies.fit.shaft_angle import pulses_of, rotation_of
 from raceway.studies.fit.signals import Recording
 from raceway.studies.fit.synchronous import Synchronous, synchronous, without_response
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import rotor
 
 LINE = 3e-6 * np.exp(0.7j)
 HZ = 183.3

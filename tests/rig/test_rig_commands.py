@@ -14,8 +14,7 @@ from raceway.scene.rig import Signals
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.signals import recording_of, signals_of, write_recording
 from raceway.studies.rig.signals import record, response, silent
-from raceway.studies.shaft.bearing import balance, bearing
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES, invoke
@@ -246,7 +245,7 @@ def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_path, monkeypatch):
-    from raceway.studies.shaft import bearing as module
+    from raceway.studies import shaft as module
 
     changed = ["rig.speeds_rpm=[11000.0, 13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.1"]
     words = ["study", "rig", SCENE, *(w for change in changed for w in ("--set", change)), "--out", tmp_path]

@@ -3,8 +3,7 @@
 design         settings, speeds, axial loads, the shaft's tilt stiffness; scenes of single points; K and |Z| by setting
 rules          what a claim requires of a curve or a surface, where it holds, and the verdict that follows
 claims         the claims, each with its rule, what was computed and the verdict
-trends         what the trend depends on, one choice swapped at a time; the quasi-static trends of an independent solver
-study          all of it: ``article()``
+study          runs, the trend of K with speed one choice swapped at a time, an independent solver's trends: ``article()``
 figures        figures 9 to 12;  page: page, tables and pictures on disk, the verdicts on the screen
 elastic        the article's own model: elastic bodies at one operating point, beside the others;  elastic_page: its page and screen
 command        ``raceway study article``

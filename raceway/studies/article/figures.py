@@ -15,7 +15,6 @@ import numpy as np
 from raceway.errors import Status
 from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import Tables
-from raceway.studies.article import trends
 from raceway.studies.article.design import (
     AMPLITUDES,
     CLAIMED,
@@ -28,6 +27,7 @@ from raceway.studies.article.design import (
     Setting,
 )
 from raceway.studies.article.rules import LEVEL
+from raceway.studies.article.study import STIFFNESSES, hardening
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -371,12 +371,12 @@ def _reference(axes: Axes) -> None:
 
 def _tilt_stiffness(study: Article) -> Picture:
     """k*(1) over the tilt stiffness, which decides whether the bearing hardens."""
-    ratios = {f"{load:g} N": trends.hardening(rows) for load, rows in study.scan.items()}
+    ratios = {f"{load:g} N": hardening(rows) for load, rows in study.scan.items()}
     shaft = study.curves.design.shaft
 
     def draw(axes: Axes) -> None:
         for (name, ratio), colour in zip(ratios.items(), _colours(len(ratios)), strict=True):
-            axes.semilogx(trends.STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=name)
+            axes.semilogx(STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=name)
         _reference(axes)
         axes.axvline(shaft, color=_REFERENCE, linewidth=0.8, linestyle="--")
         axes.annotate("shaft", (shaft, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",

@@ -25,7 +25,7 @@ from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, TILT_WORDS, Setting
 from raceway.studies.article.figures import Picture, drawings, named
 from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED
-from raceway.studies.article.trends import SOLVER_SPEEDS
+from raceway.studies.article.study import SOLVER_SPEEDS
 
 if TYPE_CHECKING:
     from raceway.studies.article.study import Article

@@ -1,9 +1,15 @@
-"""``raceway study article``: curves over speed, each in a process of its own, and everything that is made from them."""
+"""``raceway study article``: curves over speed, each in a process of its own, and what the trend of K with speed depends on.
+
+Trends are compared with those of an independent rigid-ring solver: quasi-static secant stiffness F0 / y under the rig's force as a
+radial load towards ball 0, balls fixed, no inertia of the ring; the article's bearing with rigid bodies, whatever scene the study
+is run for.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import math
 import time
 from collections.abc import Callable, Sequence
 from functools import cached_property
@@ -11,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import attrs
+import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry, default_registry
@@ -20,14 +27,194 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Instead, from_rest, instead_of
 from raceway.points.engine import Item, local, processor_time, reference_cases, work_through
 from raceway.points.store import RowStore, program_key
+from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.article import trends
 from raceway.studies.article.claims import verdicts
-from raceway.studies.article.design import ANSWERED, TILTS, Curves, Design, Setting
+from raceway.studies.article.design import (
+    AMPLITUDES,
+    ANSWERED,
+    DIRECTIONS,
+    ROTATING,
+    TILTS,
+    Curve,
+    Curves,
+    Design,
+    Setting,
+    article_tables,
+)
 from raceway.studies.article.rules import Verdict
-from raceway.studies.article.trends import Trend
 from raceway.studies.verify import study as verification
+
+#: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
+SWAPS: dict[str, Tables] = {
+    "rotating force m e w², ball inertia": {},
+    "direction swapped: unidirectional force m e w²": {"direction": DIRECTIONS[0]},
+    "amplitude law swapped: rotating force, constant": {"amplitude": AMPLITUDES[0]},
+    "both swapped: unidirectional force, constant": {"direction": DIRECTIONS[0], "amplitude": AMPLITUDES[0]},
+    "weightless balls": {"inertia": False},
+    "condensed bodies": {"bodies": "condensed"},
+    "friction, balls that stand": {"friction": "standing"},
+    "friction, balls that orbit": {"friction": "orbiting"},
+}
+#: Tilt stiffness of the shaft [N m/rad], from next to free to next to locked.
+STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
+
+
+def base(tilt: str, bodies: Sequence[str]) -> Setting:
+    """The article's model: rigid bodies where they are run."""
+    return Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid" if "rigid" in bodies else bodies[0])
+
+
+def one_at_a_time(curves: Curves, load: float) -> list[tuple[str, dict[str, float | str]]]:
+    """Of each swap that is run at a load the ``change`` of K at each tilt boundary."""
+    rows = []
+    for name, swap in SWAPS.items():
+        settings = {tilt: attrs.evolve(base(tilt, curves.design.bodies), **swap) for tilt in TILTS}
+        if (settings[TILTS[0]], load) in curves.rows:  # with friction every other axial load is run
+            rows.append((name, {tilt: change(curves.curve(setting, load)) for tilt, setting in settings.items()}))
+    return rows
+
+
+def change(curve: Curve) -> float | str:
+    """k*(1) - 1, or why there is no number: "unstable", "failed", "refused"."""
+    value = curve.normalised()[-1] - 1.0
+    ends = [curve.rows[end]["status"] for end in (0, -1)]
+    return float(value) if np.isfinite(value) else str(next(status for status in ends if status != "completed"))
+
+
+def friction_trends(curves: Curves) -> list[Tables]:
+    """k*(1) - 1 under the rotating force m e w^2 for each kind of friction: ``tilt``, ``axial_n``, ``none`` and so on."""
+    design, rows = curves.design, []
+    for tilt in TILTS if len(design.frictions) > 1 else ():
+        settings = {friction: attrs.evolve(base(tilt, ("rigid",)), friction=friction) for friction in design.frictions}
+        for load in design.loads_of(settings[design.frictions[-1]]):
+            changes = {friction: change(curves.curve(setting, load)) for friction, setting in settings.items()}
+            rows.append({"tilt": tilt, "axial_n": load, **changes})
+    return rows
+
+
+def scan_loads(design: Design) -> list[float]:
+    """The lightest, the middle and the heaviest axial load."""
+    return [design.loads[0], design.loads[len(design.loads) // 2], design.loads[-1]]
+
+
+def scan_points(design: Design, load: float, registry: Registry) -> list[Tables]:
+    """Scenes at the lowest and highest speed over the shaft's tilt stiffness."""
+    ends = [
+        design.point(base("shaft", design.bodies), load, speed, registry) for speed in (design.speeds[0], design.speeds[-1])
+    ]
+    return [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
+
+
+def hardening(rows: list[Tables]) -> np.ndarray:
+    """k*(1) over the stiffnesses (n,); nan where a run failed."""
+    k = np.array([row["k"] if row["status"] == "completed" else np.nan for row in rows]).reshape(-1, 2)
+    return np.asarray(k[:, 1] / k[:, 0])
+
+
+def turning_point(ratio: np.ndarray) -> float | None:
+    """Tilt stiffness above which k falls with speed instead of rising [N m/rad]; None where it does not turn.
+
+    Notes
+    -----
+    Straight lines over the logarithm of the stiffness; the first crossing.
+    """
+    x = np.log(np.array(STIFFNESSES))
+    for k in range(len(ratio) - 1):
+        first, second = ratio[k] - 1.0, ratio[k + 1] - 1.0
+        if first > 0.0 >= second:
+            return float(np.exp(x[k] + (x[k + 1] - x[k]) * first / (first - second)))
+    return None
+
+
+SOLVER_SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
+#: (tilt, axial load [N], ball inertia): k at 10 980 r/min [N/um], k / that at the other speeds; docs/physics.md names the solver.
+TRENDS: dict[tuple[str, float, bool], tuple[float, tuple[float, ...]]] = {
+    ("locked", 400.0, False): (180.1, (0.991, 0.979, 0.960, 0.926)),
+    ("locked", 400.0, True): (163.0, (0.932, 0.848, 0.756, 0.668)),
+    ("locked", 1000.0, False): (237.5, (0.999, 0.997, 0.995, 0.992)),
+    ("locked", 1000.0, True): (235.3, (0.994, 0.987, 0.976, 0.962)),
+    ("locked", 2000.0, False): (286.4, (1.000, 0.999, 0.999, 0.998)),
+    ("locked", 2000.0, True): (285.8, (0.999, 0.997, 0.995, 0.993)),
+    ("free", 400.0, False): (24.47, (1.084, 1.172, 1.266, 1.365)),
+    ("free", 400.0, True): (24.32, (1.081, 1.167, 1.259, 1.356)),
+    ("free", 1000.0, False): (34.34, (1.035, 1.075, 1.120, 1.169)),
+    ("free", 1000.0, True): (34.30, (1.034, 1.074, 1.118, 1.167)),
+    ("free", 2000.0, False): (48.39, (1.012, 1.026, 1.044, 1.064)),
+    ("free", 2000.0, True): (48.37, (1.012, 1.026, 1.043, 1.063)),
+}
+
+
+@attrs.frozen
+class Trend:
+    """One row: expected and computed k at the first speed [N/um] and the ratios at the others; None where a run failed."""
+
+    tilt: str
+    load: float
+    inertia: bool
+    expected: tuple[float, ...]
+    computed: tuple[float, ...] | None
+    why: str = ""
+
+    @property
+    def off(self) -> float | None:
+        """Largest difference in units of the last printed digit: k has four of them, ratios have three decimals."""
+        if self.computed is None:
+            return None
+        first = float(10.0 ** (math.floor(math.log10(abs(self.expected[0]))) - 3))
+        units = (first, *(1e-3 for _ in self.expected[1:]))
+        return max(abs(k - printed) / unit for k, printed, unit in zip(self.computed, self.expected, units, strict=True))
+
+    @property
+    def holds(self) -> bool:
+        """Rounds to the printed digits: within half a unit of the last one."""
+        return self.off is not None and self.off <= 0.5
+
+    def to_dict(self) -> Tables:
+        return {**attrs.asdict(self), "off_in_last_digits": self.off, "holds": self.holds}
+
+    def row(self) -> Tables:
+        """As a row of a flat table."""
+        table = self.to_dict()
+        off, holds = table.pop("off_in_last_digits"), table.pop("holds")
+        for name in ("expected", "computed"):
+            table |= {f"{name}_{k}": value for k, value in enumerate(table.pop(name) or ())}
+        return {**table, "off_in_last_digits": off, "holds": holds}
+
+
+def secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
+    """Secant stiffness [N/m] at the five speeds of a case: tilt, axial load, ball inertia."""
+    tilt, load, inertia = case
+    article = article_tables()
+    moment = article["excitation"]["load_share"] * article["excitation"]["unbalance"]
+    rows = []
+    for speed in SOLVER_SPEEDS:
+        force = moment * (speed * math.pi / 30.0) ** 2
+        tables = {
+            "title": "quasi-static secant",
+            "bearing": article["bearing"],
+            "supports": {"tilt": tilt},
+            "load": {"axial": load, "radial": [force, 0.0]},
+            "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": speed},
+        }
+        try:
+            result = run(scene_from_dict(tables, registry), registry)
+        except RacewayError as error:
+            rows.append({"speed_rpm": speed, "status": "failed", "reason": " ".join(str(error).split())})
+            continue
+        rows.append({"speed_rpm": speed, "status": "completed", "k": force / float(result.equilibrium.displacement[1])})
+    return rows
+
+
+def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
+    """The printed numbers of a case beside the rows of ``secants``."""
+    first, ratios = TRENDS[case]
+    reason = next((row["reason"] for row in rows if row["status"] != "completed"), "")
+    k = [] if reason else [row["k"] for row in rows]
+    computed = (k[0] / 1e6, *(value / k[0] for value in k[1:])) if k else None
+    return Trend(*case, (first, *ratios), computed, reason)
+
 
 PROCESSES = 2
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
@@ -113,9 +300,9 @@ def _tasks(design: Design, registry: Registry) -> list[Task]:
         return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
 
     tasks: list[Task] = [("static verification", static_pressures, _STATIC)]
-    tasks += [("quasi-static trends", trends.secants, list(case)) for case in trends.TRENDS]
-    for load in trends.scan_loads(design):
-        tasks.append((f"tilt stiffness at {load:g} N", curve, trends.scan_points(design, load, registry)))
+    tasks += [("quasi-static trends", secants, list(case)) for case in TRENDS]
+    for load in scan_loads(design):
+        tasks.append((f"tilt stiffness at {load:g} N", curve, scan_points(design, load, registry)))
     tasks += [("the rig's speeds", curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
     for setting, load in design.tasks():
         name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
@@ -124,7 +311,7 @@ def _tasks(design: Design, registry: Registry) -> list[Task]:
 
 
 def _rig_settings(design: Design) -> list[Setting]:
-    return [trends.base(tilt, [bodies]) for bodies in design.bodies for tilt in TILTS]
+    return [base(tilt, [bodies]) for bodies in design.bodies for tilt in TILTS]
 
 
 def _rows(task: Task, registry: Registry) -> Tables:
@@ -181,7 +368,7 @@ class Article:
             for (setting, _), curve_rows in self.curves.rows.items()
             for row, w in zip(curve_rows, design.relative(design.speeds_of(setting)), strict=True)
         ]
-        ratios = {load: trends.hardening(rows) for load, rows in self.scan.items()}
+        ratios = {load: hardening(rows) for load, rows in self.scan.items()}
         content: Tables = without_nan(
             {
                 "title": self.title,
@@ -191,14 +378,14 @@ class Article:
                 "shaft_tilt_stiffness": design.shaft,
                 "bodies": design.bodies,
                 "friction": design.friction if len(design.frictions) > 1 else 0.0,
-                "friction_trends": trends.friction_trends(self.curves),
+                "friction_trends": friction_trends(self.curves),
                 "verdicts": [verdict.to_dict() for verdict in self.verdicts],
                 "quasi_static": [trend.to_dict() for trend in self.trends],
                 "static": self.static,
                 "rig": self.rig,
-                "causes": {f"{load:g}": dict(trends.one_at_a_time(self.curves, load)) for load in design.loads},
+                "causes": {f"{load:g}": dict(one_at_a_time(self.curves, load)) for load in design.loads},
                 "tilt_stiffness": [
-                    {"axial_n": load, "stiffness": trends.STIFFNESSES, "ratio": ratio.tolist(), "turning_point": trends.turning_point(ratio)}
+                    {"axial_n": load, "stiffness": STIFFNESSES, "ratio": ratio.tolist(), "turning_point": turning_point(ratio)}
                     for load, ratio in ratios.items()
                 ],
                 "rows": rows,
@@ -269,8 +456,8 @@ def article(
     finished, reused = work_through(_rows, items, rows, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
     static = next(results)
-    compared = [trends.trend(case, next(results)) for case in trends.TRENDS]
-    scan = {load: next(results) for load in trends.scan_loads(design)}
+    compared = [trend(case, next(results)) for case in TRENDS]
+    scan = {load: next(results) for load in scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
     taken = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu

@@ -40,8 +40,7 @@ from raceway.studies.fit.rig import (
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, stated_run_out, synchronous
-from raceway.studies.shaft.bearing import Bearing, State, bearing
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import Bearing, State, bearing, rotor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -31,8 +31,7 @@ from raceway.studies.fit.fit import Derived, Fitted, Series, refuse_few
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.signals import Signals, faults_at, recording_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, synchronous
-from raceway.studies.shaft.bearing import Bearing, State, balance, bearing, find_root
-from raceway.studies.shaft.rotor import Rotor, rotor
+from raceway.studies.shaft import Bearing, Rotor, State, balance, bearing, find_root, rotor
 
 #: Step of differences over the size of a number: rounding of the balance is 1e-4 of them, and so is their curvature.
 _STEP = 1e-3

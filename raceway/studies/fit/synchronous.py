@@ -24,8 +24,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.scene.rig import Rig
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
-from raceway.studies.shaft.bearing import Bearing
-from raceway.studies.shaft.rotor import Rotor, rotor
+from raceway.studies.shaft import Bearing, Rotor, rotor
 
 _BLOCKS = 16
 _HARMONICS = 3

@@ -1,4 +1,4 @@
-"""Figures, page and table of a rig's study."""
+"""``raceway study rig``: the command, its table on the screen, figures and page."""
 
 from __future__ import annotations
 
@@ -7,14 +7,34 @@ from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+import click
 import numpy as np
 from rich.console import Group, RenderableType
 
 from raceway import __version__
+from raceway.cli.frame import (
+    RESULTS,
+    attempt,
+    common,
+    has_matplotlib,
+    keeping,
+    load,
+    on_scene,
+    out_folder,
+    plugin_files,
+    show,
+    show_progress,
+    slug,
+    tell_faults,
+)
+from raceway.framework.registry import registry_with
 from raceway.out.page import Page
 from raceway.out.table import rows_table, written
 from raceway.out.wrapping import Words
+from raceway.pipeline.result import write_json
 from raceway.plugins.pictures import new_figure, save_figure
+from raceway.scene.reading import rig_of
+from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.picture import figures
 
@@ -29,6 +49,56 @@ _COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3")
 _KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "window": "#8a4fa3", "run-out": "#b58a00", "model": "#555f6b"}  # fmt: skip
 #: Errors below this are drawn at the edge.
 _LEAST_PERCENT = 1e-4
+
+
+@click.command(short_help="A test rig's signals, and the bearing read back from them.")
+@on_scene
+@out_folder
+@click.option("--signals/--no-signals", default=True, help="Write the signals as CSV (default).")
+@click.option("--pictures/--no-pictures", default=True, help="Write figures as PNG and the page rig.html (default).")
+@plugin_files
+@common
+def rig(
+    scene: Path,
+    changes: tuple[str, ...],
+    out: Path | None,
+    signals: bool,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
+
+    The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
+    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
+    Finished points are kept in DIR/rig-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03
+    """
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    inputs = rig_of(loaded)
+    folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    rows = folder / "rig-rows.jsonl"
+    with keeping("points", rows):
+        with show_progress() as progress:
+            from raceway.studies.rig.study import study
+
+            result = study(loaded, inputs, registry, progress, rows)
+        content, files = result.to_dict(), list[str]()
+        failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or result.fault
+        if pictures and failed is None:
+            failed = attempt(lambda: write_page(result, folder), files)
+        if signals and failed is None:
+            records = list[str]()
+            failed = attempt(lambda: result.write_signals(folder), records)
+            files += [f"{len(records)} records, signals-*.csv and slow-roll-*.csv"] if records else []
+    show(content, as_json, failed, lambda: rig_screen(content, files))
+    return 1 if result.failed else 0
 
 
 def procedures(study: RigStudy) -> Figure:

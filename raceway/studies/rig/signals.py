@@ -29,8 +29,7 @@ from raceway.studies.fit.rig import changed_rotors, invert, with_moment, with_ti
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording
 from raceway.studies.fit.synchronous import slow_roll
-from raceway.studies.shaft.bearing import Bearing, State, balance
-from raceway.studies.shaft.rotor import Rotor, rotor, shaft
+from raceway.studies.shaft import Bearing, Rotor, State, balance, rotor, shaft
 
 #: A probe of 5 mm over a notch in a shaft of 30 mm: the mark's flanks [rad], half a cosine each, a third of it.
 _MARK = radians(3.0 * 19.0)

@@ -33,8 +33,7 @@ from raceway.studies.rig.signals import (
     split,
     white_noise,
 )
-from raceway.studies.shaft.bearing import Bearing, State, balance, bearing
-from raceway.studies.shaft.rotor import rotor
+from raceway.studies.shaft import Bearing, State, balance, bearing, rotor
 
 OnProgress = Callable[[str, int, int], None]
 

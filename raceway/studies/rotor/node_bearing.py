@@ -19,10 +19,10 @@ from raceway.framework.registry import default_registry
 from raceway.pipeline.settle import settle
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
+from raceway.plugins.excitations import harmonic_load
 from raceway.scene.given import as_scene
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
-from raceway.studies.shaft.bearing import harmonic_load
 
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3

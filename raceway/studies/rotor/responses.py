@@ -12,7 +12,7 @@ from scipy.linalg import lu_factor, lu_solve
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.studies.rotor.bearing import RollingBearing
 from raceway.studies.rotor.node_bearing import NodeBearing
-from raceway.studies.shaft.bearing import find_root
+from raceway.studies.shaft import find_root
 
 _HALVINGS = 6
 #: Options of ROSS's Newmark method that are handed on, with its own defaults.
