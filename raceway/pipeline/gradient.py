@@ -23,7 +23,7 @@ import numpy as np
 from raceway.bodies.equilibrium import Equilibrium, tilts_follow
 from raceway.bodies.model import Model
 from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
-from raceway.core.periodic.intervals import Change, condense, imbalances, spread
+from raceway.core.periodic.intervals import Change, Eliminated, condense, imbalances, spread
 from raceway.core.periodic.search import Found, find, problem_of
 from raceway.core.periodic.steady import first_line, orbits, refuse, unstable
 from raceway.core.record import Schedule
@@ -45,6 +45,22 @@ _LARGEST, _SHARE = 3e-5, 0.03
 #: Turns of orbit and rates; what the last one still changes, over the whole: the next one is a tenth of it or less; rounding of
 #: a motion over its size.
 _RATES, _LEFT, _ROUNDING = 12, 1e-7, 1e-11
+_NO_PLACE = "the balls find no place between the races"
+#: Names with units, in the order of columns; what a scene does not have is left out.
+UNITS = {
+    "K": "N/m",
+    "C": "N s/m",
+    "amplitude": "m",
+    "kxx": "N/m",
+    "kyy": "N/m",
+    "kyy_tilts_follow": "N/m",
+    "x": "m",
+    "largest_ball_load": "N",
+}
+#: Part of |Z| below which w C is no number that an orbit resolves.
+_RESOLVED = 1e-6
+#: Share of the answers in a band; points of a density.
+_COVERAGE, _POINTS = 0.95, 4001
 
 
 @attrs.frozen(eq=False)
@@ -74,15 +90,15 @@ class SteadyOrbit:
 
     Attributes
     ----------
-    found : the orbit that is taken, with others beside it
+    orbit : that is taken, with others beside it
     """
 
     model: Model
-    found: Found
+    orbit: Found
 
     @property
     def solved(self) -> Solved:
-        return self.found.refined.solved
+        return self.orbit.refined.solved
 
     @classmethod
     def of(cls, model: Model, equilibrium: Equilibrium) -> SteadyOrbit:
@@ -112,10 +128,10 @@ class SteadyOrbit:
     @property
     def warning(self) -> str:
         """What a person must know of an orbit that is unstable; empty where it is not."""
-        told = orbits([self.found])[0]
-        if told["stable"]:
+        table = orbits([self.orbit])[0]
+        if table["stable"]:
             return ""
-        return f"the steady orbit is unstable, {unstable(told)}: a ring leaves it, and what holds of it holds of no lasting motion"
+        return f"the steady orbit is unstable, {unstable(table)}: a ring leaves it, and what holds of it holds of no lasting motion"
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -131,7 +147,7 @@ class SteadyOrbit:
             There is none, with the reason.
         """
         direction = statics.direction
-        step = _LARGEST * abs(statics.key.value) or direction.tried
+        step = _LARGEST * abs(statics.key.value) or direction.first_step
         if statics.step:
             step = min(step, _SHARE * statics.step)
         try:
@@ -146,26 +162,28 @@ class SteadyOrbit:
         """(5,) derivatives of ``line`` and of the speed."""
         problems = {k: self._problem(direction, k * step) for k in (-1, 1)}
         solved, held = self.solved, np.where(self.model.system.free > 0.0, 0.0, displacement)
-        rates = {k: solved.path.rate * (one.speed / solved.problem.speed) for k, one in problems.items()}
+        path, weight, speed = solved.path, solved.problem.weight, solved.problem.speed
         lagging = any(solved.problem.system.scalars[entry] != 0.0 for entry in (DAMPING, TIME_CONSTANT))
         faster = (problems[1].speed - problems[-1].speed) / (2.0 * step)
-        path, first = solved.path, 0.0
-        rounding = _ROUNDING * np.abs(path.a / solved.problem.weight).max() / step
-        moved = {k: attrs.evolve(path, q=path.q + k * step * held, rate=rates[k]) for k in problems}
+        rounding, first = _ROUNDING * np.abs(path.a / weight).max() / step, 0.0
+        moved = {
+            k: attrs.evolve(path, q=path.q + k * step * held, rate=path.rate * (problem.speed / speed))
+            for k, problem in problems.items()
+        }
         for turn in range(_RATES):
             slope = (_imbalance(problems[1], moved[1]) - _imbalance(problems[-1], moved[-1])) / (2.0 * step)
             if turn == 0 and not slope.any() and not held.any() and faster == 0.0:
                 return np.zeros(5)
             change = self._change(slope)
-            moved = {k: _moved(one, change, k * step) for k, one in moved.items()}
-            size = float(np.abs(change.a / solved.problem.weight).max())
+            moved = {k: _moved(neighbour, change, k * step) for k, neighbour in moved.items()}
+            size = float(np.abs(change.a / weight).max())
             first = first or size
             if not lagging or turn > 0 and size <= max(_LEFT * first, rounding):
                 break
-            moved = {k: attrs.evolve(one, rate=_rates(problems[k], one)) for k, one in moved.items()}
+            moved = {k: attrs.evolve(neighbour, rate=_rates(problems[k], neighbour)) for k, neighbour in moved.items()}
         lines = {
-            k: _line(attrs.evolve(solved, problem=problems[k], path=one), self._mass(problems[k].system))
-            for k, one in moved.items()
+            k: _line(attrs.evolve(solved, problem=problems[k], path=neighbour), self._mass(problems[k].system))
+            for k, neighbour in moved.items()
         }
         return np.append((lines[1] - lines[-1]) / (2.0 * step), faster)
 
@@ -183,10 +201,7 @@ class SteadyOrbit:
         """du/dp from dR/dp (m s, 5)."""
         problem, path = self.solved.problem, self.solved.path
         n = len(problem.free)
-        out, report = problem.eliminated(path.nodes), np.zeros(3)
-        samples = attrs.evolve(path, ball=path.ball.copy()).samples(problem.push(path.nodes), slope)
-        if condense(problem.equations, problem.mesh(path.nodes), samples, out, report) < path.intervals:
-            raise ConvergenceError("the balls find no place between the races")
+        out = _condensed(problem, attrs.evolve(path, ball=path.ball.copy()), slope)
         # What is left of the balance of forces is no part of the derivative.
         out.stages[:, 2 * n] = out.transfer[:, 2 * n] = 0.0
         first = np.linalg.solve(problem.closing - out.whole[:, : 2 * n], out.whole[:, 2 * n + 1])
@@ -195,11 +210,20 @@ class SteadyOrbit:
         return change
 
 
+def _condensed(problem: Problem, path: Path, *slope: np.ndarray) -> Eliminated:
+    """The path's intervals with their inner unknowns eliminated."""
+    out = problem.eliminated(path.nodes)
+    samples = path.samples(problem.push(path.nodes), *slope)
+    if condense(problem.equations, problem.mesh(path.nodes), samples, out, np.zeros(3)) < path.intervals:
+        raise ConvergenceError(_NO_PLACE)
+    return out
+
+
 def _imbalance(problem: Problem, path: Path) -> np.ndarray:
     push = problem.push(path.nodes)
     out = np.zeros_like(push)
     if imbalances(problem.equations, problem.mesh(path.nodes), path.samples(push), out) < path.intervals:
-        raise ConvergenceError("the balls find no place between the races")
+        raise ConvergenceError(_NO_PLACE)
     return out
 
 
@@ -209,15 +233,10 @@ def _moved(path: Path, change: Change, by: float) -> Path:
 
 def _rates(problem: Problem, path: Path) -> np.ndarray:
     """Rates of the balls along a path."""
-    there = attrs.evolve(path, ball=path.ball.copy(), rate=path.rate.copy())
-    out, report = problem.eliminated(path.nodes), np.zeros(3)
-    if (
-        condense(problem.equations, problem.mesh(path.nodes), there.samples(problem.push(path.nodes)), out, report)
-        < path.intervals
-    ):
-        raise ConvergenceError("the balls find no place between the races")
-    renew(problem, there, stiff(problem, there))
-    return there.rate
+    copy = attrs.evolve(path, ball=path.ball.copy(), rate=path.rate.copy())
+    _condensed(problem, copy)
+    renew(problem, copy, stiff(problem, copy))
+    return copy.rate
 
 
 def _line(solved: Solved, mass: float) -> np.ndarray:
@@ -294,33 +313,18 @@ class Gradients:
             raise SceneError.at(path, None, str(why)) from None
 
 
-#: Names with units, in the order of columns; what a scene does not have is left out.
-UNITS = {
-    "K": "N/m",
-    "C": "N s/m",
-    "amplitude": "m",
-    "kxx": "N/m",
-    "kyy": "N/m",
-    "kyy_tilts_follow": "N/m",
-    "x": "m",
-    "largest_ball_load": "N",
-}
-#: Part of |Z| below which w C is no number that an orbit resolves.
-_RESOLVED = 1e-6
-
-
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
     """The numbers that a scene has, by their names in ``UNITS``: of the steady orbit, and at rest."""
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     if orbit is not None:
-        real, damping, stiffness, amplitude = (float(one) for one in orbit.line)
-        found |= {"K": stiffness, "amplitude": amplitude}
+        real, damping, stiffness, amplitude = orbit.line.tolist()
+        numbers |= {"K": stiffness, "amplitude": amplitude}
         if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
-            found["C"] = damping
-    found |= _at_rest(equilibrium, equilibrium)
+            numbers["C"] = damping
+    numbers |= _at_rest(equilibrium, equilibrium)
     if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
-        found["kyy_tilts_follow"] = follows
-    return {name: found[name] for name in UNITS if name in found}
+        numbers["kyy_tilts_follow"] = follows
+    return {name: numbers[name] for name in UNITS if name in numbers}
 
 
 def described(name: str, value: float, words: dict[str, str]) -> Tables:
@@ -345,23 +349,25 @@ def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:
 
 def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> dict[str, float]:
     """Of the same, by the number at the gradient's key."""
-    found: dict[str, float] = {}
-    if gradient.motion is not None:
-        one = gradient.motion
-        found |= {"K": one.equivalent_stiffness, "C": one.equivalent_damping, "amplitude": one.amplitude}
-    statics = gradient.statics
-    found |= _at_rest(equilibrium, statics)
+    statics, motion = gradient.statics, gradient.motion
+    slopes: dict[str, float] = {}
+    if motion is not None:
+        slopes |= {"K": motion.equivalent_stiffness, "C": motion.equivalent_damping, "amplitude": motion.amplitude}
+    slopes |= _at_rest(equilibrium, statics)
     if (tilt := model.scene.supports.tilt) != "locked":
         by = float(statics.key.path == "supports.tilt")
-        found["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
-    return found
+        slopes["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
+    return slopes
 
 
-def _at_rest(equilibrium: Equilibrium, of: Equilibrium | StaticGradient) -> dict[str, float]:
+def _at_rest(equilibrium: Equilibrium, state: Equilibrium | StaticGradient) -> dict[str, float]:
     """The numbers that every scene has, of the equilibrium or of its slopes."""
-    largest = int(np.argmax(equilibrium.contact_force))
-    found = {"kxx": of.stiffness[0, 0], "kyy": of.stiffness[1, 1], "x": of.displacement[0]}
-    return {name: float(one) for name, one in {**found, "largest_ball_load": of.contact_force[largest]}.items()}
+    return {
+        "kxx": float(state.stiffness[0, 0]),
+        "kyy": float(state.stiffness[1, 1]),
+        "x": float(state.displacement[0]),
+        "largest_ball_load": float(state.contact_force[np.argmax(equilibrium.contact_force)]),
+    }
 
 
 def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | str, by: float) -> float:
@@ -370,10 +376,6 @@ def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | st
     back = np.linalg.pinv(tilts)
     left, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
     return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
-
-
-#: Share of the answers in a band; points of a density.
-_COVERAGE, _POINTS = 0.95, 4001
 
 
 def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
@@ -387,31 +389,30 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
     scene = model.scene
     if "tolerances" not in scene.source:
         return None
-    tolerances = tolerances_of(scene, dict(leaves(scene.source["tolerances"])))
-    orbit, why = None, ""
     try:
         gradients = Gradients(model, equilibrium)
-    except SceneError as none:
-        return {"quantities": {}, "left_out": [], "why": none.mistakes[0].message}
+    except SceneError as refusal:
+        return {"quantities": {}, "left_out": [], "why": refusal.mistakes[0].message}
+    orbit, why = None, ""
     try:
         orbit = gradients.orbit
-    except (SceneError, ConvergenceError) as none:
-        why = f"at rest only: {none.mistakes[0].message if isinstance(none, SceneError) else none}"
-    now, words = values(model, equilibrium, orbit), definitions(model, equilibrium)
-    slopes, left_out = {}, []
-    for one in tolerances:
+    except (SceneError, ConvergenceError) as failure:
+        why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
+    words, slopes, left_out = definitions(model, equilibrium), {}, []
+    for tolerance in tolerances_of(scene, dict(leaves(scene.source["tolerances"]))):
+        key = tolerance.key
         try:
-            statics = static_gradient(model, equilibrium, one.key)
-            found = Gradient(statics, None if orbit is None else orbit.gradient(statics))
+            statics = static_gradient(model, equilibrium, key)
+            gradient = Gradient(statics, None if orbit is None else orbit.gradient(statics))
         except NoDerivative as reason:
-            left_out.append({"key": one.key.path, "reason": str(reason)})
+            left_out.append({"key": key.path, "reason": str(reason)})
             continue
-        slopes[one.key.path] = one.low - one.key.value, one.high - one.key.value, derivatives(model, equilibrium, found)
+        slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, derivatives(model, equilibrium, gradient)
     quantities = {}
-    for name, value in now.items():
+    for name, value in values(model, equilibrium, orbit).items():
         ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
         low, high = limits(ends)
-        widths = np.array([(two - one) ** 2 for one, two in ends])
+        widths = np.array([(above - below) ** 2 for below, above in ends])
         shares = widths / widths.sum() if widths.any() else widths
         quantities[name] = {
             **described(name, value, words),
@@ -433,8 +434,8 @@ def limits(ends: Sequence[Sequence[float]], share: float = _COVERAGE) -> tuple[f
     # The distribution of one, then its mean over each of the others in turn.
     below = np.clip((x + halves[0]) / (2.0 * halves[0]), 0.0, 1.0)
     for half in halves[1:]:
-        whole = np.concatenate([[0.0], np.cumsum(0.5 * (below[1:] + below[:-1]) * np.diff(x))])
-        ahead = np.interp(x + half, x, whole) + np.maximum(x + half - reach, 0.0)
-        below = (ahead - np.interp(x - half, x, whole)) / (2.0 * half)
+        integral = np.concatenate([[0.0], np.cumsum(0.5 * (below[1:] + below[:-1]) * np.diff(x))])
+        ahead = np.interp(x + half, x, integral) + np.maximum(x + half - reach, 0.0)
+        below = (ahead - np.interp(x - half, x, integral)) / (2.0 * half)
     out = 0.5 * (1.0 - share)
     return middle + float(np.interp(out, below, x)), middle + float(np.interp(1.0 - out, below, x))

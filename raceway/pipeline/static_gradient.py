@@ -16,7 +16,6 @@ held move with what holds them (``supports.axial`` = "displacement").
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
 
 import attrs
 import numpy as np
@@ -33,16 +32,6 @@ from raceway.scene.scene import Scene
 
 #: Steps at which a function is looked at, with their weights: (8 (f_1 - f_-1) - (f_2 - f_-2)) / 12 h, its error h^4 f^(5) / 30.
 WEIGHTS = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
-
-
-def derivative(values: Mapping[int, np.ndarray], step: float) -> np.ndarray:
-    """Derivative of arrays that are given at multiples -2, -1, 1, 2 of a step."""
-    # In pairs, so that what does not change gives exactly nothing.
-    inner, outer = (values[k] - values[-k] for k in (1, 2))
-    found: np.ndarray = (WEIGHTS[1] * inner + WEIGHTS[2] * outer) / step
-    return found
-
-
 #: Least step of neighbouring models by unit, unless that is much of the number: arrays resolve it, and it changes a bearing little.
 _LEAST = {"m": 1e-7, "N": 0.1, "N m": 1e-4, "deg": 1e-2, "r/min": 1.0, "K": 0.1, "kg": 1e-4, "s": 1e-7, "N s/m": 0.1}
 _ELSE = 1e-7
@@ -54,9 +43,20 @@ _MUCH, _FIRST, _FIRST_AT_0 = 1e-3, 1e-6, 0.01
 _KINK, _ARRAY_ROUNDING = 0.02, 1e-12
 #: Arrays of a system that forces at rest depend on, and those that only a motion does.
 _AT_REST, _IN_MOTION = ("scalars", "table", "stiffness", "load", "law_params"), ("mass", "damping", "force_params")
+#: Part of a gap, and of the stiffness, that the outermost step may move; largest step over the number at the key.
+_MOVED, _LARGEST = 0.004, 0.01
+#: Part of the way to a knot of the tables of compliances that a step may go, four of which then stay on one side.
+_KNOT = 0.25
+#: A step over the number so small that rounding shows: a contact is about to open or to close.
+_ROUGH = 1e-7
+#: Gaps below this part of the deepest one count as closed contacts without load.
+_TOUCHING = 1e-9
+#: Differences of second and of fourth order of a smooth function differ by far less than this part of either, and rounding.
+_BENT, _ROUNDING, _BENDS = 0.01, 1e-7, "the model has a kink there: to either side derivatives are others"
+_AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
 
 
-class NoDerivative(Exception):  # noqa: N818  (an answer, told in the table, no failure)
+class NoDerivative(Exception):  # noqa: N818  (an answer, stated in the table, no failure)
     """Why a quantity has no derivative by a key, in one sentence."""
 
 
@@ -79,7 +79,7 @@ class Direction:
     built: int
 
     @property
-    def tried(self) -> float:
+    def first_step(self) -> float:
         """A small first step, in the unit of the key."""
         return _FIRST * abs(self.key.value) or _FIRST_AT_0 * _least(self.key)
 
@@ -87,11 +87,6 @@ class Direction:
     def at_rest(self) -> bool:
         """Whether anything changes that forces at rest may depend on."""
         return bool(self.guess.any()) or any(name in self.slopes for name in _AT_REST)
-
-    @cached_property
-    def nothing(self) -> bool:
-        """Whether nothing changes at all."""
-        return not self.slopes and not self.guess.any() and self.speed == 0.0
 
     def moved(self, system: System, by: float) -> System:
         """The system with its arrays moved along by a change of the number."""
@@ -106,42 +101,40 @@ def direction_of(model: Model, key: Key) -> Direction:
     NoDerivative
         There is none, with the reason.
     """
-    solved = model.scene.bearing.preloaded or renews(model.scene.contact.law)
-    step, near = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solved else (_model_step(key, _TWO), (-1, 1))
-    here, slopes, bends = surrogate(model.system), {}, False
+    solves = model.scene.bearing.preloaded or renews(model.scene.contact.law)
+    step, multiples = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solves else (_model_step(key, _TWO), (-1, 1))
+    system, slopes, bends = surrogate(model.system), {}, False
     _scene(model, key, -step)  # a key at the end of its range is refused, whatever it does
     ahead = _model(model, key, step)
     if _same(model, ahead):
         return Direction(key, {}, np.zeros(5), 0.0, False, 1)
-    models = {k: ahead if k == 1 else _model(model, key, k * step) for k in near}
-    systems = {k: surrogate(one.system) for k, one in models.items()}
+    models = {k: ahead if k == 1 else _model(model, key, k * step) for k in multiples}
+    systems = {k: surrogate(neighbour.system) for k, neighbour in models.items()}
     for name in (*_AT_REST, *_IN_MOTION):
-        values = {k: getattr(one, name) for k, one in systems.items()}
-        middle = getattr(here, name)
-        if all(np.array_equal(one, middle) for one in values.values()):
+        middle = getattr(system, name)
+        values = {k: getattr(neighbour, name) for k, neighbour in systems.items()}
+        if all(np.array_equal(value, middle) for value in values.values()):
             continue
-        if any(one.shape != middle.shape for one in values.values()):
+        if any(value.shape != middle.shape for value in values.values()):
             raise NoDerivative("switches a part of the model on or off, which is no small change")
         slopes[name] = _derivative(values, step)
         bends |= _bent(values, middle)
-    guess = _derivative({k: one.guess for k, one in models.items()}, step)
-    speed = 0.0
-    if model.excitation is not None and model.excitation.period_s is not None:
-        speed = float(_derivative({k: np.array(speed_of(one)) for k, one in models.items()}, step))
+    guess = _derivative({k: neighbour.guess for k, neighbour in models.items()}, step)
+    speed = float(_derivative({k: np.array(_speed(neighbour)) for k, neighbour in models.items()}, step))
     return Direction(key, slopes, guess, speed, bends, len(models))
 
 
-def _same(model: Model, other: Model) -> bool:
+def _same(model: Model, neighbour: Model) -> bool:
     """Whether nothing differs, to the last bit."""
-    here, there = surrogate(model.system), surrogate(other.system)
-    arrays = all(np.array_equal(getattr(here, name), getattr(there, name)) for name in (*_AT_REST, *_IN_MOTION))
-    moves = model.excitation is not None and model.excitation.period_s is not None
-    return arrays and np.array_equal(model.guess, other.guess) and not (moves and speed_of(model) != speed_of(other))
+    systems = surrogate(model.system), surrogate(neighbour.system)
+    arrays = all(np.array_equal(*(getattr(system, name) for system in systems)) for name in (*_AT_REST, *_IN_MOTION))
+    return arrays and np.array_equal(model.guess, neighbour.guess) and _speed(model) == _speed(neighbour)
 
 
-def speed_of(model: Model) -> float:
-    """Of the excitation [rad/s]."""
-    return 2.0 * np.pi / float(model.excitation.period_s)
+def _speed(model: Model) -> float:
+    """Of the excitation [rad/s]; 0 where it has none of its own."""
+    period = None if model.excitation is None else model.excitation.period_s
+    return 0.0 if period is None else 2.0 * np.pi / float(period)
 
 
 def _derivative(values: dict[int, np.ndarray], step: float) -> np.ndarray:
@@ -192,19 +185,6 @@ def _model(model: Model, key: Key, step: float) -> Model:
         raise NoDerivative(f"no model can be built at {key.value + step:.6g}: {why}") from None
 
 
-#: Part of a gap, and of the stiffness, that the outermost step may move; largest step over the number at the key.
-_MOVED, _LARGEST = 0.004, 0.01
-#: Part of the way to a knot of the tables of compliances that a step may go, four of which then stay on one side.
-_KNOT = 0.25
-#: A step over the number so small that rounding shows: a contact is about to open or to close.
-_ROUGH = 1e-7
-#: Gaps below this part of the deepest one count as closed contacts without load.
-_TOUCHING = 1e-9
-#: Differences of second and of fourth order of a smooth function differ by far less than this part of either, and rounding.
-_BENT, _ROUNDING, _BENDS = 0.01, 1e-7, "the model has a kink there: to either side derivatives are others"
-_AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
-
-
 @attrs.frozen(eq=False)
 class StaticGradient:
     """Derivatives of an equilibrium, each by the number at one key.
@@ -243,12 +223,12 @@ class _State:
     tangent: np.ndarray
     contacts: Evaluation
 
-    def same(self, other: _State) -> bool:
+    def same(self, state: _State) -> bool:
         """Whether nothing differs, to the last bit."""
-        pairs = [(self.residual, other.residual), (self.tangent, other.tangent)]
+        pairs = [(self.residual, state.residual), (self.tangent, state.tangent)]
         names = ("stiffness", "damping", "contact_force", "gap")
-        pairs += [(getattr(self.contacts, name), getattr(other.contacts, name)) for name in names]
-        return all(np.array_equal(one, two) for one, two in pairs)
+        pairs += [(getattr(self.contacts, name), getattr(state.contacts, name)) for name in names]
+        return all(np.array_equal(*pair) for pair in pairs)
 
 
 def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticGradient:
@@ -268,89 +248,96 @@ def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticG
 
 def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> StaticGradient:
     system, q, ball = surrogate(model.system), equilibrium.displacement, equilibrium.ball
-    here = _state(system, q, ball)
-    step, remark = _difference_step(system, direction, equilibrium, here) if direction.at_rest else (0.0, "")
+    base = _state(system, q, ball)
+    step, remark = _difference_step(system, direction, equilibrium, base) if direction.at_rest else (0.0, "")
     if step == 0.0:
-        size = len(here.contacts.contact_force)
-        nothing = np.zeros(5), np.zeros((5, 5)), np.zeros((5, 5)), np.zeros(size)
-        return StaticGradient(direction, 0.0, *nothing, "")
+        zeros = np.zeros(5), np.zeros((5, 5)), np.zeros((5, 5)), np.zeros(len(base.contacts.contact_force))
+        return StaticGradient(direction, 0.0, *zeros, "")
     systems = {k: direction.moved(system, k * step) for k in WEIGHTS}
-    residual = derivative({k: _state(one, q, ball).residual for k, one in systems.items()}, step)
-    moved = _moved(system, here.tangent, residual, direction.guess)
-    states = {k: _state(one, q + k * step * moved, ball).contacts for k, one in systems.items()}
-    loaded = here.contacts.contact_force > 0.0
-    if any(((one.contact_force > 0.0) != loaded).any() for one in states.values()):
+    residual = derivative({k: _state(neighbour, q, ball).residual for k, neighbour in systems.items()}, step)
+    moved = _moved(system, base.tangent, residual, direction.guess)
+    displaced = {k: q + k * step * moved for k in WEIGHTS}
+    states = {k: _state(neighbour, displaced[k], ball).contacts for k, neighbour in systems.items()}
+    loaded = base.contacts.contact_force > 0.0
+    if any(((state.contact_force > 0.0) != loaded).any() for state in states.values()):
         remark = _AT_THE_EDGE
     stiffness, damping = {}, {}
-    for k, one in states.items():
-        still, place = systems[k].without(CAGE), q + k * step * moved
-        held = still.stiffness_at(place, one), still.damping_at(place, one)
-        stiffness[k], damping[k] = still.rows_following(place, one, *held)
+    for k, state in states.items():
+        still = systems[k].without(CAGE)
+        held = still.stiffness_at(displaced[k], state), still.damping_at(displaced[k], state)
+        stiffness[k], damping[k] = still.rows_following(displaced[k], state, *held)
     slope = derivative(stiffness, step)
     rounding = _ROUNDING * np.abs(stiffness[1]).max() / step
     bent = np.abs((stiffness[1] - stiffness[-1]) / (2.0 * step) - slope).max()
     if not remark and (direction.bends or bent > _BENT * np.abs(slope).max() + rounding):
         remark = _BENDS
-    force = derivative({k: one.contact_force for k, one in states.items()}, step)
+    force = derivative({k: state.contact_force for k, state in states.items()}, step)
     return StaticGradient(direction, step, moved, slope, derivative(damping, step), force, remark)
 
 
 def _state(system: System, q: np.ndarray, ball: np.ndarray) -> _State:
     """As ``raceway.pipeline.settle`` evaluates it: the balance without friction, then slips at which no contact sticks."""
     balanced = system.without(CAGE, FRICTION)
-    now = balanced.evaluate(q, ball=ball)
-    residual = now.force + system.stiffness @ q - system.load
-    tangent = balanced.stiffness_at(q, now) + system.stiffness
+    contacts = balanced.evaluate(q, ball=ball)
+    residual = contacts.force + system.stiffness @ q - system.load
+    tangent = balanced.stiffness_at(q, contacts) + system.stiffness
     if not system.conservative:
-        place = now.ball.copy()
-        place[:, 2:4] = system.stress_free_slip(q, place)
-        now = system.without(CAGE).evaluate(q, ball=place)
-    return _State(residual, tangent, now)
+        free_of_stress = contacts.ball.copy()
+        free_of_stress[:, 2:4] = system.stress_free_slip(q, free_of_stress)
+        contacts = system.without(CAGE).evaluate(q, ball=free_of_stress)
+    return _State(residual, tangent, contacts)
 
 
 def _moved(system: System, tangent: np.ndarray, residual: np.ndarray, held: np.ndarray) -> np.ndarray:
     """dq/dp (5,) from dr/dp at fixed q, and from that of the coordinates that are held."""
     free = system.free > 0.0
-    found = np.where(free, 0.0, held)
-    found[free] = np.linalg.solve(tangent[np.ix_(free, free)], -(residual + tangent @ found)[free])
-    return found
+    slope = np.where(free, 0.0, held)
+    slope[free] = np.linalg.solve(tangent[np.ix_(free, free)], -(residual + tangent @ slope)[free])
+    return slope
 
 
-def _difference_step(system: System, direction: Direction, equilibrium: Equilibrium, here: _State) -> tuple[float, str]:
+def _difference_step(system: System, direction: Direction, equilibrium: Equilibrium, base: _State) -> tuple[float, str]:
     """Step of the differences, and a remark where no step is smooth; 0 where the key changes nothing of the statics at all."""
-    q, ball, tried, value = equilibrium.displacement, equilibrium.ball, direction.tried, direction.key.value
-    one = direction.moved(system, tried)
-    still = _state(one, q, ball)
-    moved = _moved(system, here.tangent, (still.residual - here.residual) / tried, direction.guess)
-    if not direction.guess.any() and still.same(here):
+    q, ball, first, value = equilibrium.displacement, equilibrium.ball, direction.first_step, direction.key.value
+    neighbour = direction.moved(system, first)
+    still = _state(neighbour, q, ball)
+    moved = _moved(system, base.tangent, (still.residual - base.residual) / first, direction.guess)
+    if not direction.guess.any() and still.same(base):
         return 0.0, ""
-    along = _state(one, q + tried * moved, ball)
-    gap = here.contacts.gap
+    along = _state(neighbour, q + first * moved, ball)
+    gap = base.contacts.gap
     room = np.maximum(np.abs(gap), _TOUCHING * np.abs(gap).max())
-    rates = [np.abs(each.contacts.gap - gap) / tried for each in (still, along)]
-    fastest = max(
-        float((np.maximum(*rates) / room).max()), *(_change(here, each, system.arm) / tried for each in (still, along))
-    )
-    largest = _LARGEST * abs(value) if value else 1e3 * tried
+    rates = [np.abs(state.contacts.gap - gap) / first for state in (still, along)]
+    changes = (_change(base, state, system.arm) / first for state in (still, along))
+    fastest = max(float((np.maximum(*rates) / room).max()), *changes)
+    largest = _LARGEST * abs(value) if value else 1e3 * first
     # Two steps to either side.
     step = min(largest, 0.5 * _MOVED / fastest) if fastest > 0.0 else largest
     least = _ROUGH * largest / _LARGEST
     if step < least:
         return least, _AT_THE_EDGE
-    place, next_place = system.table_places(q, here.contacts.ball), one.table_places(q + tried * moved, along.contacts.ball)
-    room = _KNOT * _to_a_knot(place, next_place, here.contacts.contact_force) * tried
+    begin, end = system.table_places(q, base.contacts.ball), neighbour.table_places(q + first * moved, along.contacts.ball)
+    room = _KNOT * _to_a_knot(begin, end, base.contacts.contact_force) * first
     return min(step, max(room, 10.0 * least)), ""
 
 
-def _to_a_knot(here: np.ndarray, there: np.ndarray, force: np.ndarray) -> float:
-    """The least distance of a loaded contact to a knot of its tables over the way from here to there, both (Z,) or (0,)."""
-    moves = (force[: len(here)] > 0.0) & (there != here)
-    left = np.abs(here - np.round(here))[moves] / np.abs(there - here)[moves]
-    return float(left.min(initial=np.inf))
+def _to_a_knot(begin: np.ndarray, end: np.ndarray, force: np.ndarray) -> float:
+    """The least distance of a loaded contact to a knot of its tables over the way from begin to end, both (Z,) or (0,)."""
+    moves = (force[: len(begin)] > 0.0) & (end != begin)
+    shares = np.abs(begin - np.round(begin))[moves] / np.abs(end - begin)[moves]
+    return float(shares.min(initial=np.inf))
 
 
-def _change(one: _State, two: _State, arm: float) -> float:
+def _change(base: _State, state: _State, arm: float) -> float:
     """Largest change of the contacts' stiffness over its largest entry, moments made forces."""
     scale = np.outer(*2 * (np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm]),))
-    before, after = (scale * state.contacts.stiffness for state in (one, two))
+    before, after = (scale * state.contacts.stiffness for state in (base, state))
     return float(np.abs(after - before).max() / np.abs(before).max())
+
+
+def derivative(values: Mapping[int, np.ndarray], step: float) -> np.ndarray:
+    """Derivative of arrays that are given at multiples -2, -1, 1, 2 of a step."""
+    # In pairs, so that what does not change gives exactly nothing.
+    inner, outer = (values[k] - values[-k] for k in (1, 2))
+    slope: np.ndarray = (WEIGHTS[1] * inner + WEIGHTS[2] * outer) / step
+    return slope
