@@ -120,7 +120,7 @@ _READERS: dict[str, Reader] = {
         "vary at reference tolerances": ("a mapping of keys to values, or texts KEY=VALUE", _table),
         "axes": ("a mapping of keys to values, or a list of points", lambda v: dict(v) if hasattr(v, "keys") else list(v)),
         "columns": (
-            "a mapping of heads to names, text both",
+            "a mapping of column headers to names, text both",
             lambda v: {_TEXT[1](one): _TEXT[1](name) for one, name in v.items()},
         ),
         "tables known_parts": _reader("a mapping, such as a dict", _is(Mapping)),

@@ -1,4 +1,4 @@
-"""Records as other programs write them: every head gives the numbers of our own, or one message that mends it."""
+"""Records as other programs write them: every header gives the numbers of our own, or one message that mends it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def text(head, sign=",", point=".", quoted=False, scale=1.0):
     return "\n".join(lines) + "\n"
 
 
-#: Heads of the table "CSV heads accepted", and what else programs write.
+#: Headers of the table "CSV heads accepted", and what else programs write.
 FILES = {
     "Time (s),X [um],Y [um]": text("Time (s),X [um],Y [um],Keyphasor (V)"),
     "micro sign": text("Time (s),X [µm],Y [μm],Key [V]"),
