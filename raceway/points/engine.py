@@ -384,13 +384,12 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
         runs.append({"cpu_s": cpu if cost["compile_s"] == 0.0 else max(cpu - cost["compile_s"], cost["solve_s"]), **times})
-    scale = 1 if sys.platform == "darwin" else 1024
     times = {name: min(one[name] for one in runs) for name in runs[0]}
     return {
         "status": "completed",
         "reason": "",
         "quantities": quantities(result),
-        "own_error": _without_mesh(result["error"]),
+        "own_error": without_mesh(result["error"]),
         "transient_error": result["error"]["transient"],
         "warnings": result["warnings"],
         "cost": {
@@ -401,16 +400,36 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
             "compile_s": compiling,
             "steps": cost["steps"],
             "iterations": cost["newton_iterations"],
-            "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale,
-            "peak_memory_of": "setting" if own_peak else "process so far",
+            **peak_memory("setting", own_peak),
             "repeats": len(runs),
         },
     }
 
 
-def _without_mesh(error: Tables) -> float | None:
+def without_mesh(error: ReadTables) -> float | None:
     """The run's own estimate, less its bodies': rows on one mesh are held against a reference on the same."""
     return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
+
+
+class Clocks:
+    """Readings of the clocks as a run starts, and the peak of memory counted anew where the system does so."""
+
+    def __init__(self) -> None:
+        from raceway.core.jit import working_process_time
+
+        self._counted_anew, self._clock = reset_peak(), working_process_time
+        self._cpu, self._wall = self._clock(), time.perf_counter()
+
+    def read(self) -> tuple[float, float, Tables]:
+        """Processor time without what kernels took to compile, and wall time since then [s]; ``peak_memory`` of the run."""
+        return self._clock() - self._cpu, time.perf_counter() - self._wall, peak_memory("run", self._counted_anew)
+
+
+def peak_memory(counted: str, anew: bool) -> Tables:
+    """Peak of memory of this process [bytes], and whose it is: of what is ``counted`` where the count began ``anew`` with it."""
+    scale = 1 if sys.platform == "darwin" else 1024
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale
+    return {"peak_memory_bytes": peak, "peak_memory_of": counted if anew else "process so far"}
 
 
 def reset_peak() -> bool:

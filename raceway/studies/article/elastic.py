@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import gc
 import math
-import resource
-import sys
 import time
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cached_property
@@ -17,15 +15,14 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.core.jit import working_process_time
+from raceway import make_plan
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.planning.plan import make_plan
 from raceway.points.axes import tables_at
-from raceway.points.engine import Item, local, reference_cases, reset_peak, work_through
+from raceway.points.engine import Clocks, Item, local, reference_cases, work_through
 from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
@@ -223,10 +220,10 @@ def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fol
         run ``balls``, ``displacement``, ``kyy_n_per_m``, ``subsurface``, ``mesh``, ``identification``, ``stability``, ``error``,
         ``warnings`` as in result.json, and ``pictures``, names of files in ``folder``
     """
-    clocks, row = _Clocks(), {"status": "completed", "reason": ""}
+    clocks, row = Clocks(), {"status": "completed", "reason": ""}
     try:
         result = run(scene, registry, tell)
-        numbers, cost = _numbers(result.to_dict()), clocks.cost(result)
+        numbers, cost = _numbers(result.to_dict()), _cost(clocks, result)
         if folder is not None:
             numbers |= _section(result, folder)
         del result
@@ -238,35 +235,25 @@ def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fol
     except Exception as why:  # a fault of the program costs its run, not the study
         row = {"status": "failed", "reason": f"unexpected {type(why).__name__}: {why or 'no message'}"}
     if row["status"] != "completed":
-        numbers, cost = {}, clocks.cost(None)
+        numbers, cost = {}, _cost(clocks, None)
     gc.collect()  # bodies of gigabytes hold each other
     return {**row, **numbers, "cost": cost}
 
 
-class _Clocks:
-    """Readings of the clocks as a run starts, and the peak of memory counted anew where the system does so."""
-
-    def __init__(self) -> None:
-        self.counted_anew = reset_peak()
-        self.cpu, self.wall = working_process_time(), time.perf_counter()
-
-    def cost(self, result: Result | None) -> Tables:
-        """What the run took until now; compiling is apart from its processor time.  None: it came to no end."""
-        cpu, wall = working_process_time() - self.cpu, time.perf_counter() - self.wall
-        cost: Tables = {} if result is None else result.cost
-        mesh = None if result is None else (result.bodies or {}).get("mesh")
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        return {
-            "cpu_s": cpu,
-            "wall_s": wall,
-            "compile_s": cost.get("compile_s", 0.0),
-            "peak_memory_bytes": peak * (1 if sys.platform == "darwin" else 1024),
-            "peak_memory_of": "run" if self.counted_anew else "process so far",
-            "elements": (mesh or {}).get("cells"),
-            "steps": cost.get("steps"),
-            "newton_iterations": cost.get("newton_iterations"),
-            "predicted_s": None if result is None else result.model.plan.predicted_wall_s,
-        }
+def _cost(clocks: Clocks, result: Result | None) -> Tables:
+    """What a run took until now; compiling is apart from its processor time.  None: it came to no end."""
+    (cpu, wall, peak), cost = clocks.read(), dict[str, float]() if result is None else result.cost
+    mesh = None if result is None else (result.bodies or {}).get("mesh")
+    return {
+        "cpu_s": cpu,
+        "wall_s": wall,
+        "compile_s": cost.get("compile_s", 0.0),
+        **peak,
+        "elements": (mesh or {}).get("cells"),
+        "steps": cost.get("steps"),
+        "newton_iterations": cost.get("newton_iterations"),
+        "predicted_s": None if result is None else result.model.plan.predicted_wall_s,
+    }
 
 
 def _numbers(result: ReadTables) -> Tables:

@@ -25,7 +25,7 @@ from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Instead, from_rest, instead_of
-from raceway.points.engine import Item, local, processor_time, reference_cases, work_through
+from raceway.points.engine import Item, local, processor_time, reference_cases, without_mesh, work_through
 from raceway.points.store import RowStore, program_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
@@ -274,7 +274,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
         "k": identified.equivalent_stiffness,
         "abs_z": abs(identified.dynamic_stiffness),
         "force_n": identified.force_amplitude,
-        "error": None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0),
+        "error": without_mesh(error),
         "mesh_error": error["mesh"],
     }
 
