@@ -6,13 +6,13 @@ import os
 import time
 
 
-def hang(rows, registry):
+def hang(rows, bench):
     time.sleep(60.0)
 
 
-def die(rows, registry):
+def die(rows, bench):
     os._exit(7)
 
 
-def answer(rows, registry, value=None):
+def answer(rows, bench, value=None):
     rows.check("one", 1.0 + {"near": 0.05, "far": 1.0}[value], "why", near=1.0, within=0.1)

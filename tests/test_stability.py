@@ -105,7 +105,7 @@ def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
     def refuse(scene, registry):
         raise ConvergenceError("no motion was found")
 
-    monkeypatch.setattr(scenes, "run", refuse)
+    monkeypatch.setattr(systems, "run", refuse)
     for judge, kind in (("orbit", "periodic"), ("slow", "quasi_static"), ("any", "periodic")):
         *_, row = extreme_rows(judge)
         assert row.verdict == FAILED and "unexpectedly: no motion was found" in row.note
@@ -291,14 +291,14 @@ def test_the_axial_displacement_by_a_laws_own_force():
 
 @pytest.mark.parametrize(("law", "expected"), [("hertz", FAILED), ("cubic", AS_EXPECTED)])
 def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, expected, monkeypatch):
-    build = scenes.model_at
+    build = systems.model_at
 
     def refuse(tables, changes, registry):
         if changes["bodies.kind"] == "condensed":
             raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
         return build(tables, changes, registry)
 
-    monkeypatch.setattr(scenes, "model_at", refuse)
+    monkeypatch.setattr(systems, "model_at", refuse)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
     arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
     (row,) = rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))

@@ -10,7 +10,6 @@ import numpy as np
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.elastic.linear_statics import solve_static
-from raceway.framework.registry import Registry
 from raceway.studies.stability.study import Rows
 
 _YOUNG, _POISSON, _DENSITY = 212e9, 0.29, 7810.0
@@ -23,7 +22,7 @@ _LOCKS = {
 _BENDS = "E is the same, so that the deflection hardly depends on Poisson's ratio"
 
 
-def slender_steps(rows: Rows, registry: Registry, aspect: float) -> None:
+def slender_steps(rows: Rows, _bench: None, aspect: float) -> None:
     """Explicit steps of a free block of slender elements, around the limit of its fastest mode."""
     points, cells = _block((3, 3, 3), (3e-3 * aspect, 3e-3, 3e-3))
     for kind in KINDS:
@@ -49,7 +48,7 @@ def _growth(op: HexOperator, dt: float) -> float:
     return float(np.abs(u).max() / first)
 
 
-def slender_bar(rows: Rows, registry: Registry, aspect: float, poisson: float, young: float) -> None:
+def slender_bar(rows: Rows, _bench: None, aspect: float, poisson: float, young: float) -> None:
     """A bar of slender elements under tension: its lengthening F l / E A, exact for any element."""
     length, side, force = 4e-3 * aspect, 3e-3, 1.0
     points, cells = _block((4, 3, 3), (length, side, side))
@@ -61,7 +60,7 @@ def slender_bar(rows: Rows, registry: Registry, aspect: float, poisson: float, y
         rows.check("lengthening [m]", value, why, near=near, within=1e-5, at=setting)
 
 
-def soft_on_hard(rows: Rows, registry: Registry) -> None:
+def soft_on_hard(rows: Rows, _bench: None) -> None:
     """Rubber bonded on ceramic, pressed flat between plates that slide: uniform stress, strains in series."""
     hard, soft, side, force = 310e9, 2e6, 1e-3, 1.0
     points, cells = _block((8, 3, 3), (8 * side, 3 * side, 3 * side))
@@ -89,7 +88,7 @@ def _lengthening(matrix: Any, points: np.ndarray, force: float) -> float:
     return float(found[end, 0].mean())
 
 
-def locking(rows: Rows, registry: Registry) -> None:
+def locking(rows: Rows, _bench: None) -> None:
     """A nearly incompressible cantilever: elements that bend, and elements that are known to lock."""
     beam, words = _tip("mean_dilatation", 0.3), "tip deflection over that at Poisson's ratio 0.3, E the same"
     for kind in KINDS:
@@ -108,7 +107,7 @@ def _tip(kind: str, poisson: float) -> float:
     return float(solve_static(op.stiffness(), points, load, held, tolerance=1e-6).displacement[end, 2].mean())
 
 
-def bad_elements(rows: Rows, registry: Registry) -> None:
+def bad_elements(rows: Rows, _bench: None) -> None:
     """An element turned inside out, and one without a volume."""
     points, cells = _block((1, 1, 1), (1.0, 1.0, 1.0))
     for name, moved in (("inside out", -2.0), ("flat", -1.0)):

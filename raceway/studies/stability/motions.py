@@ -18,25 +18,17 @@ from raceway.core.ring.orbit import at_time, from_orbit, steady_orbit
 from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError
-from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.recording import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED
 from raceway.studies.stability.study import Rows
-from raceway.studies.stability.systems import (
-    Still,
-    energy_of_contacts,
-    inverted,
-    mass_at,
-    method_of,
-    model_at,
-    still,
-)
+from raceway.studies.stability.systems import Bench, Still, energy_of_contacts, inverted, mass_at
 
 if TYPE_CHECKING:
     from raceway.core.record import Motion
     from raceway.core.ring.system import System
+    from raceway.framework.contracts import Integrator
 
 
 _BLOCKS = 20
@@ -57,15 +49,13 @@ _SWINGS = "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) 
 _GROWS = "1.49 a step at 1.02 of the limit; a nonlinear contact stops the growth where it opens"
 
 
-def many_steps(
-    rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables, steps: int, factor: float, amplitude: float
-) -> None:  # fmt: skip
+def many_steps(rows: Rows, bench: Bench, integrator: str, steps: int, factor: float, amplitude: float) -> None:
     """Undamped free motion; the trend of the energy's block means over the motion's energy."""
-    at = still(tables, {**UNDAMPED, **changes}, registry)
+    at = bench.over(UNDAMPED).still()
     opens = amplitude > 1.0
     # Steps of an implicit method are solved as far as rounding allows: 1e-9 of the load a step adds up to 1e-5 of a small motion's
     # energy in a million steps.  Where contacts open, rounding ends some iterations above so small a tolerance.
-    method = method_of(integrator, registry, None if opens else 1e-12)
+    method = bench.method(integrator, None if opens else 1e-12)
     loses = method.dissipative or at.dissipative
     schedule = Schedule(factor * at.limit, steps // _BLOCKS, _BLOCKS, _STRIDE)
     record = integrate(method, at.system, at.displaced(at.direction(amplitude)), schedule)
@@ -104,9 +94,7 @@ def _trend(at: Still, record: Record) -> tuple[float, float]:
     return slope / size, float(np.abs(means - means[0]).max() / size)
 
 
-def impact(
-    rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables, speed: float, steps: int
-) -> None:
+def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) -> None:
     """A mass meets a contact: its greatest force and the speed that it leaves with.
 
     Notes
@@ -114,11 +102,11 @@ def impact(
     What is expected follows from the energy that the law stores; of a law that loses some, from the differential equation with
     the law's own force, solved by scipy.
     """
-    at = still(tables, changes, registry)
+    at = bench.still()
     law, params, mass = at.system.law, at.system.law_params[:1], 2.0
     pair, memory = np.ascontiguousarray(np.repeat(params, 2, axis=0)), np.zeros((2, 0))
     depth = inverted(lambda d: float(energy_of_contacts(law, pair, memory, np.full(2, -d))[0]), 0.5 * mass * speed**2, 1.0)
-    system, method = impact_system(mass, law, params), method_of(integrator, registry)
+    system, method = impact_system(mass, law, params), bench.method(integrator)
     force, rebound = _force(system, depth), speed
     if at.dissipative:
         force, rebound = _solved_impact(system, mass, speed, depth)
@@ -159,13 +147,13 @@ def _solved_impact(system: System, mass: float, speed: float, depth: float) -> t
     return largest, -float(solution.y[1, -1]) * speed
 
 
-def deep_penetration(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables, depth: float) -> None:
+def deep_penetration(rows: Rows, bench: Bench, integrator: str, depth: float) -> None:
     """The ring let go far inside the balls: it flies out, and no energy is made; by a law that loses none, none is lost."""
-    at = still(tables, UNDAMPED | changes, registry)
+    at = bench.over(UNDAMPED).still()
     start = at.displaced(np.array([depth, 0.3 * depth, 0.0, 0.0, 0.0]))
     first = at.system.evaluate(start.q, ball=start.ball)
     step = 0.05 * at.system.damped_time_step(first.stiffness, first.damping)
-    record = integrate(method_of(integrator, registry), at.system, start, Schedule(step, 1000, 10))
+    record = integrate(bench.method(integrator), at.system, start, Schedule(step, 1000, 10))
     balance = energy_balance(at.system, record)
     drift, words = balance.drift, "largest change of energy over the motion's"
     if at.dissipative:
@@ -175,9 +163,9 @@ def deep_penetration(rows: Rows, registry: Registry, tables: Tables, integrator:
     rows.check(words, (drift, drift), why, at_most=0.03, at={"depth [m]": depth, "step/limit there": 0.05})
 
 
-def settled_from_afar(rows: Rows, registry: Registry, tables: Tables, changes: Tables, guesses: list[float]) -> None:
+def settled_from_afar(rows: Rows, bench: Bench, guesses: list[float]) -> None:
     """The equilibrium found from first guesses deep inside the balls and far outside them."""
-    at = still(tables, changes, registry)
+    at = bench.still()
     x = float(at.equilibrium.displacement[0])
     words, why = "axial displacement [m]", "one equilibrium, solved to a residual of 1e-11"
 
@@ -188,9 +176,7 @@ def settled_from_afar(rows: Rows, registry: Registry, tables: Tables, changes: T
         rows.check(words, partial(axial, guess), why, near=x, within=1e-8, at={"first guess [m]": guess})
 
 
-def chatter(
-    rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables, options: Tables, step: float, chatters: bool
-) -> None:  # fmt: skip
+def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: float, chatters: bool) -> None:
     """A mass on a damper falls on a contact that is far stiffer than the steps can follow; in truth it comes to rest.
 
     Notes
@@ -200,7 +186,7 @@ def chatter(
     by bisection with the law's own force (``_trapezoids``).  Generalised-alpha with a small radius at infinity forgets it in
     some steps, and so do steps that are fine enough.
     """
-    ring = still(tables, changes, registry).system
+    ring = bench.still().system
     load, mass = 100.0, 2.0
     law, params = ring.law, 1e3 * ring.law_params[:1]
     # The stiffness at rest, hence the period, is the law's own slope there.
@@ -209,7 +195,7 @@ def chatter(
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
     system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     dt = step * 2.0 * pi * sqrt(mass / k)
-    plain: Any = method_of(integrator, registry)
+    plain: Any = bench.method(integrator)
     method, falls = attrs.evolve(plain, **options), []
     for height in _HEIGHTS:
         start = mass_at(-height * q[0], 0.0, load / mass)
@@ -255,25 +241,22 @@ def _trapezoids(system: System, mass: float, load: float, gap: float, dt: float)
     return np.array(forces[-100:])
 
 
-def linear(rows: Rows, registry: Registry, tables: Tables, integrator: str) -> None:
+def linear(rows: Rows, bench: Bench, integrator: str) -> None:
     """An undamped oscillator, its contact out of reach."""
-    ring = surrogate(model_at(tables, {}, registry).system)
+    ring = surrogate(bench.model().system)
     system = impact_system(2.0, ring.law, ring.law_params[:1], clearance=1.0, stiffness=2e8)
     limit = system.critical_time_step(np.zeros((5, 5)))
-    _around_the_limit(rows, registry, integrator, system, mass_at(1e-6, 0.0, -1e2), np.zeros(5), limit)
+    _around_the_limit(rows, bench.method(integrator), system, mass_at(1e-6, 0.0, -1e2), np.zeros(5), limit)
 
 
-def small_motions(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+def small_motions(rows: Rows, bench: Bench, integrator: str) -> None:
     """A bearing moved by a millionth of its approach from its equilibrium."""
-    at = still(tables, {**UNDAMPED, **changes}, registry)
+    at = bench.over(UNDAMPED).still()
     start = at.displaced(at.direction(_SMALL))
-    _around_the_limit(rows, registry, integrator, at.system, start, at.equilibrium.displacement, at.limit)
+    _around_the_limit(rows, bench.method(integrator), at.system, start, at.equilibrium.displacement, at.limit)
 
 
-def _around_the_limit(
-    rows: Rows, registry: Registry, name: str, system: System, start: Motion, rest: np.ndarray, limit: float
-) -> None:
-    method = method_of(name, registry)
+def _around_the_limit(rows: Rows, method: Integrator, system: System, start: Motion, rest: np.ndarray, limit: float) -> None:
     weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
     size = float(np.abs((start.q - rest) * weight).max())
 
@@ -300,9 +283,9 @@ def _around_the_limit(
         rows.check("stable limit [s]", low * limit, why, near=limit, within=0.02)
 
 
-def orbit_at_the_safe_limit(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+def orbit_at_the_safe_limit(rows: Rows, bench: Bench, integrator: str) -> None:
     """A large orbit with the steps that a run takes by itself, at most ``SAFETY`` of its limit, is followed for 50 turns."""
-    model = model_at(tables, {**UNDAMPED, **changes, "integrator.kind": integrator}, registry)
+    model = bench.over(UNDAMPED).changed({"integrator.kind": integrator}).model()
     scene, system = model.scene, surrogate(model.system)
     if scene.excitation is None or scene.excitation.period_s is None:
         return  # of a user's scene: without a period there is no orbit

@@ -22,21 +22,12 @@ from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import Registry
-from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.closed_form import series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient
 from raceway.studies.stability.study import FAILED, Measured, Rows, short
-from raceway.studies.stability.systems import (
-    axial_displacement,
-    axial_force,
-    method_of,
-    model_at,
-    scene_at,
-    stiffer_than_hertz,
-)
+from raceway.studies.stability.systems import Bench, axial_displacement, axial_force, stiffer_than_hertz
 
 if TYPE_CHECKING:
     from raceway.bodies.equilibrium import Equilibrium
@@ -73,20 +64,16 @@ _MORE = 0.02
 _TOLERANCE, _UNBALANCED = 1e-6, 1e-3
 
 
-def _run(tables: Tables, changes: Tables, registry: Registry) -> Result:
-    return run(scene_at(tables, changes, registry), registry)
-
-
 def extreme(
-    rows: Rows, registry: Registry, tables: Tables, changes: Tables, judge: str = "", closed_form: bool = False,
-    penalty_factor: float | None = None, may_be_too_stiff: bool = False,
+    rows: Rows, bench: Bench, judge: str = "", closed_form: bool = False, penalty_factor: float | None = None,
+    may_be_too_stiff: bool = False,
 ) -> None:  # fmt: skip
     """One scene with one law: its equilibrium, and its motion by every transient integrator."""
     if penalty_factor is not None:
-        changes = {**changes, "contact.stiffness": penalty_factor * _default_penalty(tables, changes, registry)}
-    if may_be_too_stiff and _too_stiff(rows, registry, tables, changes):
+        bench = bench.changed({"contact.stiffness": penalty_factor * _default_penalty(bench)})
+    if may_be_too_stiff and _too_stiff(rows, bench):
         return
-    _at_rest(rows, registry, tables, changes, closed_form)
+    _at_rest(rows, bench, closed_form)
     if not judge:
         return
     words, why = "|Z| [N/m], predicted by the steady motion", _STEADY_WHY
@@ -94,18 +81,18 @@ def extreme(
         words, why = "|Z| [N/m], predicted by 1440 steps a turn", _FINER_WHY
     near, note = None, ""
     try:
-        near = abs(_stiffness(_run(tables, {**changes, **_JUDGES[judge]}, registry)))
+        near = abs(_stiffness(bench.changed(_JUDGES[judge]).result()))
     except RacewayError as error:
         if judge != "any" or not isinstance(error, SceneError):
             rows.lost(f"refused, unexpectedly: {short(error)}", {"integrator": _JUDGES[judge]["integrator.kind"]})
             return
         note = f"no steady motion to compare with: {short(error)}"
-    for name in transient(registry):
-        more, setting = {**changes, "integrator.kind": name}, {"integrator": name}
+    for name in transient(bench.registry):
+        by_name, setting = {"integrator.kind": name}, {"integrator": name}
 
         @cache
-        def result(more: Tables = more) -> Result:
-            return _run(tables, more, registry)
+        def result(by_name: Tables = by_name) -> Result:
+            return bench.changed(by_name).result()
 
         def motion(result: Callable[[], Result] = result) -> Measured:
             return abs(_stiffness(result())), result().stability["energy_drift"]
@@ -121,7 +108,7 @@ def extreme(
                 stated = max((value for value in result().error.values() if isinstance(value, float)), default=float("nan"))
                 rows.written[-1] = attrs.evolve(row, note=f"the result itself states an error of {stated:.2g}")
         # Results tell no balance of energy for a law that loses some by itself.
-        if near is None or (judge == "finer" and not scene_at(tables, more, registry).contact.law.dissipative):
+        if near is None or (judge == "finer" and not bench.changed(by_name).scene.contact.law.dissipative):
             quantity = "completed; energy not balanced by the work"
             rows.check(quantity, balance, _DRIFT_WHY, at_most=_DRIFT, at=setting, note=note)
 
@@ -131,15 +118,15 @@ def _stiffness(result: Result) -> complex:
     return result.identification.dynamic_stiffness
 
 
-def _at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables, closed_form: bool) -> None:
+def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
     """Axial forces of the contacts against the load; the approach by a closed form where there is one."""
     # Nothing turns and nothing rubs: the balls' loads are along their contact angles.
-    quiet = {**changes, "kinematics.gyroscopic": "none", "contact.friction": 0.0}
-    scene = scene_at(tables, quiet, registry)
+    bench = bench.changed({"kinematics.gyroscopic": "none", "contact.friction": 0.0})
+    scene = bench.scene
 
     @cache
     def settled() -> tuple[Model, Equilibrium]:
-        model = model_at(tables, quiet, registry)
+        model = bench.model()
         return model, settle(model)
 
     def axial() -> float:
@@ -159,20 +146,20 @@ def _at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables, cl
         words = "axial slope of the stored energy [N]"
         rows.check(words, lambda: axial_force(*settled()), _SLOPE_WHY, near=load, within=_SLOPE * ratio)
     if closed_form:
-        model = model_at(tables, {**quiet, "kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}, registry)
+        model = bench.changed({"kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}).model()
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
         near, words = axial_displacement(model), "axial displacement [m]"
         rows.check(words, lambda: float(settle(model).displacement[0]), why, near=near, within=1e-6)
 
 
-def _too_stiff(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> bool:
+def _too_stiff(rows: Rows, bench: Bench) -> bool:
     """Whether elastic bodies refuse a law as too stiff: expected of no law softer than Hertz's."""
     try:
-        model_at(tables, {**changes, "bodies.kind": "condensed"}, registry)
+        bench.changed({"bodies.kind": "condensed"}).model()
     except SceneError as error:
         if _TOO_STIFF not in str(error):
             raise
-        rigid = model_at(tables, {**changes, "bodies.kind": "rigid"}, registry)
+        rigid = bench.changed({"bodies.kind": "rigid"}).model()
         allowed = stiffer_than_hertz(rigid, make_basis(rigid.scene).ball_load)
         why = "the law's own slope at the ball's load, or five times it, is above Hertz's; elastic bodies leave that no room"
         row = rows.refused(_TOO_STIFF, why, partial(_raise, error))
@@ -186,9 +173,9 @@ def _raise(error: RacewayError) -> None:
     raise error
 
 
-def hertz_factor(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+def hertz_factor(rows: Rows, bench: Bench) -> None:
     """Hertz' contacts of a bearing, which laws are calibrated by, against a closed form."""
-    scene = scene_at(tables, changes, registry)
+    scene = bench.scene
     basis = make_basis(scene)
     softness = float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0))
     near, words = series_factor(scene) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
@@ -196,28 +183,33 @@ def hertz_factor(rows: Rows, registry: Registry, tables: Tables, changes: Tables
     rows.check(words, softness, why, near=near, within=0.05)
 
 
-def _default_penalty(tables: Tables, changes: Tables, registry: Registry) -> float:
+def _default_penalty(bench: Bench) -> float:
     """The penalty [N/m3] that gives the inner races the stiffness of the default."""
-    models = [model_at(tables, {**changes, "contact.stiffness": value}, registry) for value in (None, 1.0)]
+    models = [bench.changed({"contact.stiffness": value}).model() for value in (None, 1.0)]
     default, unit = (float(surrogate(model.system).law_params[0, 0]) for model in models)
     return default / unit
 
 
-def refusal(rows: Rows, registry: Registry, tables: Tables, changes: Tables, words: str, reason: str) -> None:
+def refusal(rows: Rows, bench: Bench, words: str, reason: str) -> None:
     """A scene that has no answer: the message says why."""
-    rows.refused(words, reason, lambda: _run(tables, changes, registry))
+    rows.refused(words, reason, lambda: bench.result())
 
 
-def warning(rows: Rows, registry: Registry, tables: Tables, changes: Tables, words: str, reason: str) -> None:
+def warning(rows: Rows, bench: Bench, words: str, reason: str) -> None:
     """A scene that has an answer, and something that a user must be told about it."""
-    rows.warned(words, reason, _run(tables, changes, registry).warnings)
+    rows.warned(words, reason, bench.result().warnings)
 
 
-def condensed_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+def _calibrated(bench: Bench) -> Bench:
+    """The same bodies with the calibrated law, steps apart."""
+    same = {key: value for key, value in bench.changes.items() if key != "mesh" and not key.startswith("integrator.")}
+    return attrs.evolve(bench, changes={**same, **_CALIBRATED})
+
+
+def condensed_at_rest(rows: Rows, bench: Bench) -> None:
     """The axial displacement, and the balls' axial forces against the load."""
-    changes = {**changes, "excitation": None}
-    like = {key: value for key, value in changes.items() if key != "mesh"} | _CALIBRATED
-    results = [_run(tables, each, registry) for each in (changes, like)]
+    bench = bench.changed({"excitation": None})
+    results = [each.result() for each in (bench, _calibrated(bench))]
     balls = results[0].to_dict()["equilibrium"]["balls"]
     pressed = [ball for ball in balls if ball["contact_angle_inner_deg"] is not None]
     axial = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in pressed)
@@ -227,20 +219,19 @@ def condensed_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: T
     rows.check("sum of the balls' axial forces [N]", axial, why, near=results[0].model.scene.load.axial, within=0.02)
 
 
-def turn(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+def turn(rows: Rows, bench: Bench, integrator: str) -> None:
     """The dynamic stiffness of one turn."""
-    like = {
-        key: value for key, value in changes.items() if key != "mesh" and not key.startswith("integrator.")
-    } | _CALIBRATED
-    steady, stepped = {**like, "integrator.kind": "periodic"}, {**changes, "integrator.kind": integrator}
-    near, stiffness = (abs(_stiffness(_run(tables, each, registry))) for each in (steady, stepped))
+    steady, stepped = (
+        each.changed({"integrator.kind": kind}) for each, kind in ((_calibrated(bench), "periodic"), (bench, integrator))
+    )
+    near, stiffness = (abs(_stiffness(each.result())) for each in (steady, stepped))
     rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, near=near, within=0.05)
 
 
-def calibrated_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+def calibrated_at_rest(rows: Rows, bench: Bench) -> None:
     """Axial displacement and radial stiffness against condensed bodies; what the seat carries against the load."""
-    condensed = _run(tables, {**STATIC, **changes, "bodies.kind": "condensed"}, registry).equilibrium
-    result = _run(tables, {**COARSE, **changes}, registry)
+    condensed = bench.over(STATIC).changed({"bodies.kind": "condensed"}).result().equilibrium
+    result = bench.over(COARSE).result()
     why = "elements of 3.2 mm, two through a wall, bend too little: 1 % as a rule; twice that"
     near, value = float(condensed.displacement[0]), float(result.equilibrium.displacement[0])
     rows.check("axial displacement [m], predicted by condensed bodies", value, why, near=near, within=0.02)
@@ -255,15 +246,15 @@ def _on_the_seat(rows: Rows, result: Result) -> None:
     rows.check("axial force on the outer seat [N]", seat, why, near=load, within=1e-5)
 
 
-def points_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+def points_at_rest(rows: Rows, bench: Bench) -> None:
     """What the outer seat carries, and the stored energy over the axial way between two loads, against the load."""
 
     def settled(axial: float) -> tuple[float, float, Result]:
-        result = _run(tables, {**changes, "load.axial": axial}, registry)
+        result = bench.changed({"load.axial": axial}).result()
         stored = result.to_dict()["model"]["energies_j"]
         return float(result.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], result
 
-    load = scene_at(tables, changes, registry).load.axial
+    load = bench.scene.load.axial
     x, stored, result = settled(load)
     _on_the_seat(rows, result)
 
@@ -276,17 +267,17 @@ def points_at_rest(rows: Rows, registry: Registry, tables: Tables, changes: Tabl
     rows.check(words, slope, why, near=(1.0 + 0.5 * _MORE) * load, within=0.02)
 
 
-def _loaded_at_rest(tables: Tables, changes: Tables, registry: Registry) -> tuple[Any, Motion, Equilibrium]:
+def _loaded_at_rest(bench: Bench) -> tuple[Any, Motion, Equilibrium]:
     """Elastic bodies at rest, as a force meets them."""
-    model = model_at(tables, changes, registry)
+    model = bench.model()
     equilibrium, system = settle(model), cast("Any", model.system)
     return system, at_rest(system, equilibrium.displacement, equilibrium.ball, False), equilibrium
 
 
-def sudden_force(rows: Rows, registry: Registry, tables: Tables, integrator: str, changes: Tables) -> None:
+def sudden_force(rows: Rows, bench: Bench, integrator: str) -> None:
     """A force that acts at once: a balance of energies; a step above the stable limit is refused."""
-    ring, start, equilibrium = _loaded_at_rest(tables, changes, registry)
-    limit, method = float(ring.critical_time_step(equilibrium.stiffness)), method_of(integrator, registry, _TOLERANCE)
+    ring, start, equilibrium = _loaded_at_rest(bench)
+    limit, method = float(ring.critical_time_step(equilibrium.stiffness)), bench.method(integrator, _TOLERANCE)
     step, steps = 0.9 * limit, _IMPLICIT * _EXPLICIT
     if method.implicit:
         step, steps = _EXPLICIT * step, _IMPLICIT
@@ -303,12 +294,12 @@ def sudden_force(rows: Rows, registry: Registry, tables: Tables, integrator: str
         rows.refused("above the stable limit", "it is refused before it blows up", far, {"steps": 1, "step/limit": 1.02})
 
 
-def rubbing(rows: Rows, registry: Registry, tables: Tables, changes: Tables) -> None:
+def rubbing(rows: Rows, bench: Bench) -> None:
     """A force that meets contacts with friction at rest: the balance of energies, and that friction takes part."""
-    ring, start, _ = _loaded_at_rest(tables, changes, registry)
+    ring, start, _ = _loaded_at_rest(bench)
     step, steps = _RUBBING
     setting = {"integrator": "newmark", "steps": steps, "step_s": step}
-    energies = integrate(method_of("newmark", registry, _TOLERANCE), ring, start, Schedule(step, steps, 1)).energies
+    energies = integrate(bench.method("newmark", _TOLERANCE), ring, start, Schedule(step, steps, 1)).energies
     worst = drift(energies) or 0.0
     why = "a period of the ring takes forty of these steps; waves of single elements carry little"
     rows.check("energy not balanced by the work", (worst, worst), why, at_most=_UNBALANCED, at=setting)

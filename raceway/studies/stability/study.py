@@ -46,8 +46,9 @@ class Case:
     Attributes
     ----------
     name : what its rows are called by
-    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, registry, **arguments)``
-    setting : law, integrator, what else was varied;  arguments : plain values
+    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
+    setting : law, integrator, what else was varied
+    arguments : plain values; ``tables`` and ``changes`` of a scene make the ``Bench``, which is None without
     quick : whether it belongs to what is run unless all is asked for
     """
 
@@ -263,9 +264,14 @@ def _plain(case: Case, registry: Registry) -> Tables:
 def rows_of(case: Case, registry: Registry) -> list[Row]:
     """The rows of a case; whatever its code raises becomes a failed row."""
     rows, (module, _, function) = Rows(case.name, case.setting), case.measure.partition(":")
+    arguments, bench = dict(case.arguments), None
     try:
+        if "tables" in arguments:
+            from raceway.studies.stability.systems import Bench
+
+            bench = Bench(arguments.pop("tables"), arguments.pop("changes", {}), registry)
         path = module if "." in module else f"raceway.studies.stability.{module}"
-        getattr(import_module(path), function)(rows, registry, **case.arguments)
+        getattr(import_module(path), function)(rows, bench, **arguments)
     except Exception as why:  # a traceback is what no case may end in: it is the finding
         last = traceback.extract_tb(why.__traceback__)[-1]
         rows.lost(f"{type(why).__name__} in {Path(last.filename).name}, line {last.lineno}: {short(why)}")

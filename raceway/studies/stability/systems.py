@@ -24,16 +24,18 @@ from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.system import System, surrogate
 from raceway.framework.duties import reach_of, renews
 from raceway.framework.registry import Registry
+from raceway.pipeline.run import run
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
 from raceway.points.axes import tables_at
 from raceway.scene.changes import without
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.storage.tables import ReadTables
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import ContactLaw, Integrator
+    from raceway.pipeline.result import Result
 
 #: Halvings of an interval: to the last bit of a double from any first one.
 _HALVINGS = 200
@@ -56,14 +58,6 @@ def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Sce
 def model_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Model:
     """The bearing of such a scene."""
     return build_model(scene := scene_at(tables, changes, registry), make_plan(scene))
-
-
-def method_of(name: str, registry: Registry, tolerance: float | None = None) -> Integrator:
-    """An integrator; an implicit one with another tolerance of its steps."""
-    method: Any = registry.find("integrator", name).plugin()
-    if tolerance is not None and "tolerance" in attrs.fields_dict(type(method)):
-        method = attrs.evolve(method, tolerance=tolerance)
-    return cast("Integrator", method)
 
 
 def mass_at(position: float, speed: float = 0.0, acceleration: float = 0.0) -> Motion:
@@ -101,14 +95,47 @@ class Still:
         return size * abs(self.equilibrium.displacement[0]) * weight * self.system.free
 
 
-def still(tables: ReadTables, changes: ReadTables, registry: Registry) -> Still:
-    """The bearing of a scene, in equilibrium, nothing exciting it."""
-    model = model_at(tables, changes, registry)
-    equilibrium = settle(model)
-    system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
-    damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
-    limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)
-    return Still(model, system, equilibrium, limit, model.scene.contact.law.dissipative)
+@attrs.frozen
+class Bench:
+    """What a case is measured on: the bearing of a scene's tables with some keys changed, and the plug-ins of a registry."""
+
+    tables: Tables
+    changes: Tables
+    registry: Registry
+
+    def over(self, changes: Tables) -> Bench:
+        """With more keys changed, its own changes upon them."""
+        return attrs.evolve(self, changes={**changes, **self.changes})
+
+    def changed(self, changes: Tables) -> Bench:
+        """With more keys changed, upon its own changes."""
+        return attrs.evolve(self, changes={**self.changes, **changes})
+
+    @property
+    def scene(self) -> Scene:
+        return scene_at(self.tables, self.changes, self.registry)
+
+    def model(self) -> Model:
+        return model_at(self.tables, self.changes, self.registry)
+
+    def result(self) -> Result:
+        return run(self.scene, self.registry)
+
+    def still(self) -> Still:
+        """The bearing in equilibrium, nothing exciting it."""
+        model = self.model()
+        equilibrium = settle(model)
+        system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
+        damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
+        limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)
+        return Still(model, system, equilibrium, limit, model.scene.contact.law.dissipative)
+
+    def method(self, name: str, tolerance: float | None = None) -> Integrator:
+        """An integrator; an implicit one with another tolerance of its steps."""
+        method: Any = self.registry.find("integrator", name).plugin()
+        if tolerance is not None and "tolerance" in attrs.fields_dict(type(method)):
+            method = attrs.evolve(method, tolerance=tolerance)
+        return cast("Integrator", method)
 
 
 def inverted(function: Callable[[float], float], value: float, first: float) -> float:
