@@ -1,7 +1,7 @@
 """Ways through time: a scheme is stated once, and has a compiled loop and one that steps from Python.
 
 schemes    ``OneStep``, ``Explicit``, ``Static``, and ``integrate``, which takes the loop that a bearing asks for
-compiled   loops over small systems, in chunks;  stepped: the same, step for step, for systems stepped from Python
+compiled   loops over small systems;  advance: takes them in chunks;  stepped: the same, step for step, for systems stepped from Python
 
 Notes
 -----

@@ -1,4 +1,4 @@
-"""What a scheme is made of, and which part of it takes the steps of a system."""
+"""What a scheme is made of, and which part of it takes the steps of a system.  Nothing compiled is imported before steps are taken."""
 
 from __future__ import annotations
 
@@ -6,23 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 import attrs
-import numpy as np
 
-from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start
-from raceway.core.ring.system import System, by_address
-from raceway.core.signatures import Outer, Recording, State, Steps
-from raceway.core.time.compiled import (
-    BALLS,
-    CONTACT_FORCE,
-    COUNTERS,
-    EVALUATIONS,
-    PENETRATION,
-    REASON,
-    RESIDUAL,
-    ROWS,
-    UNBOUNDED,
-)
-from raceway.errors import ConvergenceError, PluginError, RacewayError, StabilityError
+from raceway.errors import PluginError
 
 if TYPE_CHECKING:
     from raceway.core.record import Motion, OnChunk, Record, Recorder, Schedule, SteppedSystem
@@ -33,8 +18,6 @@ if TYPE_CHECKING:
     Compiled = Callable[[System, Motion, Schedule, OnChunk | None], Record]
     #: Takes all steps of the recorder's schedule, each handed to ``recorder.accept``.
     Stepped = Callable[[SteppedSystem, Recorder], None]
-    from raceway.core.record import Motion, OnChunk, Record, Recorder, Schedule, SteppedSystem
-    from raceway.core.ring.system import System
 
 
 class Scheme(Protocol):
@@ -105,117 +88,6 @@ def integrate(
         return recorder.record()
 
 
-_CHUNK = 20_000
-
-
-def advance(
-    loop: Any,
-    system: System,
-    start: Motion,
-    schedule: Schedule,
-    coefficients: np.ndarray,
-    on_chunk: OnChunk | None = None,
-) -> Record:
-    """Take all steps of a schedule.
-
-    Parameters
-    ----------
-    loop : kernel with the signature ``raceway.core.signatures.LOOP``
-    coefficients : (k,) the method's own numbers
-
-    Raises
-    ------
-    ConvergenceError, StabilityError
-        With the reason, the time and the last good motion in ``state``.
-    """
-    check_start(system, start)
-    z = system.ball_count
-    rows = np.zeros((schedule.steps // schedule.stride, 16))
-    probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))
-    counters = np.zeros(COUNTERS)
-    motion = np.zeros((4, 5))
-    motion[0], motion[1], motion[2] = start.q, start.v, start.a
-    motion[3] = -system.mass @ start.a if start.rest is None else start.rest
-    ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
-    if start.memory is not None:
-        memory[:] = start.memory
-    state, recording = State(motion, ball, before, memory), Recording(schedule.stride, rows, probes, counters)
-    done, last = schedule.first, schedule.first + schedule.steps
-    # A speed that changes is another one in every step, which ends at its time.
-    addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
-    while done < last:
-        count = min(longest, last - done)
-        now = addressed.at_speed((done + count) * schedule.dt)
-        outer, steps = Outer(now.force, now.force_params, schedule.ramp), Steps(schedule.dt, done, count)
-        taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
-        done += taken
-        if taken < count:
-            raise _failure(system, schedule, done, motion, ball, counters)
-        if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
-            try:
-                on_chunk(done - schedule.first, schedule.steps)
-            except RacewayError as why:
-                why.state = {**_state(schedule, done, motion, ball), **why.state}
-                raise
-    kept = int(counters[ROWS])
-    rows, probes = rows[:kept], probes[:kept]
-    places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
-    return Record(
-        time=rows[:, 0],
-        displacement=rows[:, 1:6],
-        velocity=rows[:, 6:11],
-        force=rows[:, 11:16],
-        gap=probes[:, 0],
-        contact_force=probes[:, 1],
-        ball=places[0] if len(places) == 1 else np.concatenate(places, axis=2),
-        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy(), memory),
-        schedule=schedule,
-        counts={
-            "steps": schedule.steps,
-            "evaluations": int(counters[EVALUATIONS]),
-            "max_penetration_m": float(counters[PENETRATION]),
-            "peak_contact_force_n": float(counters[CONTACT_FORCE]),
-        },
-    )
-
-
-def _state(schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
-    """What a run that ends early leaves, by name."""
-    return {
-        "t": done * schedule.dt,
-        "q": motion[0].copy(),
-        "v": motion[1].copy(),
-        "a": motion[2].copy(),
-        "ball": ball.copy(),
-    }
-
-
-def _failure(
-    system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
-) -> ConvergenceError:
-    turn = done // schedule.steps_per_turn + 1
-    when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
-    state = _state(schedule, done, motion, ball)
-    if counters[REASON] == UNBOUNDED:
-        limit = None
-        if np.isfinite(motion).all():
-            now = system.evaluate(motion[0])
-            limit = system.damped_time_step(now.stiffness, now.damping)
-        hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""
-        return StabilityError(
-            f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, "
-            "add damping, or move away from a resonance.",
-            state,
-        )
-    if counters[REASON] == BALLS:
-        return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
-    residual = counters[RESIDUAL]
-    left = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
-    return ConvergenceError(
-        f"the iteration of a step did not converge {when}, {left}. Take more `integrator.steps_per_turn`.", state
-    )
-
-
 @attrs.frozen
 class Explicit:
     """Equations in ``raceway.core.time``."""
@@ -224,6 +96,7 @@ class Explicit:
         """Steps of a compiled ring."""
         import numpy as np
 
+        from raceway.core.time.advance import advance
         from raceway.core.time.compiled import central_difference
 
         return advance(central_difference, system, start, schedule, np.zeros(1), on_chunk)
@@ -256,6 +129,7 @@ class OneStep:
         import numpy as np
 
         from raceway.core.record import check_start
+        from raceway.core.time.advance import advance
         from raceway.core.time.compiled import implicit
 
         check_start(system, start)
@@ -280,6 +154,7 @@ class Static:
         """Equilibria of a compiled ring."""
         import numpy as np
 
+        from raceway.core.time.advance import advance
         from raceway.core.time.compiled import quasi_static
 
         if system.conservative:
