@@ -90,11 +90,11 @@ def article(options: ArticleOptions) -> int:
 
     SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
     friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
-    article.json and CSV tables. Finished curves are kept in DIR/article-rows.jsonl and reused.
+    article.json and CSV tables. Finished curves are stored in DIR/article-rows.jsonl and reused.
 
     With --bodies elastic every node of rings and balls moves, on the article's mesh without SCENE: four load cases at rest and one
     operating point under both excitations, beside condensed and rigid bodies. It takes gigabytes, and writes article-elastic.html;
-    finished runs are kept in DIR/article-elastic-rows.jsonl.
+    finished runs are stored in DIR/article-elastic-rows.jsonl.
 
     \b
     Example:

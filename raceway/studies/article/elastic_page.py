@@ -335,7 +335,7 @@ def _cost(out: Page, rows: list[Tables]) -> None:
     columns = ["run", "bodies", "elements", "CPU s", "and compiling s", "wall s", "peak GiB", "steps", "iterations", ""]
     out.table(columns, lines, "Every run; elements of condensed bodies are none of the run")
     words = (
-        "Runs go one at a time. What elastic bodies are factored into is kept on disk: later load cases and runs read it."
+        "Runs go one at a time. What elastic bodies are factored into is stored on disk: later load cases and runs read it."
     )
     out.text(words, kind="note")
 

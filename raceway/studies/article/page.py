@@ -172,7 +172,7 @@ def _friction(out: Page, content: ReadTables, pictures: dict[str, Picture]) -> N
         "and ring together along the groove, which is a tangential stiffness. A turning bearing renews its contacts within a small part "
         "of a turn, and keeps little of it. Balls that stand keep what sticks for as long as the motion repeats itself; on balls that "
         "orbit at cage speed each contact meets the force at another frequency, so that what sticks changes all the time. "
-        "The two are told apart because the article does not say how its balls move.",
+        "The two are distinguished because the article does not state how its balls move.",
         f"With friction there is no steady orbit to solve for: where contacts stick depends on how the motion began. Those runs go "
         f"through time (integrator `newmark`, {FRICTION_TURNS} turns of {FRICTION_STEPS} steps, the force grows over two thirds of them "
         "and the last third counts) at every other speed and axial load, with rigid bodies and ball inertia.",
@@ -214,7 +214,7 @@ def _setting(out: Page, content: ReadTables) -> None:
     out.text(
         f"Without friction the steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(speeds)} speeds from "
         f"{speeds[0]:g} to {speeds[-1]:g} r/min and {len(loads)} axial loads from {loads[0]:g} to "
-        f"{loads[-1]:g} N. Its 1x line gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
+        f"{loads[-1]:g} N. Its synchronous (1x) component gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
         f"said; the mass m is the ring’s and {scene.get('rotor', {}).get('mass', 0.0):g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
         "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
         f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
@@ -300,7 +300,7 @@ def _trends(out: Page, content: ReadTables) -> None:
 def _rig(out: Page, content: ReadTables) -> None:
     out.section("At the rig’s speeds and loads")
     out.text(
-        "What claim 2 would be held against the rig with: K under the rotating force m e w² with ball inertia. The article’s "
+        "What claim 2 would be compared with at the rig: K under the rotating force m e w² with ball inertia. The article’s "
         "measured values are lost, so nothing is compared."
     )
     speeds = dict.fromkeys(row["speed_rpm"] for row in content["rig"])

@@ -71,7 +71,7 @@ def rig(
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
     Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
-    Finished points are kept in DIR/rig-rows.jsonl and reused.
+    Finished points are stored in DIR/rig-rows.jsonl and reused.
 
     \b
     Example:
@@ -232,10 +232,12 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         f"{1e3 * rig.span:g} mm apart, {1e3 * rig.unbalance_mass:g} g at {1e3 * rig.unbalance_radius:g} mm; sensor "
         f"{1e3 * rig.sensor_distance:g} mm {rig.sensor_side} the tested bearing"
     )
-    out = Page(f"What a sensor beside a bearing tells of it: {study.title}", words, f"Raceway {__version__}, study rig")
+    out = Page(
+        f"Identification of a bearing from a sensor beside it: {study.title}", words, f"Raceway {__version__}, study rig"
+    )
     out.section("Result")
     out.text(
-        f"Inverting the beam finds K within {100 * worst['clean']:.2g} % from clean signals, and within "
+        f"Inversion of the beam identifies K within {100 * worst['clean']:.2g} % from clean signals, and within "
         f"{100 * worst['disturbed']:.2g} % with noise of {signals.noise_db:g} dB, {1e6 * signals.drift:g} µm of drift and "
         f"{1e6 * signals.run_out:g} µm of run-out, less what a slow roll shows.",
         kind="lead",
