@@ -12,28 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from raceway.storage.tables import ReadTables, Tables
+from raceway.studies.article import rules
 from raceway.studies.article.design import FRICTION_WORDS, MEASURES, ONE_WAY, ROTATING, TILT_WORDS, Curves
-from raceway.studies.article.rules import (
-    ABOUT,
-    BRIDGED,
-    FAILED,
-    LEVEL,
-    NEAREST,
-    UNTESTED,
-    Exponent,
-    Finding,
-    Verdict,
-    about,
-    by_tilt,
-    change_within,
-    course,
-    exponent,
-    influence,
-    influence_grows,
-    judge,
-    rises_with_load,
-    spread,
-)
+from raceway.studies.article.rules import BRIDGED, LEVEL, Exponent, Finding, Verdict, by_tilt, course, judge
 
 #: What the text of the article states: deviations of peak pressures; effects of the axial load in two zones of w*.
 LARGEST_DEVIATION, HEAVIEST_DEVIATION = 0.0242, 0.0033
@@ -83,10 +64,12 @@ def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
         errors = [row["error"] for row in rows if row["error"] is not None]
         computed = f"{deviation}: {max(errors):.2%}" if errors else "no number"
         failed = next((row["note"] for row in rows if row["error"] is None), "")
-        out.append(Verdict(number, claim, rule, computed, UNTESTED if errors or not rows else FAILED, failed=failed))
+        out.append(
+            Verdict(number, claim, rule, computed, rules.UNTESTED if errors or not rows else rules.FAILED, failed=failed)
+        )
     rule = "none: the table of measured stiffnesses is not in the text that is left of the article"
     computed = "K at the rig's speeds and loads is reported in a table of its own"
-    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, computed, UNTESTED)]
+    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, computed, rules.UNTESTED)]
 
 
 def _unidirectional(curves: Curves) -> list[Row]:
@@ -127,12 +110,12 @@ Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], Exponent | None
 
 
 def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Exponent | None:
-    return exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
+    return rules.exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
 
 
 def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Exponent | None:
     star = values / values[0]
-    return exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
+    return rules.exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
 
 
 def _hardening(curves: Curves, measure: str) -> list[Row]:
@@ -145,7 +128,7 @@ def _hardening(curves: Curves, measure: str) -> list[Row]:
     ):
         rule = (
             f"rotating force m e w²: {measure} rises at every step of the speed, by at least {LEVEL:.1%}, and by least squares {law} "
-            f"has p from {NEAREST[0]:g} to {NEAREST[1]:g} and a 95 % interval without 1, the straight line; {BRIDGED}"
+            f"has p from {rules.NEAREST[0]:g} to {rules.NEAREST[1]:g} and a 95 % interval without 1, the straight line; {BRIDGED}"
         )
         findings, powers = _powers(curves, measure, fit)
         rows.append((number, f"{claim}; read as {words}.", rule, f"k*(w* = 1): {by_tilt(findings)}{powers}", findings))
@@ -200,12 +183,12 @@ def _effects(curves: Curves, measure: str) -> dict[str, list[_Effect]]:
             surface.missing,
         )
         for load, k, lost in zip(surface.loads, values, failed, strict=True):
-            low = change_within(w, k, lost, *LOW_ZONE)
+            low = rules.change_within(w, k, lost, *LOW_ZONE)
             for number, begin in (("5a", HIGH_ZONE[0]), ("5b", 0.0)):
-                high = change_within(w, k, lost, begin, HIGH_ZONE[1])
+                high = rules.change_within(w, k, lost, begin, HIGH_ZONE[1])
                 effects[number].append(_Effect({**model, "load": load}, low, high, why))
         for number, k in (("5c", values), ("5d", values / values[:, :1])):
-            low, high = (spread(w, k, failed, *zone) for zone in (LOW_ZONE, HIGH_ZONE))
+            low, high = (rules.spread(w, k, failed, *zone) for zone in (LOW_ZONE, HIGH_ZONE))
             effects[number].append(_Effect(model, low, high, why))
     return effects
 
@@ -213,7 +196,7 @@ def _effects(curves: Curves, measure: str) -> dict[str, list[_Effect]]:
 def _axial(curves: Curves, measure: str) -> list[Row]:
     """Claim 5: about 8 % at low speeds and 34 % at high ones in every reading, and whether the effect grows."""
     effects, rows = _effects(curves, measure), list[Row]()
-    expected = f"about {LOW_EFFECT:.0%} and about {HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
+    expected = f"about {LOW_EFFECT:.0%} and about {HIGH_EFFECT:.0%} (each within {rules.ABOUT:.0%} of the number); {BRIDGED}"
     claim = "Axial load: about 8 % effect for w* from 0 to 0.25, about 34 % from 0.75 to 1"
     for number, (effect, words) in _READINGS.items():
         zones = []
@@ -236,7 +219,7 @@ def _axial(curves: Curves, measure: str) -> list[Row]:
 def _as_claimed(effect: _Effect) -> bool | None:
     if effect.low is None or effect.high is None:
         return None
-    return about(effect.low, LOW_EFFECT) and about(effect.high, HIGH_EFFECT)
+    return rules.about(effect.low, LOW_EFFECT) and rules.about(effect.high, HIGH_EFFECT)
 
 
 def _combined(curves: Curves, measure: str) -> list[Row]:
@@ -244,7 +227,7 @@ def _combined(curves: Curves, measure: str) -> list[Row]:
     with_load, with_speed, grows, together = [], [], [], []
     for model, surface in curves.surfaces(ROTATING):
         values, errors, failed, why = surface.values(measure), surface.errors, surface.failed, surface.missing
-        rising = rises_with_load(values, errors, failed)
+        rising = rules.rises_with_load(values, errors, failed)
         with_load += [
             Finding({**model, "speed": speed}, rises, _ratio(column), why)
             for speed, rises, column in zip(surface.speeds, rising, values.T, strict=True)
@@ -254,7 +237,7 @@ def _combined(curves: Curves, measure: str) -> list[Row]:
             Finding({**model, "load": load}, rises, _ratio(k), why)
             for load, rises, k in zip(surface.loads, courses, values, strict=True)
         ]
-        more, change = influence_grows(values, failed), influence(values)
+        more, change = rules.influence_grows(values, failed), rules.influence(values)
         growth = float(change[-1] - change[0]) if np.isfinite(change[[0, -1]]).all() else None
         grows.append(Finding(model, more, growth, why))
         parts = [*rising, *courses, more]

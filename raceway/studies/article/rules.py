@@ -153,7 +153,7 @@ def _residuals(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
     return np.asarray(((y - factor[:, None] * powers) ** 2).sum(axis=1))
 
 
-_ORDER = ("case", "friction", "tilt", "inertia", "bodies", "speed", "load")
+_ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")
 
 
 @attrs.frozen
@@ -162,7 +162,7 @@ class Finding:
 
     Attributes
     ----------
-    at : which friction, tilt, inertia, bodies, load [N], speed [r/min], or which case of a table
+    at : which friction, tilt, inertia, bodies, load [N] and speed [r/min]
     holds : None where it could not be judged, with the reason in ``why``
     value : the number that the rule looks at
     """
@@ -214,9 +214,7 @@ def _named(key: str, values: Sequence[Any], every: Sequence[Any]) -> str:
         return "with ball inertia" if values[0] else "weightless balls"
     if key == "bodies":
         return f"{' or '.join(values)} bodies"
-    if key in ("load", "speed"):
-        return _ranges(values, every, "N" if key == "load" else "r/min")
-    return " or ".join(str(value) for value in values)
+    return _ranges(values, every, "N" if key == "load" else "r/min")
 
 
 def _ranges(values: Sequence[float], every: Sequence[float], unit: str) -> str:
