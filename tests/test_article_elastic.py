@@ -12,9 +12,10 @@ import pytest
 
 import raceway as rw
 from raceway import ConvergenceError, SceneError
+from raceway.out.progress import RemainingTime
 from raceway.scene.file import read_toml
 from raceway.studies.article import elastic
-from raceway.studies.article.elastic import SCENE, Design, RemainingTime, Run, design
+from raceway.studies.article.elastic import SCENE, Design, Run, design
 from raceway.studies.article.elastic_page import drawings, page
 from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
@@ -251,7 +252,7 @@ def test_a_missing_reference_leaves_differences_out():
 
 def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now, told = [0.0], []
-    monkeypatch.setattr("raceway.studies.article.elastic.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("raceway.out.progress.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
     progress = RemainingTime({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "elastic at rest", "400 N axial")

@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 import math
 import time
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ import attrs
 from raceway import make_plan
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
+from raceway.out.progress import RemainingTime
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -500,45 +501,3 @@ def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
         seconds.append(max(plan.predicted_wall_s - (plan.predicted_once_s if bodies in made else 0.0), 0.0))
         made.add(bodies)
     return seconds
-
-
-class RemainingTime:
-    """Progress over all runs: what one run does, how far it is, and when all will end by plans and the runs before.
-
-    A run that takes longer than planned leaves the end unknown.
-
-    Parameters
-    ----------
-    seconds : predicted time by number of every run that is to be made, in their order [s]
-    kinds : what is alike in runs by the same number: none takes longer than the one of its kind before
-    on_progress : called as ``on_progress(what, done, total)``, in predicted seconds; an exception stops the study
-    """
-
-    def __init__(self, seconds: Mapping[int, float], kinds: Mapping[int, Hashable], on_progress: OnProgress | None) -> None:
-        self._seconds, self._kinds, self._tell = dict(seconds), kinds, on_progress
-        self._run, self._name, self._begun = -1, "", time.monotonic()
-        self._order = {run: k for k, run in enumerate(self._seconds, 1)}
-
-    def begin(self, run: int, name: str, case: str) -> None:
-        """A run starts, and the one before has ended; its ``case`` is shown once, its short ``name`` with all that it does."""
-        if self._run in self._seconds:
-            taken = self._seconds[self._run] = time.monotonic() - self._begun
-            for later in self._seconds:
-                if later > self._run and self._kinds[later] == self._kinds[self._run]:
-                    self._seconds[later] = min(self._seconds[later], taken)
-        self._run, self._name, self._begun = run, name, time.monotonic()
-        self(case, 0, 0)
-
-    def __call__(self, what: str, done: int, total: int) -> None:
-        """Called by the run: ``what`` is done, ``done`` of ``total``, 0 where nobody knows how many."""
-        if self._tell is None:
-            return
-        planned, taken = self._seconds[self._run], time.monotonic() - self._begun
-        gone = sum(s for run, s in self._seconds.items() if run < self._run) + min(taken, planned)
-        total_s = sum(self._seconds.values())
-        left = total_s - gone
-        words = f"{left:.0f} s left" if left < 90.0 else f"{left / 60.0:.0f} min left"
-        progress = f" {done} of {total}" if total else ""
-        # A terminal cuts what is longer than 76 characters: the time first, then what is done.
-        head = f"run {self._order[self._run]} of {len(self._order)}: {'end unknown' if taken > planned else words}"
-        self._tell(f"{head}, {self._name}: {what}{progress}", round(gone), round(total_s))
