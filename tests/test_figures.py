@@ -59,7 +59,8 @@ def of_a_run() -> list[Figure]:
         load={"axial": 100.0}, excitation=excitation, integrator={"turns": 2, "steps_per_turn": 60, "start": "ramp"}
     )
     moving, still = run(scene_from_dict(tables)), run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [pictures.orbit(moving), pictures.spectrum(moving), pictures.ball_loads(moving), pictures.ball_loads(still)]
+    names = ("orbit", "spectrum", "ball_loads")
+    return [*(pictures.picture(moving, name) for name in names), pictures.picture(still, "ball_loads")]
 
 
 def of_a_sweep() -> list[Figure]:

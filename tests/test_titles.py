@@ -9,7 +9,7 @@ import pytest
 from raceway import load_scene, scene_from_dict
 from raceway.cli.frame import slug
 from raceway.out.page import Page
-from raceway.plugins.pictures import ball_loads
+from raceway.plugins.pictures import picture
 from raceway.points.commands import head
 from raceway.points.plot import select
 from raceway.points.store import row_key
@@ -90,7 +90,7 @@ def test_a_changed_run_overwrites_no_other(tmp_path, monkeypatch):
 
 
 def test_pictures_pages_and_tables_for_rotor_programs_say_it():
-    figure = ball_loads(run(scene_from_dict(b7206c(title="T\nload.axial = 1000"))))
+    figure = picture(run(scene_from_dict(b7206c(title="T\nload.axial = 1000"))), "ball_loads")
     assert figure.axes[0].get_title().splitlines()[1:] == ["T", "load.axial = 1000"]
     keys = {row_key(scene_from_dict(b7206c(title=title)), default_registry()) for title in ("one", "two\nload.axial = 1000")}
     assert len(keys) == 1, "a title decides no number"

@@ -11,7 +11,7 @@ import pytest
 from raceway import scene_from_dict
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.plugins.formats import Vtu
-from raceway.plugins.pictures import ball_loads
+from raceway.plugins.pictures import picture
 from raceway.studies.view.bodies import Bearing, contact_patch
 from raceway.studies.view.bodies import ball as solid_ball
 from raceway.studies.view.pictures import LETTERS, ball_labels, contacts
@@ -142,7 +142,7 @@ def test_a_pair_has_four_rings_and_loads_that_point_apart():
     assert len(drawn.rings(cut=None)) == 4
     towards = drawn.towards(at_rest(found))[24:]
     assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
-    labels = [text.get_text() for text in ball_loads(found).legends[0].get_texts()]
+    labels = [text.get_text() for text in picture(found, "ball_loads").legends[0].get_texts()]
     assert labels == ["static, row 1", "static, row 2"]
 
 

@@ -25,7 +25,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.settle import equilibrium_table, largest_contacts
 from raceway.pipeline.simulate import OnProgress
-from raceway.plugins.pictures import ball_loads, given_axes, orbit, save_figure
+from raceway.plugins.pictures import given_axes, picture, save_figure
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.scene.given import as_scene
 from raceway.storage.files import writable, write_whole
@@ -246,10 +246,10 @@ def _still(
     path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
     told = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
     pictures["contacts.png"] = path, "section of the rings with the ball, and its two contact ellipses", told
-    path = save_figure(ball_loads(result), folder / "ball-loads.png", 110)
+    path = save_figure(picture(result, "ball_loads"), folder / "ball-loads.png", 110)
     pictures["ball-loads.png"] = path, "ball loads by azimuth", "Ball loads on the inner race by azimuth"
     if result.simulation is not None:
-        path = save_figure(orbit(result), folder / "orbit.png", 110)
+        path = save_figure(picture(result, "orbit"), folder / "orbit.png", 110)
         pictures["orbit.png"] = path, "orbit of the inner ring", "Orbit of the inner ring's reference point"
     return pictures
 
