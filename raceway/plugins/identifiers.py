@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
@@ -10,6 +11,8 @@ import attrs
 from raceway.framework.options import between, option, worded
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from raceway.bodies.equilibrium import Equilibrium
     from raceway.bodies.model import Model
     from raceway.core.record import Record
@@ -24,6 +27,55 @@ def whole_turns(record: Record) -> Record:
         return record
     names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
     return attrs.evolve(record, **{name: getattr(record, name)[-length:] for name in names})
+
+
+def _fourier(record: Record, frequency_hz: float) -> tuple[np.ndarray, np.ndarray]:
+    """1x lines (5,) of force and displacement over a record."""
+    from raceway.core.signals import fourier_line
+
+    force, displacement = (fourier_line(record.time, s, frequency_hz) for s in (record.force, record.displacement))
+    return force, displacement
+
+
+def _spread(record: Record, z: complex, of_turn: Callable[[slice], complex]) -> float | None:
+    """Largest deviation of a single turn's Z from that of all turns, relative; None for one turn."""
+    per_turn = record.schedule.steps_per_turn // record.schedule.stride
+    turns = len(record.time) // per_turn
+    if turns < 2:
+        return None
+    return float(max(abs(of_turn(slice(k * per_turn, (k + 1) * per_turn)) - z) for k in range(turns)) / abs(z))
+
+
+@attrs.frozen
+class Fft1x:
+    """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
+
+    name: ClassVar[str] = "fft_1x"
+    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
+    definition: ClassVar[str] = (
+        "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
+    )
+
+    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
+
+        record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
+        time, signals = record.time, (record.force, record.displacement)
+        force, line = _fourier(record, frequency)
+        z = stiffness(force, line)
+        fit, _ = fit_lines(time, np.hstack(signals), frequency, 3)
+        straight = [without_drift(time, signal, frequency) for signal in signals]
+        motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
+        pure = (line[:3] * np.exp(1j * (2.0 * np.pi * frequency * time[:, None]))).real
+        scale = np.sqrt((pure**2).sum())
+        return identification(
+            self.definition, frequency, force, line, model.mass_used,
+            residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
+            spread=_spread(record, z, lambda turn: stiffness(*(fourier_line(time[turn], s[turn], frequency) for s in straight))),
+            window=float(abs(stiffness(fit[0, :5], fit[0, 5:]) - z) / abs(z)),
+        )  # fmt: skip
 
 
 @attrs.frozen
@@ -41,29 +93,25 @@ class SineFit:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals import fit_lines, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
         signals = np.hstack([record.force, record.displacement])
-        lines, rest = fit_lines(record.time, signals, frequency, self.harmonics)
-        force, line = lines[0, :5], lines[0, 5:]
-        whole = stiffness(force, line)
-        per_turn = record.schedule.steps_per_turn // record.schedule.stride
         straight = without_drift(record.time, signals, frequency)
-        single = []
-        for turn in range(len(record.time) // per_turn):
-            part = slice(turn * per_turn, (turn + 1) * per_turn)
-            one, _ = fit_lines(record.time[part], straight[part], frequency, self.harmonics)
-            single.append(stiffness(one[0, :5], one[0, 5:]))
-        scale = np.linalg.norm(line[1:3]) * np.sqrt(0.5 * len(record.time))
-        other = stiffness(
-            fourier_line(record.time, record.force, frequency), fourier_line(record.time, record.displacement, frequency)
-        )
+
+        def fitted(signals: np.ndarray, part: slice) -> tuple[np.ndarray, np.ndarray]:
+            lines, residual = fit_lines(record.time[part], signals[part], frequency, self.harmonics)
+            return lines[0], residual
+
+        line, residual = fitted(signals, slice(None))
+        z = stiffness(line[:5], line[5:])
+        scale = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(record.time))
+        fourier = stiffness(*_fourier(record, frequency))
         return identification(
-            self.definition, frequency, force, line, model.mass_used,
-            residual=float(np.linalg.norm(rest[:, 6:8]) / scale) if scale > 0 else None,
-            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if len(single) > 1 else None,
-            window=float(abs(other - whole) / abs(whole)),
+            self.definition, frequency, line[:5], line[5:], model.mass_used,
+            residual=float(np.linalg.norm(residual[:, 6:8]) / scale) if scale > 0 else None,
+            spread=_spread(record, z, lambda turn: stiffness(*np.split(fitted(straight, turn)[0], 2))),
+            window=float(abs(fourier - z) / abs(z)),
         )  # fmt: skip
 
 
@@ -90,54 +138,12 @@ class Tangent:
         for k in range(samples):
             phase = np.exp(-2j * np.pi * k / samples)
             force += 2.0 / samples * phase * system.outer_force(k / samples / excitation.frequency_hz)
-        chosen = system.free > 0.0
+        free = system.free > 0.0
         viscous = system.viscous_stiffness_at(equilibrium.displacement, equilibrium.ball, w)
         dynamic = equilibrium.stiffness_rows_held + viscous + system.stiffness - w**2 * system.mass + 1j * w * system.damping
         line = np.zeros(5, dtype=complex)
-        line[chosen] = np.linalg.solve(dynamic[np.ix_(chosen, chosen)], force[chosen])
+        line[free] = np.linalg.solve(dynamic[np.ix_(free, free)], force[free])
         return identification(self.definition, excitation.frequency_hz, force, line, model.system.mass[1, 1])
-
-
-@attrs.frozen
-class Fft1x:
-    """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
-
-    name: ClassVar[str] = "fft_1x"
-    needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
-    definition: ClassVar[str] = (
-        "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
-    )
-
-    def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
-        import numpy as np
-
-        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
-
-        record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
-        force = fourier_line(record.time, record.force, frequency)
-        line = fourier_line(record.time, record.displacement, frequency)
-        whole = stiffness(force, line)
-        other, _ = fit_lines(record.time, np.hstack([record.force, record.displacement]), frequency, 3)
-        per_turn = record.schedule.steps_per_turn // record.schedule.stride
-        turns = len(record.time) // per_turn
-        single = []
-        if turns > 1:
-            force_straight = without_drift(record.time, record.force, frequency)
-            straight = without_drift(record.time, record.displacement, frequency)
-        for turn in range(turns if turns > 1 else 0):
-            part = slice(turn * per_turn, (turn + 1) * per_turn)
-            force_1 = fourier_line(record.time[part], force_straight[part], frequency)
-            single.append(stiffness(force_1, fourier_line(record.time[part], straight[part], frequency)))
-        motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
-        wt = 2.0 * np.pi * frequency * record.time[:, None]
-        pure = (line[:3] * np.exp(1j * wt)).real
-        scale = np.sqrt((pure**2).sum())
-        return identification(
-            self.definition, frequency, force, line, model.mass_used,
-            residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
-            spread=float(max(abs(z - whole) for z in single) / abs(whole)) if single else None,
-            window=float(abs(stiffness(other[0, :5], other[0, 5:]) - whole) / abs(whole)),
-        )  # fmt: skip
 
 
 #: Share by which the largest speed exceeds the smallest.  What Z has beyond its form, e w^2 with w over the mean speed, shifts K by e
@@ -186,25 +192,20 @@ class ImpedanceFit:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals import fourier_line, identification, stiffness
+        from raceway.core.signals import identification, stiffness
 
         records = [whole_turns(record) for record in records]
         w = np.array([2.0 * pi / (r.schedule.dt * r.schedule.steps_per_turn) for r in records])
-        lines = [
-            (fourier_line(r.time, r.force, s / (2.0 * pi)), fourier_line(r.time, r.displacement, s / (2.0 * pi)))
-            for r, s in zip(records, w, strict=True)
-        ]
-        z = np.array([stiffness(force, line) for force, line in lines])
-        own, mass = 2.0 * pi * model.excitation.frequency_hz, model.mass_used
-        nearest = int(np.argmin(np.abs(w - own)))
+        lines = [_fourier(record, speed / (2.0 * pi)) for record, speed in zip(records, w, strict=True)]
+        z = np.array([stiffness(*line) for line in lines])
+        whirl, mass = 2.0 * pi * model.excitation.frequency_hz, model.mass_used
+        nearest = int(np.argmin(np.abs(w - whirl)))
         k, damping = float((z.real + mass * w**2).mean()), float((w @ z.imag) / (w @ w))
-        fitted, here = k - mass * w**2 + 1j * w * damping, complex(k - mass * own**2, own * damping)
-        away = np.abs(z - fitted)
-        found = identification(self.definition, own / (2.0 * pi), *lines[nearest], mass_used=mass)
+        misfit = np.abs(z - (k - mass * w**2 + 1j * w * damping))
         return attrs.evolve(
-            found,
-            dynamic_stiffness=here,
-            residual=float(np.sqrt(np.mean(away**2)) / abs(z).mean()),
-            window=float((away / np.abs(z)).max()),
-            series=tuple((float(s), complex(one)) for s, one in zip(w, z, strict=True)),
+            identification(self.definition, whirl / (2.0 * pi), *lines[nearest], mass_used=mass),
+            dynamic_stiffness=complex(k - mass * whirl**2, whirl * damping),
+            residual=float(np.sqrt(np.mean(misfit**2)) / abs(z).mean()),
+            window=float((misfit / np.abs(z)).max()),
+            series=tuple((float(speed), complex(value)) for speed, value in zip(w, z, strict=True)),
         )

@@ -50,28 +50,27 @@ class OrderTracking:
         phase = model.excitation.phase(record.time)
         signals = np.hstack([record.force, record.displacement])
         width = 2.0 * np.pi * self.window_turns
-        series, wrong, last = [], [], None
+        series, errors, last = [], [], None
         first = phase[0]
         # A sample stands for the step that ends with it: n turns are n turns less one step from first to last sample.
         end = phase[-1] + 1.01 * (phase[-1] - phase[-2])
         while first + width <= end:
-            chosen = np.flatnonzero((phase >= first) & (phase < first + width))
+            samples = np.flatnonzero((phase >= first) & (phase < first + width))
             first += 0.5 * width
-            if len(chosen) < 24:
+            if len(samples) < 24:
                 continue
-            found = _window(model, record.time[chosen], phase[chosen], signals[chosen])
-            series.append((found.speed, found.value))
-            wrong.append(found.error)
-            last = found
+            last = _window(model, record.time[samples], phase[samples], signals[samples])
+            series.append((last.speed, last.value))
+            errors.append(last.error)
         if last is None:
             raise ConvergenceError(
                 f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
             )
-        whole = identification(
+        identified = identification(
             self.definition, last.speed / (2.0 * np.pi), last.line[:5], last.line[5:], model.mass_used,
             residual=last.residual, series=tuple(series),
         )  # fmt: skip
-        return attrs.evolve(whole, dynamic_stiffness=last.value, series_error=tuple(wrong))
+        return attrs.evolve(identified, dynamic_stiffness=last.value, series_error=tuple(errors))
 
 
 @attrs.frozen
@@ -96,18 +95,18 @@ def _window(model: Model, time: np.ndarray, phase: np.ndarray, signals: np.ndarr
     bent = np.column_stack([basis, u * u * c, u * u * s])
     # Hann's weights: a free vibration leaks less into the line by orders of magnitude.
     weight = np.sqrt(1.0 - np.cos(2.0 * np.pi * (np.arange(len(t)) + 0.5) / len(t)))[:, None]
-    solution, other = (np.linalg.lstsq(weight * one, weight * signals, rcond=None)[0] for one in (basis, bent))
+    solution, curve = (np.linalg.lstsq(weight * columns, weight * signals, rcond=None)[0] for columns in (basis, bent))
     # Of the phase: w at the middle, and its rate.
     half_rate, w, _ = np.polyfit(t, phase, 2)
     speeds, system = (w, 2.0 * half_rate), model.system.at_speed(time.mean()) if model.mass_used > 0.0 else None
     line = solution[0] - 1j * solution[1]
     value, change = _steady(system, speeds, line, (solution[2] - 1j * solution[3]) / span, 0.0 * line)
-    curved = other[0] - 1j * other[1]
-    rate, bend = ((other[k] - 1j * other[k + 1]) / scale for k, scale in ((2, span), (9, 0.5 * span**2)))
+    curved = curve[0] - 1j * curve[1]
+    rate, bend = ((curve[k] - 1j * curve[k + 1]) / scale for k, scale in ((2, span), (9, 0.5 * span**2)))
     more, _ = _steady(system, speeds, curved, rate, bend)
-    rest = (signals - basis @ solution)[:, 6:8]
+    left_over = (signals - basis @ solution)[:, 6:8]
     size = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(t))
-    residual = float(np.linalg.norm(rest) / size) if size > 0.0 else None
+    residual = float(np.linalg.norm(left_over) / size) if size > 0.0 else None
     error = abs(more - value) / abs(value) + change**2 if abs(value) > 0.0 else np.inf
     return _Window(float(w), line, value, float(error), residual)
 
