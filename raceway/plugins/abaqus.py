@@ -55,10 +55,10 @@ class Abaqus:
         surfaces = list(_surfaces(Path(path).read_text(encoding="utf-8")))
         facets = {name: _facets(path, name, lines, members) for name, lines in surfaces}
         used = {line[0].lower() for _, lines in surfaces for line in lines}
-        left = sorted(name for name, found in members.items() if name not in used and len(found) < len(cells))
-        if left:
+        unused = sorted(name for name, elements in members.items() if name not in used and len(elements) < len(cells))
+        if unused:
             warnings.warn(
-                f"'{path}': element sets {', '.join(left)} are not taken over: what is used are sets of nodes (*NSET) and of "
+                f"'{path}': element sets {', '.join(unused)} are not taken over: what is used are sets of nodes (*NSET) and of "
                 "faces (*SURFACE)",
                 stacklevel=2,
             )
@@ -80,7 +80,7 @@ class Abaqus:
             lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
             lines += [f"{name}_S{face + 1}, S{face + 1}" for face in faces]
         text = "\n".join(lines) + "\n"
-        exchange.store(path, lambda place, content: Path(place).write_text(content, encoding="utf-8"), text)
+        exchange.store(path, lambda target, content: Path(target).write_text(content, encoding="utf-8"), text)
 
     def example_content(self) -> HexMesh:
         return exchange.example()
@@ -119,7 +119,7 @@ def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:
 
 
 def _facets(path: Path, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
-    found = [np.zeros((0, 2), dtype=int)]
+    facets = [np.zeros((0, 2), dtype=int)]
     for line in lines:
         word, face = (*line, "")[:2]
         if word.lower() not in members or not re.fullmatch(r"[sS][1-6]", face):
@@ -127,6 +127,6 @@ def _facets(path: Path, name: str, lines: list[tuple[str, str]], members: dict[s
                 f"'{path}': surface '{name}' has the line '{', '.join(line)}'; it must be the name of an *ELSET and a face S1 "
                 f"to S6. Known element sets: {', '.join(sorted(members)) or 'none'}"
             )
-        chosen = members[word.lower()]
-        found.append(np.column_stack([chosen, np.full(len(chosen), int(face[1]) - 1)]))
-    return np.concatenate(found)
+        elements = members[word.lower()]
+        facets.append(np.column_stack([elements, np.full(len(elements), int(face[1]) - 1)]))
+    return np.concatenate(facets)

@@ -109,6 +109,11 @@ class Amplitude:
         fixed: Tables = {"amplitude": "constant", "force": self.amplitude_n, "load_share": 1.0}
         return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)
 
+    def kernel(self) -> Kernel:
+        from raceway.core.excitations.harmonic import harmonic
+
+        return harmonic
+
 
 @attrs.frozen(kw_only=True)
 class Unidirectional(Amplitude):
@@ -120,10 +125,9 @@ class Unidirectional(Amplitude):
 
     @classmethod
     def examples(cls, **options: Any) -> list[Self]:
-        first, second = (
-            super(Unidirectional, cls).examples(direction_deg=direction_deg, **options) for direction_deg in (0.0, 130.0)
-        )
-        return first + second
+        return [
+            force for angle in (0.0, 130.0) for force in super(Unidirectional, cls).examples(direction_deg=angle, **options)
+        ]
 
     @property
     def sense(self) -> int:
@@ -134,11 +138,6 @@ class Unidirectional(Amplitude):
 
         lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
-
-    def kernel(self) -> Kernel:
-        from raceway.core.excitations.harmonic import harmonic
-
-        return harmonic
 
 
 @attrs.frozen(kw_only=True)
@@ -151,8 +150,8 @@ class Bidirectional(Amplitude):
 
     @classmethod
     def examples(cls, **options: Any) -> list[Self]:
-        first, second = (super(Bidirectional, cls).examples(whirl=whirl, **options) for whirl in ("forward", "backward"))
-        return first + second
+        senses = "forward", "backward"
+        return [force for whirl in senses for force in super(Bidirectional, cls).examples(whirl=whirl, **options)]
 
     @property
     def sense(self) -> int:
@@ -163,11 +162,6 @@ class Bidirectional(Amplitude):
 
         lag = radians(self.phase_lag_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
-
-    def kernel(self) -> Kernel:
-        from raceway.core.excitations.harmonic import harmonic
-
-        return harmonic
 
 
 @attrs.frozen(kw_only=True)
@@ -220,13 +214,8 @@ class RunUp:
 
     def steady(self) -> Bidirectional:
         """The same rotor at its first speed."""
-        return Bidirectional(
-            speed_rpm=self.first_speed_rpm,
-            unbalance=self.unbalance,
-            load_share=self.load_share,
-            phase_lag_deg=self.phase_lag_deg,
-            whirl=self.whirl,
-        )
+        same = {name: getattr(self, name) for name in ("unbalance", "load_share", "phase_lag_deg", "whirl")}
+        return Bidirectional(speed_rpm=self.first_speed_rpm, **same)
 
     def parameters(self) -> np.ndarray:
         import numpy as np

@@ -102,9 +102,9 @@ def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
         if block.type.startswith(_SOLIDS):
             foreign[block.type] = foreign.get(block.type, 0) + len(block.data)
     if foreign:
-        told = ", ".join(f"{count} of type {kind}" for kind, count in foreign.items())
+        solids = ", ".join(f"{count} of type {kind}" for kind, count in foreign.items())
         raise MeshError(
-            f"'{path}' has solids that are not hexahedra of 8 nodes: {told}. Only such hexahedra are computed with: mesh the "
+            f"'{path}' has solids that are not hexahedra of 8 nodes: {solids}. Only such hexahedra are computed with: mesh the "
             "body again with hexahedra (kind = 'gmsh' with method = 'subdivision' splits tetrahedra into them)"
         )
     parts: list[np.ndarray] = []
@@ -132,11 +132,11 @@ def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: Read
         used = np.zeros(len(points), dtype=bool)
         used[cells] = True
         if not used.all():
-            place = np.cumsum(used) - 1
+            number = np.cumsum(used) - 1
             node_sets = {
-                name: place[n[used[n]]] for name, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]
+                name: number[n[used[n]]] for name, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]
             }
-            points, cells = points[used], place[cells]
+            points, cells = points[used], number[cells]
     try:
         return HexMesh(points, cells, dict(node_sets), dict(facet_sets))
     except MeshError as why:
@@ -154,8 +154,8 @@ def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> n
     from raceway.core.mesh.hex_mesh import FACES
 
     faces = np.sort(cells[:, FACES].reshape(-1, 4), axis=1)
-    wanted = np.sort(np.asarray(quads, dtype=np.int64), axis=1)
-    _, number = np.unique(np.concatenate([faces, wanted]), axis=0, return_inverse=True)
+    sorted_quads = np.sort(np.asarray(quads, dtype=np.int64), axis=1)
+    _, number = np.unique(np.concatenate([faces, sorted_quads]), axis=0, return_inverse=True)
     number = number.reshape(-1)
     owner = np.full(number.max() + 1, -1)
     owner[number[: len(faces)]] = np.arange(len(faces))

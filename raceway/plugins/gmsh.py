@@ -102,23 +102,23 @@ class Gmsh:
         """
         from raceway.core.mesh.hex_mesh import ball_names
 
-        found: dict[str, float] = {}
+        cells: dict[str, float] = {}
         prediction: Prediction | None = None
         for body in BODIES:
             path = getattr(self, body)
             if path is None:
                 continue
             _refuse_file(path)
-            cells = self._opened(path, self._cells)
-            found.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], cells))
-            prediction = self._refuse_large(found, path)
+            count = self._opened(path, self._cells)
+            cells.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], count))
+            prediction = self._refuse_large(cells, path)
         return prediction
 
-    def _refuse_large(self, found: dict[str, float], path: str) -> Prediction:
+    def _refuse_large(self, cells: dict[str, float], path: str) -> Prediction:
         from raceway.core.mesh.quality import Prediction, refuse_memory
 
         # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
-        prediction = Prediction.of(found, _BESIDE_BYTES + _BYTES_BESIDE * max(found.values()))
+        prediction = Prediction.of(cells, _BESIDE_BYTES + _BYTES_BESIDE * max(cells.values()))
         refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
@@ -157,16 +157,16 @@ class Gmsh:
         gmsh.model.mesh.generate(3)
         cells = self._hexahedra(gmsh, path)
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
-        place = np.full(int(tags.max()) + 1, -1)
+        number = np.full(int(tags.max()) + 1, -1)
         used = np.isin(tags, cells)
-        place[tags[used].astype(int)] = np.arange(used.sum())
+        number[tags[used].astype(int)] = np.arange(used.sum())
         points = scale * coordinates.reshape(-1, 3)[used]
         quads = {}
         for name, surfaces in _surfaces(gmsh).items():
-            found = [gmsh.model.mesh.getElementsByType(3, surface)[1].reshape(-1, 4) for surface in surfaces]
-            quads[name] = place[np.concatenate(found).astype(int)]
-        own = place[cells]
-        return HexMesh(points, own, {}, {name: facets_of_quads(path, own, q) for name, q in quads.items() if len(q)})
+            parts = [gmsh.model.mesh.getElementsByType(3, surface)[1].reshape(-1, 4) for surface in surfaces]
+            quads[name] = number[np.concatenate(parts).astype(int)]
+        cells = number[cells]
+        return HexMesh(points, cells, {}, {name: facets_of_quads(path, cells, q) for name, q in quads.items() if len(q)})
 
     def _set_sizes(self, gmsh: ModuleType, scale: float) -> None:
         number, size = gmsh.option.setNumber, self.element_size / scale
@@ -199,15 +199,15 @@ class Gmsh:
         """(m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid."""
         types, elements, nodes = gmsh.model.mesh.getElements(3)
         counts = {_SOLIDS.get(int(t), f"solids of type {t}"): len(e) for t, e in zip(types, elements, strict=True)}
-        others = {word: count for word, count in counts.items() if word != "hexahedra"}
-        if others or not counts:
-            told = ", ".join(f"{count} {word}" for word, count in others.items()) or "no solid elements"
+        foreign = {word: count for word, count in counts.items() if word != "hexahedra"}
+        if foreign or not counts:
+            solids = ", ".join(f"{count} {word}" for word, count in foreign.items()) or "no solid elements"
             remedy = {
                 "transfinite": "use method = 'subdivision', or cut the solid into volumes with six four-sided faces",
                 "subdivision": "cut the solid into simpler volumes",
             }[self.method]
             raise MeshError(
-                f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {told} came out; {remedy}"
+                f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {solids} came out; {remedy}"
             )
         return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
 
@@ -228,13 +228,13 @@ def _refuse_file(path: str) -> None:
 def _silent_reader() -> Iterator[None]:
     """OpenCASCADE's readers complain on the process's standard output, past Gmsh and Python; what matters is raised."""
     sys.stdout.flush()
-    kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    output, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, 1)
     try:
         yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
+        os.dup2(output, 1)
+        os.close(output)
         os.close(nothing)
 
 

@@ -41,10 +41,10 @@ class Joblib:
             raise PluginError(f"executor 'joblib' needs joblib: {extra('sweep')} ({why})") from None
         with deaf_to_terminals():  # the process that clears up behind the workers must outlive them
             ensure_running()
-        left, flying = iter(batches), dict[int, list[object]]()
+        waiting, flying = iter(batches), dict[int, list[object]]()
 
         def taken() -> Iterator[Batch]:
-            for number, points in left:
+            for number, points in waiting:
                 flying[number] = points
                 yield number, points
 

@@ -50,22 +50,26 @@ def labelled(result: Result) -> Any:
 
     from raceway.core.ring.ring import COORDINATES
 
-    names, found, z = list(COORDINATES), result.equilibrium, result.model.system.ball_count
+    state, z, names = result.equilibrium, result.model.system.ball_count, list(COORDINATES)
     ring, ball = ("dof",), ("race", "ball")
-    variables = {
-        "displacement": (ring, found.displacement, labels("displacement", "m, rad", "equilibrium under the constant loads")),
-        "stiffness": (
+    columns: list[tuple[str, tuple[str, ...], Any, str, str]] = [
+        ("displacement", ring, state.displacement, "m, rad", "equilibrium under the constant loads"),
+        (
+            "stiffness",
             ("dof", "dof2"),
-            found.stiffness,
-            labels("stiffness", "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium"),
+            state.stiffness,
+            "N/m, N/rad, N m/m, N m/rad",
+            "tangent of the contacts at the equilibrium",
         ),
-        "ball_load": (ball, found.contact_force.reshape(2, z), labels("ball_load", "N", "static contact force")),
-        "contact_angle": (
+        ("ball_load", ball, state.contact_force.reshape(2, z), "N", "static contact force"),
+        (
+            "contact_angle",
             ball,
-            np.degrees([found.angle_inner, found.angle_outer]),
-            labels("contact_angle", "deg", "static; nan where the contact is open"),
+            np.degrees([state.angle_inner, state.angle_outer]),
+            "deg",
+            "static; nan where the contact is open",
         ),
-    }
+    ]
     coordinates: dict[str, Any] = {
         "dof": names,
         "dof2": names,
@@ -76,25 +80,25 @@ def labelled(result: Result) -> Any:
     if result.simulation is not None:
         record = result.simulation.record
         coordinates["time"] = (("time",), record.time, labels("time", "s", "in the turns that are used"))
-        moved = ("time", *ring)
-        variables["motion"] = (moved, record.displacement, labels("motion", "m, rad", "of the inner ring"))
-        variables["force"] = (moved, record.force, labels("force", "N, N m", "of the excitation"))
         loads = record.contact_force.reshape(len(record.time), 2, z)
-        variables["contact_force"] = (("time", *ball), loads, labels("contact_force", "N", "of each ball on each race"))
+        columns += [
+            ("motion", ("time", *ring), record.displacement, "m, rad", "of the inner ring"),
+            ("force", ("time", *ring), record.force, "N, N m", "of the excitation"),
+            ("contact_force", ("time", *ball), loads, "N", "of each ball on each race"),
+        ]
     if result.dynamic_stiffness is not None:
-        variables["z_real"] = (
-            (),
-            result.dynamic_stiffness.real,
-            labels("z_real", "N/m", "real part of the dynamic stiffness Z = F/x"),
-        )
-        variables["z_imag"] = ((), result.dynamic_stiffness.imag, labels("z_imag", "N/m", "imaginary part of Z, w C"))
+        columns += [
+            ("z_real", (), result.dynamic_stiffness.real, "N/m", "real part of the dynamic stiffness Z = F/x"),
+            ("z_imag", (), result.dynamic_stiffness.imag, "N/m", "imaginary part of Z, w C"),
+        ]
         for name, unit, words in _IDENTIFIED:
             value = getattr(result, name)
-            variables[name] = ((), np.nan if value is None else value, labels(name, unit, words))
+            columns.append((name, (), np.nan if value is None else value, unit, words))
         spread = result.model_spread[0]
         if spread is not None and spread["equivalent_stiffness"] is not None:
             coordinates["end"] = ["low", "high"]
-            about = labels("equivalent_stiffness_model", "1", "relative change of K by hypotheses left at their defaults")
-            variables["equivalent_stiffness_model"] = (("end",), spread["equivalent_stiffness"], about)
+            words = "relative change of K by hypotheses left at their defaults"
+            columns.append(("equivalent_stiffness_model", ("end",), spread["equivalent_stiffness"], "1", words))
+    variables = {name: (axes, values, labels(name, unit, words)) for name, axes, values, unit, words in columns}
     attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}
     return labelled_dataset(variables, coordinates, attributes)

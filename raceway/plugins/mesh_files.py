@@ -23,9 +23,9 @@ BODIES = ("inner_ring", "outer_ring", "ball")
 BALL = "file of one ball about its centre: x rolling, y across, z towards the outer contact"
 
 
-def ring_path(which: str) -> Any:
+def ring_path(ring: str) -> Any:
     """The option that names the file of a ring."""
-    return option(None, help=f"file of the {which} ring, in the bearing's coordinates", path=True)
+    return option(None, help=f"file of the {ring} ring, in the bearing's coordinates", path=True)
 
 
 def ball_path() -> Any:
@@ -100,8 +100,8 @@ class File:
         refuse_no_body(self)
         for body in self.sets or {}:
             if body not in BODIES or getattr(self, body) is None:
-                given = [b for b in BODIES if getattr(self, b) is not None]
-                raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, given)}; given: {', '.join(given)}")
+                stated = [b for b in BODIES if getattr(self, b) is not None]
+                raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, stated)}; given: {', '.join(stated)}")
 
     @classmethod
     def examples(cls) -> list[File]:
@@ -124,18 +124,16 @@ class File:
 
         mesh = _read(path)
         nodes, facets = dict(mesh.node_sets), dict(mesh.facet_sets)
-        for own, theirs in (self.sets or {}).get(body, {}).items():
+        for name, file_name in (self.sets or {}).get(body, {}).items():
             try:
-                if theirs in nodes and theirs not in facets:
-                    nodes[own] = mesh.nodes(theirs)
-                else:
-                    facets[own] = mesh.facets(theirs)
-                    if theirs in nodes:
-                        nodes[own] = mesh.nodes(theirs)
+                if file_name in facets or file_name not in nodes:
+                    facets[name] = mesh.facets(file_name)
+                if file_name in nodes:
+                    nodes[name] = mesh.nodes(file_name)
             except MeshError as why:
-                raise MeshError(f"`mesh.sets.{body}.{own}`: '{path}': {why}") from why
-        for kind, found in (("node", nodes), ("facet", facets)):
-            empty = [name for name, members in found.items() if not len(members)]
+                raise MeshError(f"`mesh.sets.{body}.{name}`: '{path}': {why}") from why
+        for kind, sets in (("node", nodes), ("facet", facets)):
+            empty = [name for name, members in sets.items() if not len(members)]
             if empty:
                 raise MeshError(f"'{path}': {kind} set '{empty[0]}' is empty")
         mesh = attrs.evolve(mesh, points=self.scale * mesh.points, node_sets=nodes, facet_sets=facets)

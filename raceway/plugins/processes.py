@@ -50,13 +50,13 @@ class Processes:
     patience: float = option(1e7, unit="s", help="a batch that takes longer hangs: it is given up", rule=between(0.1, 1e9))
 
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
-        left, again, tried = iter(batches), list[Any](), set[int]()
+        waiting, again, tried = iter(batches), list[Any](), set[int]()
         crew: list[_Worker] = []
 
         from multiprocessing.connection import wait
 
         def following() -> Batch | None:
-            return again.pop() if again else next(left, None)
+            return again.pop() if again else next(waiting, None)
 
         batch = following()
         try:
@@ -70,18 +70,18 @@ class Processes:
                     free.give(batch)
                     batch = following()
                 arrived = wait([worker.pipe for worker in crew if worker.batch], timeout=1.0)
-                for worker in [one for one in crew if one.batch]:
-                    given, answer = worker.batch, worker.answer(worker.pipe in arrived, self.patience)
-                    if answer is None or given is None:
+                for worker in [worker for worker in crew if worker.batch]:
+                    sent, answer = worker.batch, worker.answer(worker.pipe in arrived, self.patience)
+                    if answer is None or sent is None:
                         continue
                     if isinstance(answer, Lost):
                         worker.end()
                         crew.remove(worker)
-                        if worker.died and given[0] not in tried:
-                            tried.add(given[0])
-                            again.append(given)
+                        if worker.died and sent[0] not in tried:
+                            tried.add(sent[0])
+                            again.append(sent)
                             continue
-                    yield given[0], answer
+                    yield sent[0], answer
                 batch = batch or following()
         finally:
             for worker in crew:
@@ -114,7 +114,7 @@ class _Worker:
         if not arrived:
             return Lost(f"no answer within {patience:g} s: it hangs") if time.monotonic() - self.begun > patience else None
         try:
-            said = self.pipe.recv()
+            message = self.pipe.recv()
         except (EOFError, OSError):
             self.process.join()
             if not self.ready:
@@ -123,11 +123,11 @@ class _Worker:
                 ) from None
             self.died = True
             return Lost(f"its process died (exit code {self.process.exitcode})")
-        if said is None:  # the program is imported: the time of its batch begins here
+        if message is None:  # the program is imported: the time of its batch begins here
             self.begun, self.ready = time.monotonic(), True
             return None
         self.batch = None
-        fine, answer = said
+        fine, answer = message
         if not fine:
             raise answer
         return answer

@@ -65,11 +65,11 @@ class Structured:
         bodies: dict[str, HexMesh] = {}
         u, v, w, layers, patch = self._ball_lines(bearing)
         ball = ball_mesh(0.5 * bearing.ball_diameter, u, v, w, layers, patch)
-        for suffix, (side, place) in zip(self._suffixes(bearing), bearing.rows, strict=True):
+        for suffix, (side, offset) in zip(self._suffixes(bearing), bearing.rows, strict=True):
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
-                bodies[word + suffix] = self._ring(bearing, inner, side, place)
+                bodies[word + suffix] = self._ring(bearing, inner, side, offset)
             for index, word in enumerate(ball_names(bearing)):
-                points = placed(ball.points, bearing, azimuth(bearing, index), side, place)
+                points = placed(ball.points, bearing, azimuth(bearing, index), side, offset)
                 bodies[word + suffix] = attrs.evolve(ball, points=points)
         return bodies
 
@@ -93,14 +93,14 @@ class Structured:
         for suffix in self._suffixes(bearing):
             for inner, word in ((True, "inner_ring"), (False, "outer_ring")):
                 shape = ring_shape(bearing, inner)
-                left, arc, right, depth, _ = self._ring_lines(bearing, shape)
-                profile = (len(left) + len(arc) + len(right) - 3) * (len(depth) - 1)
+                *lines, depth, _ = self._ring_lines(bearing, shape)
+                profile = sum(len(line) - 1 for line in lines) * (len(depth) - 1)
                 bodies[word + suffix] = profile * len(self._azimuths(bearing, shape))
             bodies.update({name + suffix: ball for name in ball_names(bearing)})
-        found = Prediction.of(bodies)
+        prediction = Prediction.of(bodies)
         remedy = "take larger elements, fewer nodes_per_semi_axis or azimuth_cells, or a larger growth"
-        refuse_memory(found, "mesh.element_size", self.element_size, remedy)
-        return found
+        refuse_memory(prediction, "mesh.element_size", self.element_size, remedy)
+        return prediction
 
     def _suffixes(self, bearing: Bearing) -> list[str]:
         """Suffixes of the names of the bodies of each row."""
@@ -197,21 +197,21 @@ class Structured:
 
         from raceway.core.mesh.hex_mesh import graded
 
-        wanted, count = self.azimuth_cells, bearing.ball_count
+        setting, count = self.azimuth_cells, bearing.ball_count
         pitch = 2.0 * pi / count
-        if wanted == "graded" and self.nodes_per_semi_axis:
+        if setting == "graded" and self.nodes_per_semi_axis:
             minor = self._semi_axes(bearing, shape.inner)[1]
             radius = abs(shape.centre_r + shape.sign * shape.groove)
             half = self.patch * minor / radius
             fine, coarse = self._fine(minor) / radius, self.element_size / max(shape.seat, shape.land)
-            one = graded(-0.5 * pitch, 0.5 * pitch, -half, half, fine, coarse, self.growth)[:-1]
+            sector = graded(-0.5 * pitch, 0.5 * pitch, -half, half, fine, coarse, self.growth)[:-1]
         else:
-            cells = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size) if isinstance(wanted, str) else wanted
+            cells = ceil(2.0 * pi * max(shape.seat, shape.land) / self.element_size) if isinstance(setting, str) else setting
             cells = max(ceil(cells / count), ceil(12 / count))
-            one = pitch * np.arange(cells) / cells
-        return np.asarray((one[None, :] + pitch * np.arange(count)[:, None]).ravel())
+            sector = pitch * np.arange(cells) / cells
+        return np.asarray((sector[None, :] + pitch * np.arange(count)[:, None]).ravel())
 
-    def _ring(self, bearing: Bearing, inner: bool, side: float, place: float) -> HexMesh:
+    def _ring(self, bearing: Bearing, inner: bool, side: float, offset: float) -> HexMesh:
         import numpy as np
 
         from raceway.core.mesh.hex_mesh import azimuth
@@ -227,4 +227,4 @@ class Structured:
             nodes = dict(mesh.node_sets)
             nodes["face_negative"], nodes["face_positive"] = nodes["face_positive"], nodes["face_negative"]
             mesh = attrs.evolve(mesh, points=mesh.points * [-1.0, 1.0, -1.0], node_sets=nodes, facet_sets=facets)
-        return mesh if place == 0.0 else attrs.evolve(mesh, points=mesh.points + np.array([place, 0.0, 0.0]))
+        return mesh if offset == 0.0 else attrs.evolve(mesh, points=mesh.points + np.array([offset, 0.0, 0.0]))

@@ -59,13 +59,13 @@ def refuse_pictures(otherwise: str = "") -> None:
 def _fault_of_pictures() -> str:
     """How drawing fails in a process of its own; "" where it does not."""
     try:
-        done = subprocess.run(
+        trial = subprocess.run(
             [sys.executable, "-c", _PICTURE], capture_output=True, text=True, timeout=_PATIENCE, check=False
         )
     except subprocess.TimeoutExpired:
         return f"a trial took more than {_PATIENCE:g} s"
-    if done.returncode == 0:
+    if trial.returncode == 0:
         return ""
-    if done.returncode < 0:
-        return f"a trial ended by signal {-done.returncode}"
-    return (done.stderr.strip().splitlines() or [f"a trial ended with {done.returncode}"])[-1]
+    if trial.returncode < 0:
+        return f"a trial ended by signal {-trial.returncode}"
+    return (trial.stderr.strip().splitlines() or [f"a trial ended with {trial.returncode}"])[-1]
