@@ -11,7 +11,7 @@ import pytest
 
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
-from raceway.points.attractor import FAILED, Instead
+from raceway.points.attractor import FAILED, Attractor
 from raceway.scene.file import read_toml
 from raceway.studies.article import study as driver
 from raceway.studies.article.design import (
@@ -87,7 +87,9 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
         raise ConvergenceError("no motion was found")
 
     monkeypatch.setattr(driver, "run", fail)
-    monkeypatch.setattr(driver, "from_rest", lambda _, speed, turns: Instead(speed, FAILED, turns, why="nothing"))
+    monkeypatch.setattr(
+        driver, "attractor_from_rest", lambda _, speed, turns: Attractor(speed, FAILED, turns, why="nothing")
+    )
     found = invoke("study", "article", *SMALL, "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr

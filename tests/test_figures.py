@@ -20,7 +20,7 @@ from raceway.plugins import pictures
 from raceway.points import band as band_picture
 from raceway.points import compare_picture as comparison
 from raceway.points import follow_picture as followed
-from raceway.points import law_picture
+from raceway.points import law as law_picture
 from raceway.points import plot as store_picture
 from raceway.points import precision_picture as precision
 from raceway.points import sensitivities as bars

@@ -14,7 +14,7 @@ from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, 
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly
 from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
-from raceway.points.continuation import FollowInterrupt
+from raceway.points.follow import FollowInterrupt
 from validation.command_line import invoke
 from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
 from validation.oscillators import Oscillator, Pressed, natural_frequency
@@ -195,7 +195,7 @@ def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
 def test_beyond_a_neimark_sacker_point_the_motion_is_quasi_periodic():
     """At its beginning the second frequency is the angle of the pair that crossed; by another second-order method."""
     found = rw.follow(SCENE, "excitation.speed_rpm=21000:22500", turns=1500)
-    (one,) = found.instead
+    (one,) = found.attractors
     pairs = [label.angle for label in found.labels if label.kind == PAIR]
     assert one.kind == QUASI
     assert min(pairs) < 2.0 * np.pi * one.second < max(pairs)

@@ -11,8 +11,8 @@ from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly, highest_order
 from raceway.core.ring.system import System
-from raceway.points.branch import line
-from raceway.points.follow import parameter_of
+from raceway.points.branch import first_component
+from raceway.points.parameter import parameter_of
 from raceway.testing import default_registry
 from validation.reference.harmonic_balance import harmonic_balance
 from validation.reference.ring import Ring
@@ -126,4 +126,4 @@ def _again(branch: Branch, fold: Point) -> np.ndarray:
 
 
 def z_of(point: Point) -> complex:
-    return line(point.solved)[0]
+    return first_component(point.solved)[0]

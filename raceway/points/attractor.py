@@ -1,11 +1,10 @@
-"""What a ring does where its steady orbit is unstable or not found: a time integration from beside it or from rest, and its
-Poincaré section.
+"""The motion that a ring settles on where its steady orbit is unstable or none was found: a time integration, and its Poincaré section.
 
 Notes
 -----
-The section holds the state once a turn.  It comes back after m turns: an orbit of m turns.  Else its spectrum tells: lines at
-multiples of one frequency, modulo one a turn, belong to a quasi-periodic motion, whose section is a closed curve; what else
-does not repeat is chaotic, or has not settled in the turns that were integrated.
+The section holds the state once a turn.  It comes back after m turns: an orbit of m turns.  Else its spectrum decides: components at
+multiples of one frequency, modulo one a turn, belong to a quasi-periodic motion, whose section is a closed curve; what else does
+not repeat is chaotic, or has not settled in the turns that were integrated.
 
 References
 ----------
@@ -26,7 +25,7 @@ from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.floquet import transfer
 from raceway.core.periodic.refinement import states
 from raceway.core.periodic.search import highest_order
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Schedule
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
@@ -42,14 +41,13 @@ OnProgress = Callable[[str, int, int], None]
 #: Steps a turn, and those that are recorded; the step's error moves a settled orbit by some 1e-4.
 _STEPS, _RECORDED = 360, 24
 #: Turns in which the force grows on a ring at rest.
-_GROWN = 40
+_RAMP = 40
 #: Disturbance at the start over the orbit's size, along the disturbance that grows most.
 _KICK = 1e-2
 #: Turns after which an orbit may come back, and by what it may miss itself over its size.
 _PERIODS, _BACK = 8, 1e-4
 #: Turns of the section that is judged; harmonics of the second frequency, and the share of the section's power they have.
 _JUDGED, _HARMONICS, _POWER = 512, 12, 0.999
-
 #: Relative error to which the orbit of a run is solved for again.
 _AGAIN = 1e-9
 
@@ -57,15 +55,15 @@ REPEATS, QUASI, WANDERS, FAILED = "repeats", "quasi-periodic", "does not repeat"
 
 
 @attrs.frozen(eq=False)
-class Instead:
-    """The motion beside an unstable orbit, or of a ring that was at rest.
+class Attractor:
+    """The motion that a time integration ends on.
 
     Attributes
     ----------
     parameter : value of the key;  kind : REPEATS, QUASI, WANDERS or FAILED;  turns : integrated
     period : turns after which it comes back, of REPEATS;  second : frequency in cycles a turn, of QUASI, at most 1/2
     least, most : smallest and largest half range of the radial displacement in a turn [m]
-    undamped : whether the contacts' dashpots were left out
+    why : it was not integrated, of FAILED;  undamped : whether the contacts' dashpots were left out
     section : (n, 2) y [m] and its velocity over w [m], once a turn
     """
 
@@ -86,51 +84,52 @@ class Instead:
         if self.kind == FAILED:
             return f"not integrated: {self.why}"
         assert self.least is not None and self.most is not None
-        between = f"half range {1e6 * self.least:.4g} to {1e6 * self.most:.4g} µm a turn"
+        half_range = f"half range {1e6 * self.least:.4g} to {1e6 * self.most:.4g} µm a turn"
         if self.undamped:
-            between += " (without the contacts' dashpots, with which grazing balls have no equilibrium)"
+            half_range += " (without the contacts' dashpots, with which grazing balls have no equilibrium)"
         if self.kind == REPEATS:
             after = "every turn: it settles on another orbit" if self.period == 1 else f"after {self.period} turns"
-            return f"repeats {after}, {between}"
+            return f"repeats {after}, {half_range}"
         if self.kind == QUASI:
-            return f"quasi-periodic, second frequency {self.second:.5g} a turn of the force, {between}"
-        return f"does not repeat in {self.turns} turns, {between}"
+            return f"quasi-periodic, second frequency {self.second:.5g} a turn of the force, {half_range}"
+        return f"does not repeat in {self.turns} turns, {half_range}"
 
     def to_dict(self) -> Tables:
         return {**attrs.asdict(self), "section": self.section.tolist(), "words": self.words}
 
 
-def instead(point: Point, turns: int, on_progress: OnProgress | None = None) -> Instead:
-    """Integrate from beside an unstable orbit of a branch and say what comes of it."""
+def attractor_beside(point: Point, turns: int, on_progress: OnProgress | None = None) -> Attractor:
+    """Integrate from beside an unstable orbit of a branch."""
     return _beside(point.solved, point.transfer, float(point.parameter), turns, on_progress)
 
 
-def instead_of(result: Result, parameter: float, turns: int) -> Instead:
+def attractor_beside_run(result: Result, parameter: float, turns: int) -> Attractor:
     """The same of a run by ``integrator.kind`` = "periodic" whose orbit is unstable."""
     assert result.simulation is not None
-    near, at = result.simulation.whole.solution, result.equilibrium
-    nodes = near.excess.nodes
+    refined, equilibrium = result.simulation.whole.solution, result.equilibrium
+    problem = refined.problem
+    guess = refined.first_guess(problem, equilibrium.displacement, equilibrium.stiffness, refined.excess.nodes)
     try:
-        solved = solve(near.problem, near.first_guess(near.problem, at.displacement, at.stiffness, nodes), _AGAIN)
-        over = transfer(solved, highest_order(near.problem, at.stiffness))
+        solved = solve(problem, guess, _AGAIN)
+        over = transfer(solved, highest_order(problem, equilibrium.stiffness))
     except ConvergenceError as why:
-        return Instead(parameter, FAILED, turns, why=str(why))
+        return Attractor(parameter, FAILED, turns, why=str(why))
     return _beside(solved, over, parameter, turns, None)
 
 
-def from_rest(scene: Scene, parameter: float, turns: int) -> Instead:
-    """What a ring at rest does under a force that grows within some turns, for ``turns`` turns from then on."""
+def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor:
+    """From rest under a force that grows within some turns, for ``turns`` turns from then on."""
     model = build_model(scene, make_plan(scene))
-    at, period = settle(model), scene.excitation.period_s
-    schedule = Schedule(period / _STEPS, _STEPS, _GROWN + turns, _STEPS // _RECORDED, _GROWN * period)
+    equilibrium, period = settle(model), scene.excitation.period_s
+    schedule = Schedule(period / _STEPS, _STEPS, _RAMP + turns, _STEPS // _RECORDED, _RAMP * period)
 
     def start(system: Ring) -> Motion:
-        return model.bearing.at_rest(system, at.displacement, at.ball, True)
+        return model.bearing.at_rest(system, equilibrium.displacement, equilibrium.ball, True)
 
-    return _told(model.system, start, schedule, model.system.arm, parameter, turns, None)
+    return _integrated(model.system, start, schedule, parameter, turns, None)
 
 
-def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Instead:
+def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Attractor:
     """From beside an orbit, along the disturbance that grows most in a transfer ``over`` its span."""
     problem, free = solved.problem, solved.problem.free
     w, n = problem.speed, len(free)
@@ -147,40 +146,33 @@ def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_p
         return Motion(q, v, system.acceleration(q, v, system.outer_force(0.0), now), now.ball, now.ball.copy())
 
     schedule = Schedule(2.0 * np.pi / w / _STEPS, _STEPS, turns, _STEPS // _RECORDED)
-    return _told(problem.system, start, schedule, problem.system.arm, parameter, turns, on_progress)
-
-
-def _told(
-    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, arm: float, parameter: float, turns: int, on_progress: OnProgress | None
-) -> Instead:  # fmt: skip
-    """Integrate, and put the last turns into words and numbers."""
-    told = None if on_progress is None else (lambda done, total: on_progress("beside unstable orbits", done, total))
-    try:
-        record, undamped = _integrated(system, start, schedule, told)
-    except RacewayError as why:
-        return Instead(parameter, FAILED, turns, why=str(why))
-    last, w = min(_JUDGED, turns // 2), 2.0 * np.pi / (schedule.dt * _STEPS)
-    weight = np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm])
-    motion = np.hstack([record.displacement / weight, record.velocity / w / weight])[-last * _RECORDED :]
-    swing = 0.5 * np.ptp(motion[:, 1:3].reshape(last, _RECORDED, 2), axis=1).max(axis=1)
-    section = motion[_RECORDED - 1 :: _RECORDED]
-    kind, period, second = judged(section, float(np.abs(motion[:, 5:]).max()))
-    ends = float(swing.min()), float(swing.max())
-    return Instead(parameter, kind, turns, period, second, *ends, "", undamped, section[:, [1, 6]].copy())
+    return _integrated(problem.system, start, schedule, parameter, turns, on_progress)
 
 
 def _integrated(
-    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, told: Callable[[int, int], None] | None
-) -> tuple[Record, bool]:
-    """The motion, and whether it is one without dashpots: their force jumps where a contact closes, and a ball may have no
-    equilibrium within the jump."""
+    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
+) -> Attractor:  # fmt: skip
+    """The motion from a start, by its last turns."""
+    on_steps = None if on_progress is None else (lambda done, total: on_progress("beside unstable orbits", done, total))
     try:
-        return integrate(Newmark(), system, start(system), schedule, told), False
-    except RacewayError:
-        if system.scalars[DAMPING] == 0.0:
-            raise
-    bare = system.without(DAMPING)
-    return integrate(Newmark(), bare, start(bare), schedule, told), True
+        try:
+            record, undamped = integrate(Newmark(), system, start(system), schedule, on_steps), False
+        except RacewayError:
+            # The dashpots' force jumps where a contact closes, and a ball may have no equilibrium within the jump.
+            if system.scalars[DAMPING] == 0.0:
+                raise
+            bare, undamped = system.without(DAMPING), True
+            record = integrate(Newmark(), bare, start(bare), schedule, on_steps)
+    except RacewayError as why:
+        return Attractor(parameter, FAILED, turns, why=str(why))
+    last, w = min(_JUDGED, turns // 2), 2.0 * np.pi / (schedule.dt * _STEPS)
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])
+    motion = np.hstack([record.displacement / weight, record.velocity / w / weight])[-last * _RECORDED :]
+    half_range = 0.5 * np.ptp(motion[:, 1:3].reshape(last, _RECORDED, 2), axis=1).max(axis=1)
+    section = motion[_RECORDED - 1 :: _RECORDED]
+    kind, period, second = judged(section, float(np.abs(motion[:, 5:]).max()))
+    least, most = float(half_range.min()), float(half_range.max())
+    return Attractor(parameter, kind, turns, period, second, least, most, "", undamped, section[:, [1, 6]].copy())
 
 
 def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | None]:
@@ -194,14 +186,14 @@ def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | N
     window = 0.35875 - 0.48829 * np.cos(k) + 0.14128 * np.cos(2.0 * k) - 0.01168 * np.cos(3.0 * k)
     power = (np.abs(np.fft.rfft((section - section.mean(axis=0)) * window[:, None], axis=0)) ** 2).sum(axis=1)
     power[:4] = 0.0
-    # Any line may be the second frequency's own, or one of its harmonics that was folded back.
+    # Any component may be the second frequency itself, or one of its harmonics that was folded back.
     for top in np.argsort(power)[::-1][:8]:
         second = _refined(power, int(top)) / n
         bins = np.abs((second * np.arange(1, _HARMONICS + 1) + 0.5) % 1.0 - 0.5) * n
         near = (np.abs(np.arange(len(power))[:, None] - bins) <= 4.5).any(axis=1)
         if near.mean() < 0.7 and power[near].sum() >= _POWER * power.sum():
             for period in range(1, _PERIODS + 1):
-                # A line at a fraction of the force's frequency: it comes back, but for a rest that dies out.
+                # A component at a fraction of the force's frequency: it comes back, but for a transient that dies out.
                 if abs(second * period - round(second * period)) * n < 1.0:
                     return REPEATS, period, None
             return QUASI, None, float(second)
@@ -209,8 +201,8 @@ def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | N
 
 
 def _refined(power: np.ndarray, top: int) -> float:
-    """Place of a line in bins, by a parabola through the logarithms about its highest bin."""
+    """Frequency of a component in bins, by a parabola through the logarithms about its highest bin."""
     if not 0 < top < len(power) - 1 or min(power[top - 1 : top + 2]) <= 0.0:
         return float(top)
-    left, here, right = np.log(power[top - 1 : top + 2])
-    return float(top + 0.5 * (left - right) / (left - 2.0 * here + right))
+    left, middle, right = np.log(power[top - 1 : top + 2])
+    return float(top + 0.5 * (left - right) / (left - 2.0 * middle + right))

@@ -1,4 +1,4 @@
-"""A followed branch, as tables and files."""
+"""A branch of steady orbits over a key: each orbit in numbers, special points, and the curve as tables and files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import door
 from raceway.pipeline.result import write_json
-from raceway.points.attractor import Instead
+from raceway.points.attractor import Attractor
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
@@ -29,13 +29,17 @@ _SAMPLES = 360
 _CONTACTS = 72
 #: Step of the difference quotient along the branch, over the motion's size.
 _ALONG = 1e-4
+#: Multipliers are outside the unit circle from here on.
+_OUTSIDE = 1.0 + 1e-6
+#: Kinds of labels beside the special points: a local maximum of the swing, a first contact that opens on the way.
+PEAK, OPENS = "peak", "contact opens"
 
 #: Name of a number -> (unit, words).
 COLUMNS: dict[str, tuple[str, str]] = {
     "parameter": ("", "value of the key"),
     "arc": ("1", "length along the branch, in tenths of the range and sizes of the first orbit"),
     "speed": ("rad/s", "of the force"),
-    "z_real": ("N/m", "real part of Z = F/x of the 1x line"),
+    "z_real": ("N/m", "real part of Z = F/x of the 1x component"),
     "z_imag": ("N/m", "imaginary part of Z"),
     "stiffness": ("N/m", "K = Re Z + m w^2"),
     "damping": ("N s/m", "C = Im Z / w"),
@@ -50,8 +54,13 @@ COLUMNS: dict[str, tuple[str, str]] = {
 
 
 @attrs.frozen
-class Row:
-    """Numbers of ``COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair"."""
+class Orbit:
+    """Numbers of ``COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair".
+
+    Attributes
+    ----------
+    z : dynamic stiffness F/x of the 1x component [N/m];  mass : m of K = Re Z + m w^2 [kg]
+    """
 
     parameter: float
     arc: float
@@ -78,99 +87,15 @@ class Row:
         return self.z.imag / self.speed
 
     def to_dict(self) -> Tables:
-        own = attrs.asdict(self, filter=lambda field, _: field.name not in ("z", "mass"))
-        phase = float(np.degrees(np.angle(self.z)))
-        derived = {"z_real": self.z.real, "z_imag": self.z.imag, "stiffness": self.stiffness, "damping": self.damping}
-        whole = {**own, **derived, "phase_deg": phase}
-        return {name: whole[name] for name in (*COLUMNS, "verdict", "leaves_by")}
-
-
-def row_of(point: Point, arc: float, mass: float) -> Row:
-    """Numbers of one point; ``mass`` m of K = Re Z + m w^2 [kg]."""
-    solved, fate = point.solved, point.floquet
-    z, amplitude = line(solved)
-    outside = int((np.abs(fate.multipliers) > 1.0 + 1e-6).sum())
-    return Row(
-        point.parameter, arc, solved.problem.speed, z, mass, amplitude, swing(solved), fate.largest, outside, openness(solved)[1], point.error,
-        fate.verdict, fate.leaves_by,
-    )  # fmt: skip
-
-
-def line(solved: Solved) -> tuple[complex, float]:
-    """Z [N/m] along the force and major semi-axis [m] of the 1x line, over all turns of the span."""
-    problem, angles = solved.problem, _angles(solved)
-    push = np.empty((len(angles), 5))
-    forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
-    turned = 2.0 / len(angles) * np.exp(-1j * angles)
-    x, force = turned @ displacements(solved, angles), turned @ push
-    forward, backward = 0.5 * abs(x[1] - 1j * x[2]), 0.5 * abs(x[1] + 1j * x[2])
-    return complex(stiffness(force, x)), float(forward + backward)
-
-
-def swing(solved: Solved) -> float:
-    """sqrt 2 times the rms of the displacement about its mean [m], over all turns of the span."""
-    q = displacements(solved, _angles(solved))[:, :3]
-    return float(np.sqrt(2.0 * ((q - q.mean(axis=0)) ** 2).sum(axis=1).mean()))
-
-
-def resonance(solved: Solved) -> str:
-    """What outweighs the response to the force: a harmonic of it at which the ring vibrates by itself; empty where none does."""
-    angles = _angles(solved)
-    moved = displacements(solved, angles) / solved.problem.weight
-    sizes = np.linalg.norm(np.fft.rfft(moved, axis=0)[1:], axis=1)
-    order = (1 + int(sizes.argmax())) / turns_of(solved)
-    if order == 1.0:
-        return ""
-    return (
-        f"; its {order:g}x harmonic outweighs the 1x line, an internal resonance with a vibration near "
-        f"{order * solved.problem.speed * 30.0 / np.pi:.5g} r/min"
-    )
-
-
-def growth_of_swing(branch: Branch, point: Point) -> float:
-    """Derivative of the swing along the branch [m], by a difference quotient along its tangent."""
-    solved = point.solved
-    path, problem = solved.path, solved.problem
-    change = Change(*(np.zeros_like(part) for part in (path.q, path.v, path.a)))
-    spread(problem.free, solved.eliminated, branch.displacement(point), branch.unit * point.tangent[-1], change)
-    step = _ALONG * solved.size / max(float(np.abs(change.q / problem.weight).max()), 1e-300)
-    low, high = (
-        swing(
-            attrs.evolve(
-                solved, path=attrs.evolve(path, q=path.q + h * change.q, v=path.v + h * change.v, a=path.a + h * change.a)
-            )
-        )
-        for h in (-step, step)
-    )
-    return (high - low) / (2.0 * step)
-
-
-def turns_of(solved: Solved) -> int:
-    """Whole turns of the force in a span that is longer than one, else 1."""
-    return max(1, round(solved.problem.symmetry.span / (2.0 * np.pi)))
-
-
-def _angles(solved: Solved) -> np.ndarray:
-    return 2.0 * np.pi * np.arange(_SAMPLES * turns_of(solved)) / _SAMPLES
-
-
-def openness(solved: Solved) -> tuple[float, int]:
-    """Largest gap of an inner contact [m], negative where all carry at all times, and most of them that are open at once."""
-    problem, system = solved.problem, solved.problem.system
-    angles = problem.symmetry.span * np.arange(_CONTACTS) / _CONTACTS
-    q, v, _, ball, rate = states(solved, angles)
-    gap, force = np.empty((2, len(angles), 2 * system.ball_count))
-    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
-    # A ball that grazes a race may have no equilibrium with a dashpot that must not pull; which contacts are open hardly hangs on it.
-    tries = (system, system.without(DAMPING, TIME_CONSTANT))
-    if all(contacts(one.compiled_forces, one.law_state, at, gap, force) < len(angles) for one in tries):
-        raise ConvergenceError("the balls find no place between the races")
-    inner = gap[:, : system.ball_count]
-    return float(inner.max()), int((inner >= 0.0).sum(axis=1).max())
-
-
-#: Kinds of labels beside the special points: a local maximum of the swing, a first contact that opens on the way.
-PEAK, OPENS = "peak", "contact opens"
+        z, phase = self.z, float(np.degrees(np.angle(self.z)))
+        derived = {
+            "z_real": z.real,
+            "z_imag": z.imag,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "phase_deg": phase,
+        }
+        return {name: derived.get(name, getattr(self, name, None)) for name in (*COLUMNS, "verdict", "leaves_by")}
 
 
 @attrs.frozen
@@ -184,7 +109,7 @@ class Label:
     """
 
     kind: str
-    row: Row
+    row: Orbit
     angle: float | None = None
     point: Point | None = attrs.field(default=None, eq=False, repr=False)
 
@@ -202,13 +127,13 @@ class Followed:
     rows : orbits in the order of the branch;  labels : special points and peaks
     end : why it ends before ``last``; "" where it reaches it
     notes : what a user should know;  worst : the most unstable orbit of each unstable stretch
-    doubled : branches of twice the period;  instead : what happens beside the orbits ``worst``
+    doubled : branches of twice the period;  attractors : motions that a ring settles on from beside the orbits ``worst``
 
     Examples
     --------
     >>> import raceway as rw
-    >>> found = rw.follow("examples/folds.toml", "excitation.speed_rpm=19000:20000")
-    >>> found.labels[0].kind, round(found.labels[0].row.parameter)
+    >>> curve = rw.follow("examples/folds.toml", "excitation.speed_rpm=19000:20000")
+    >>> curve.labels[0].kind, round(curve.labels[0].row.parameter)
     ('fold', 19574)
     """
 
@@ -217,47 +142,43 @@ class Followed:
     last: float
     span_deg: float
     title: str
-    rows: list[Row] = attrs.field(factory=list)
+    rows: list[Orbit] = attrs.field(factory=list)
     labels: list[Label] = attrs.field(factory=list)
     end: str = ""
     notes: list[str] = attrs.field(factory=list)
     worst: list[Point] = attrs.field(factory=list, repr=False)
     doubled: list[Followed] = attrs.field(factory=list)
-    instead: list[Instead] = attrs.field(factory=list)
+    attractors: list[Attractor] = attrs.field(factory=list)
 
     @property
-    def unstable(self) -> list[tuple[Row, Row]]:
+    def unstable(self) -> list[tuple[Orbit, Orbit]]:
         """Ends of the stretches of unstable orbits in the order of the branch, at special points where such are known."""
-        out: list[tuple[Row, Row]] = []
-        marks = [label.row for label in self.labels if label.kind not in (PEAK, OPENS)]
-        before: Row | None = None
+        stretches: list[tuple[Orbit, Orbit]] = []
+        special = [label.row for label in self.labels if label.kind not in (PEAK, OPENS)]
+        before: Orbit | None = None
         for row in self.rows:
-            between = [mark for mark in marks if before is not None and before.arc < mark.arc < row.arc]
+            between = [point for point in special if before is not None and before.arc < point.arc < row.arc]
             was = before is not None and before.verdict == "unstable"
             if row.verdict == "unstable":
-                first = out.pop()[0] if was else (between or [row])[0]
-                out.append((first, row))
+                first = stretches.pop()[0] if was else (between or [row])[0]
+                stretches.append((first, row))
             elif was and between:
-                out[-1] = (out[-1][0], between[-1])
+                stretches[-1] = (stretches[-1][0], between[-1])
             before = row
-        return out
+        return stretches
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         return {
-            "title": self.title,
-            "key": self.key,
-            "first": self.first,
-            "last": self.last,
-            "span_deg": self.span_deg,
+            **{name: getattr(self, name) for name in ("title", "key", "first", "last", "span_deg")},
             "columns": {name: {"unit": unit, "what": words} for name, (unit, words) in COLUMNS.items()},
             "rows": [row.to_dict() for row in self.rows],
             "labels": [label.to_dict() for label in self.labels],
-            "unstable": [[one.parameter, two.parameter] for one, two in self.unstable],
+            "unstable": [[first.parameter, last.parameter] for first, last in self.unstable],
             "end": self.end,
             "notes": self.notes,
-            "instead": [one.to_dict() for one in self.instead],
-            "doubled": [one.to_dict() for one in self.doubled],
+            "instead": [attractor.to_dict() for attractor in self.attractors],
+            "doubled": [branch.to_dict() for branch in self.doubled],
         }
 
     @door
@@ -269,9 +190,9 @@ class Followed:
         RacewayError
             The folder cannot be written, or matplotlib is missing.
         """
-        folder, content = Path(folder), self.to_dict()
-        text = io.StringIO()
-        rows = [{"branch": k, **row} for k, one in enumerate((content, *content["doubled"])) for row in one["rows"]]
+        folder, content, text = Path(folder), self.to_dict(), io.StringIO()
+        branches = (content, *content["doubled"])
+        rows = [{"branch": k, **row} for k, branch in enumerate(branches) for row in branch["rows"]]
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
@@ -285,3 +206,82 @@ class Followed:
 
             files.append(save_figure(draw(content), folder / "follow.png", 110))
         return files
+
+
+def orbit_of(point: Point, arc: float, mass: float) -> Orbit:
+    """Numbers of one point; ``mass`` m of K = Re Z + m w^2 [kg]."""
+    solved, stability = point.solved, point.floquet
+    z, amplitude = first_component(solved)
+    return Orbit(
+        point.parameter, arc, solved.problem.speed, z, mass, amplitude, swing(solved), stability.largest,
+        int((np.abs(stability.multipliers) > _OUTSIDE).sum()), open_contacts(solved)[1], point.error, stability.verdict, stability.leaves_by,
+    )  # fmt: skip
+
+
+def first_component(solved: Solved) -> tuple[complex, float]:
+    """Z [N/m] along the force and major semi-axis [m] of the 1x component, over all turns of the span."""
+    problem, angles = solved.problem, _angles(solved)
+    push = np.empty((len(angles), 5))
+    forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
+    turned = 2.0 / len(angles) * np.exp(-1j * angles)
+    x, force = turned @ displacements(solved, angles), turned @ push
+    forward, backward = 0.5 * abs(x[1] - 1j * x[2]), 0.5 * abs(x[1] + 1j * x[2])
+    return complex(stiffness(force, x)), float(forward + backward)
+
+
+def swing(solved: Solved) -> float:
+    """sqrt 2 times the rms of the displacement about its mean [m], over all turns of the span."""
+    q = displacements(solved, _angles(solved))[:, :3]
+    return float(np.sqrt(2.0 * ((q - q.mean(axis=0)) ** 2).sum(axis=1).mean()))
+
+
+def growth_of_swing(branch: Branch, point: Point) -> float:
+    """Derivative of the swing along the branch [m], by a difference quotient along its tangent."""
+    solved = point.solved
+    path, problem = solved.path, solved.problem
+    change = Change(*(np.zeros_like(part) for part in (path.q, path.v, path.a)))
+    spread(problem.free, solved.eliminated, branch.displacement(point), branch.unit * point.tangent[-1], change)
+    step = _ALONG * solved.size / max(float(np.abs(change.q / problem.weight).max()), 1e-300)
+    paths = (
+        attrs.evolve(path, q=path.q + h * change.q, v=path.v + h * change.v, a=path.a + h * change.a) for h in (-step, step)
+    )
+    low, high = (swing(attrs.evolve(solved, path=moved)) for moved in paths)
+    return (high - low) / (2.0 * step)
+
+
+def resonance(solved: Solved) -> str:
+    """What outweighs the response to the force: a harmonic of it at which the ring vibrates by itself; empty where none does."""
+    angles = _angles(solved)
+    moved = displacements(solved, angles) / solved.problem.weight
+    sizes = np.linalg.norm(np.fft.rfft(moved, axis=0)[1:], axis=1)
+    order = (1 + int(sizes.argmax())) / _turns(solved)
+    if order == 1.0:
+        return ""
+    return (
+        f"; its {order:g}x harmonic outweighs the 1x line, an internal resonance with a vibration near "
+        f"{order * solved.problem.speed * 30.0 / np.pi:.5g} r/min"
+    )
+
+
+def open_contacts(solved: Solved) -> tuple[float, int]:
+    """Largest gap of an inner contact [m], negative where all carry at all times, and most of them that are open at once."""
+    problem, system = solved.problem, solved.problem.system
+    angles = problem.symmetry.span * np.arange(_CONTACTS) / _CONTACTS
+    q, v, _, ball, rate = states(solved, angles)
+    gap, force = np.empty((2, len(angles), 2 * system.ball_count))
+    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
+    # A ball that grazes a race may have no equilibrium with a dashpot that must not pull, which hardly changes which contacts are open.
+    systems = (system, system.without(DAMPING, TIME_CONSTANT))
+    if all(contacts(ring.compiled_forces, ring.law_state, at, gap, force) < len(angles) for ring in systems):
+        raise ConvergenceError("the balls find no place between the races")
+    inner = gap[:, : system.ball_count]
+    return float(inner.max()), int((inner >= 0.0).sum(axis=1).max())
+
+
+def _turns(solved: Solved) -> int:
+    """Whole turns of the force in a span that is longer than one, else 1."""
+    return max(1, round(solved.problem.symmetry.span / (2.0 * np.pi)))
+
+
+def _angles(solved: Solved) -> np.ndarray:
+    return 2.0 * np.pi * np.arange(_SAMPLES * _turns(solved)) / _SAMPLES

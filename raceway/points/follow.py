@@ -1,29 +1,51 @@
-"""K as a curve over a key of a scene, for Python and the command line alike: ``raceway.follow``."""
+"""K as a curve over a key of a scene, ``raceway.follow``: the branch of steady orbits, the branches of twice the period that leave it,
+and the motions that a ring settles on where it is unstable."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from raceway.errors import SceneError
-from raceway.framework.doors import door
-from raceway.framework.registry import Registry, registry_with
-from raceway.out.progress import ShowProgress, telling
-from raceway.points.axes import numbers_at
-from raceway.points.branch import Followed
-from raceway.points.continuation import FollowInterrupt, Rule
-from raceway.points.continuation import follow as study
-from raceway.points.parameter import Parameter
-from raceway.scene.changes import parse_value, with_value
-from raceway.scene.continuous import key_of
-from raceway.scene.given import Change, plain_tables
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.units import number_in
-from raceway.storage.tables import Tables
+import attrs
+import numpy as np
 
-POINTS, AIM = 1000, 1e-3
-_FORM = "must have the form table.key=first:last, for instance excitation.speed_rpm=500:30000"
+from raceway.core.periodic.branch import DOUBLING, Branch, Point, apart, located, special_points
+from raceway.core.periodic.branch import doubled as doubled_branch
+from raceway.core.periodic.collocation import Path as OrbitPath
+from raceway.core.periodic.collocation import solve
+from raceway.core.periodic.refinement import motion_at
+from raceway.core.periodic.search import MOST, directly, find, highest_order, mesh_of
+from raceway.errors import ConvergenceError
+from raceway.framework.doors import door
+from raceway.framework.registry import registry_with
+from raceway.out.progress import ShowProgress, telling
+from raceway.points.attractor import attractor_beside
+from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
+from raceway.points.parameter import Parameter, parameter_of
+from raceway.scene.given import Change, plain_tables
+
+#: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
+ERROR, _LOST = 1e-6, 1e-3
+#: Error of the first orbit over its size.
+_TOLERANCE = 1e-8
+#: First step, in tenths of the range and sizes of the first orbit.
+_FIRST = 0.02
+#: Length from the prediction to a point over the step, from which it may be another branch's.
+_STRAYED = 0.2
+#: Most change of the key in a step, in tenths of the range.
+_MOST = 0.5
+#: Distance from the last value over the range, from which it is reached with the key held.
+_BESIDE = 1e-4
+OnProgress = Callable[[str, int, int], None]
+
+
+class FollowInterrupt(KeyboardInterrupt):
+    """Ctrl-C on the way; ``partial``: the curve up to there, whose ``end`` says so."""
+
+    def __init__(self, partial: Followed) -> None:
+        super().__init__()
+        self.partial = partial
 
 
 @door
@@ -31,8 +53,8 @@ def follow(
     scene: Any,
     over: str,
     *changes: Change,
-    points: int = POINTS,
-    aim: float = AIM,
+    points: int = 1000,
+    aim: float = 1e-3,
     doubled: bool = False,
     turns: int = 0,
     out: str | Path | None = None,
@@ -43,7 +65,7 @@ def follow(
 
     Parameters
     ----------
-    scene : Scene, path, TOML text or dict of tables; its integrator and identifier count for nothing
+    scene : Scene, path, TOML text or dict of tables; its integrator and identifier are ignored
     over : ``"table.key=first:last"``, values as numbers or with units
     changes : of the scene, as ``raceway.evolve`` takes them
     points : orbits at most
@@ -58,8 +80,8 @@ def follow(
     -------
     Followed
         ``rows`` with K [N/m], C [N s/m], amplitude [m] and verdict; ``labels``: folds, period doublings, Neimark-Sacker points,
-        branch points and peaks; ``unstable`` stretches, ``instead``: what
-        happens there; ``doubled`` branches; ``end``: why the branch ends before the last value, "" where it does not
+        branch points and peaks; ``unstable`` stretches, ``attractors``: motions that a ring settles on there; ``doubled`` branches;
+        ``end``: why the branch ends before the last value, "" where it does not
 
     Raises
     ------
@@ -83,47 +105,240 @@ def follow(
     ...     "excitation": {"kind": "bidirectional", "speed_rpm": 6000, "amplitude": "constant", "force": 50.0},
     ...     "rotor": {"mass": 2.0, "damping": 1000.0},
     ... }
-    >>> found = rw.follow(scene, "excitation.speed_rpm=5000:15000")
-    >>> [label.kind for label in found.labels], found.rows[-1].verdict
+    >>> curve = rw.follow(scene, "excitation.speed_rpm=5000:15000")
+    >>> [label.kind for label in curve.labels], curve.rows[-1].verdict
     ([], 'stable')
     """
     registry = registry_with(plugins)
     tables = plain_tables(scene, *changes, registry=registry)
     parameter = parameter_of(tables, over, registry)
     try:
-        with telling(progress) as told:
-            found = study(parameter, Rule(points, aim, doubled, turns), told)
+        with telling(progress) as on_progress:
+            curve = follow_branch(parameter, points, aim, doubled, turns, on_progress)
     except FollowInterrupt as stop:
         if out is not None and stop.partial.rows:
             stop.partial.write(out, picture=False)
         raise
     if out is not None:
-        found.write(out)
-    return found
+        curve.write(out)
+    return curve
 
 
-def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
-    """The key and its ends of the text ``KEY=first:last``, in a scene that is solved for its steady orbits."""
-    key, sign, ends = over.partition("=")
-    texts = ends.split(":")
-    if not (sign and len(texts) == 2 and "." in key):
-        raise SceneError.at("--over", over, _FORM)
-    key, tables = key.strip(), with_value(tables, "integrator", {"kind": "periodic"})
-    # What has no number yet, as supports.tilt = "free", is read with one; keys of lists have theirs.
-    given = [parse_value(text) for text in texts]
-    if "[" not in key:
-        given = [numbers_at(tables, {key: value}, registry)[key] for value in given]
-        tables = with_value(tables, key, given[0])
-    whole = scene_from_dict(tables, registry)
-    unit = key_of(whole, key).unit
-    first, last = (_number(key, value, unit) for value in given)
-    if first == last:
-        raise SceneError.at(key, over, "begins where it ends: there is no branch to follow")
-    return Parameter(whole, key, first, last)
-
-
-def _number(key: str, value: Any, unit: str) -> float:
+def follow_branch(
+    parameter: Parameter, points: int, aim: float, doubled: bool, turns: int, on_progress: OnProgress | None = None
+) -> Followed:
+    """The branch from the orbit at the first value of the key to the last one, as ``follow``."""
+    model, equilibrium = parameter.settled(parameter.first)
+    q, tangent, mass = equilibrium.displacement, equilibrium.stiffness_rows_held, model.mass_used
     try:
-        return number_in(unit, value) if isinstance(value, str) else float(value)
-    except (TypeError, ValueError):
-        raise SceneError.at(key, value, "is no number: only a continuous key can be followed") from None
+        end = parameter.settled(parameter.last)[1]
+    except ConvergenceError as why:
+        raise ConvergenceError(f"at `{parameter.key}` = {parameter.last:g}: {why}", why.state) from why
+    symmetry = parameter.symmetry(q)
+    problem = parameter.problem_at(parameter.first, symmetry)
+    if on_progress is not None:
+        problem = attrs.evolve(problem, watch=lambda: on_progress("the first orbit", 0, 0))
+    try:  # that from the linear response if full steps lead to one, else the one that the search takes
+        first = directly(problem, q, tangent, _TOLERANCE).solved
+    except ConvergenceError:
+        first = find(problem, q, tangent, _TOLERANCE).refined.solved
+    unit = abs(parameter.last - parameter.first) / 10.0
+    last = parameter.problem_at(parameter.last, symmetry)
+    squares = [(highest_order(at, k) * at.speed) ** 2 for at, k in ((problem, tangent), (last, end.stiffness_rows_held))]
+
+    def fastest(p: float) -> float:
+        """Highest natural frequency [rad/s]: its square is linear in a stiffness."""
+        part = (p - parameter.first) / (parameter.last - parameter.first)
+        return float(np.sqrt(max(squares[0] + part * (squares[1] - squares[0]), min(squares))))
+
+    branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, ERROR, MOST, None, fastest, aim)
+    curve = Followed(parameter.key, parameter.first, parameter.last, float(np.degrees(symmetry.span)), model.scene.title)
+    sense = 1.0 if parameter.last > parameter.first else -1.0
+    try:
+        start = branch.start(first, parameter.first, sense)
+        Continuation(branch, curve, parameter, mass, points, on_progress).go(start)
+        if doubled:
+            _follow_doubled(branch, curve, parameter, mass, points, on_progress)
+        for followed in (curve, *curve.doubled) if turns else ():
+            followed.attractors += [attractor_beside(point, turns, on_progress) for point in followed.worst]
+    except KeyboardInterrupt as stop:
+        raise FollowInterrupt(_stopped(curve)) from stop
+    return curve
+
+
+def _stopped(curve: Followed) -> Followed:
+    """What there is of a curve that was stopped."""
+    curve.doubled = [branch for branch in curve.doubled if branch.rows]
+    for branch in (curve, *curve.doubled):
+        branch.labels.sort(key=lambda label: label.row.arc)
+    here = curve.rows[-1].parameter if curve.rows else curve.first
+    if curve.end or here == curve.last:
+        curve.notes.append("stopped before the branches of twice the period and the time integrations were finished")
+    else:
+        curve.end = f"stopped at {here:.6g} after {len(curve.rows)} orbits; --over {curve.key}={here:.6g}:{curve.last:g} goes on from there"
+    return curve
+
+
+def _follow_doubled(
+    branch: Branch, curve: Followed, parameter: Parameter, mass: float, points: int, on_progress: OnProgress | None
+) -> None:
+    """The branches of twice the period; one that ends at another period doubling is that one's, too."""
+    met: list[float] = []
+    for label in curve.labels:
+        point = label.point
+        if label.kind != DOUBLING or point is None or any(abs(point.parameter - p) < 1e-6 * branch.unit for p in met):
+            continue
+        met.append(point.parameter)
+        twice = Followed(curve.key, curve.first, curve.last, 2.0 * curve.span_deg, curve.title)
+        curve.doubled.append(twice)
+        longer, first = doubled_branch(branch, point)
+        halves: list[np.ndarray] = []
+
+        def together(point: Point, halves: list[np.ndarray] = halves) -> bool:
+            """Whether the two halves of the orbit have come together again, which they do at another period doubling."""
+            halves.append(apart(point))
+            return float(halves[-1] @ halves[0]) <= 0.0
+
+        if Continuation(longer, twice, parameter, mass, points, on_progress, together).go(first):
+            doublings = [label.row.parameter for label in curve.labels if label.kind == DOUBLING]
+            met.append(min(doublings, key=lambda p: abs(p - twice.rows[-1].parameter)))
+
+
+@attrs.define(eq=False)
+class Continuation:
+    """Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends.
+
+    Attributes
+    ----------
+    mass : m of K [kg];  points : orbits at most;  closed : whether the branch ends at a point, asked for each in its order
+    """
+
+    branch: Branch
+    curve: Followed
+    parameter: Parameter
+    mass: float
+    points: int
+    on_progress: OnProgress | None
+    closed: Callable[[Point], bool] | None = None
+    arc: float = 0.0
+
+    def go(self, start: Point) -> bool:
+        """Points one by one, until the range or the number of points is left or the branch ends; whether it closed."""
+        closed = self._go(start, _FIRST)
+        self.curve.labels.sort(key=lambda label: label.row.arc)
+        return closed
+
+    def _go(self, here: Point, size: float) -> bool:
+        curve, least = self.curve, 1e-6 * size
+        self._record(here, orbit_of(here, self.arc, self.mass))
+        while len(curve.rows) < self.points:
+            if self.on_progress is not None:
+                self.on_progress("orbits", len(curve.rows), self.points)
+            try:
+                ahead = self.branch.step(here, size)
+                if ahead.strayed > _STRAYED * size:
+                    raise ConvergenceError("the branch bends too much for the step")
+                ahead, size, end = self._within(here, ahead, size)
+                orbit = orbit_of(ahead, self.arc + size, self.mass)
+            except ConvergenceError as why:
+                size *= 0.5
+                if size < least:
+                    if not self._at_the_last(here):
+                        curve.end = f"the branch ends at {here.parameter:.6g}: {why}{resonance(here.solved)}"
+                    return False
+                continue
+            if self.closed is not None and self.closed(ahead):
+                return True
+            self._label(here, ahead, size)
+            self.arc += size
+            self._record(ahead, orbit)
+            if ahead.error > _LOST:
+                curve.end = (
+                    f"left at {ahead.parameter:.6g}: no mesh follows the orbit closer than {ahead.error:.1e} of its size"
+                )
+                if orbit.lost:
+                    curve.end += f" where up to {orbit.lost} balls lose their inner race at once"
+                curve.end += resonance(ahead.solved)
+                return False
+            if end is not None:
+                curve.end = "" if end == self.parameter.last else f"the branch comes back to {end:.6g}"
+                return False
+            size = min(size * self.branch.growth(ahead), _MOST / max(abs(ahead.tangent[-1]), 1e-300))
+            here = self._meshed(ahead)
+        curve.end = f"left after {self.points} orbits at {here.parameter:.6g} (--points)"
+        return False
+
+    def _at_the_last(self, here: Point) -> bool:
+        """Beside the last value, beyond which there may be no scene, as no damping below 0: with the key held."""
+        last, first = self.parameter.last, self.parameter.first
+        gap = last - here.parameter
+        if abs(gap) > _BESIDE * abs(last - first):
+            return False
+        try:
+            problem = self.parameter.problem_at(last, here.solved.problem.symmetry)
+            point = self.branch.start(solve(problem, here.solved.path, 1e-2 * ERROR), last, float(np.sign(gap)))
+        except ConvergenceError:
+            return False
+        self.arc += abs(gap) / self.branch.unit
+        self._record(point, orbit_of(point, self.arc, self.mass))
+        return True
+
+    def _within(self, before: Point, ahead: Point, size: float) -> tuple[Point, float, float | None]:
+        """The point ahead, or that at the end of the range before it; the step's length, and that end."""
+        ends = (self.parameter.last, self.parameter.first)
+        crossed = [end for end in ends if (ahead.parameter - end) * (before.parameter - end) < 0.0]
+        if not crossed:
+            return ahead, size, None
+        end = crossed[0]
+        return *located(self.branch, before, ahead, size, lambda point: float(point.parameter - end)), end
+
+    def _record(self, point: Point, orbit: Orbit) -> None:
+        """An orbit of the curve; of each unstable stretch the most unstable point."""
+        before = self.curve.rows[-1] if self.curve.rows else None
+        self.curve.rows.append(orbit)
+        if orbit.verdict == "unstable":
+            worst = self.curve.worst
+            if before is None or before.verdict != "unstable":
+                worst.append(point)
+            elif orbit.multiplier > worst[-1].floquet.largest:
+                worst[-1] = point
+
+    def _label(self, before: Point, ahead: Point, size: float) -> None:
+        """Special points, peaks and the loss of contacts between two neighbours."""
+        curve, branch = self.curve, self.branch
+
+        def label(kind: str, value: Callable[[Point], float]) -> None:
+            point, length = located(branch, before, ahead, size, value)
+            curve.labels.append(Label(kind, orbit_of(point, self.arc + length, self.mass)))
+
+        try:
+            for special in special_points(branch, before, ahead, size):
+                orbit = orbit_of(special.point, self.arc + special.length, self.mass)
+                curve.labels.append(Label(special.kind, orbit, special.angle, special.point))
+            if growth_of_swing(branch, before) > 0.0 >= growth_of_swing(branch, ahead):
+                label(PEAK, lambda point: growth_of_swing(branch, point))
+            if (open_contacts(before.solved)[0] < 0.0) != (open_contacts(ahead.solved)[0] < 0.0):
+                label(OPENS, lambda point: open_contacts(point.solved)[0])
+        except (ConvergenceError, ValueError) as why:
+            span = f"between {before.parameter:.6g} and {ahead.parameter:.6g}"
+            curve.notes.append(
+                f"{span} a fold, peak or change of stability or contact is not located, take a smaller --aim ({why})"
+            )
+
+    def _meshed(self, point: Point) -> Point:
+        """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""
+        problem, path = point.solved.problem, point.solved.path
+        nodes = mesh_of(problem, point.highest)
+        intervals = len(nodes) - 1
+        if intervals > path.intervals or 2 * intervals < path.intervals and point.error < 1e-2 * ERROR:
+            q, v, *_ = motion_at(problem, path, nodes)
+            *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
+            parts = (np.ascontiguousarray(part) for part in (q, v, a, ball, rate))
+            try:
+                solved = solve(problem, OrbitPath(nodes, *parts), 1e-2 * ERROR)
+                again = self.branch.start(solved, point.parameter, float(np.sign(point.tangent[-1])))
+            except ConvergenceError:
+                return point
+            if float(again.tangent @ point.tangent) > 0.9:
+                return again
+        return point

@@ -112,7 +112,7 @@ def follow(given: FollowOptions) -> int:
     """Follow the steady orbit of a scene from the first value of a key to the last, through folds: K, C, amplitude, phase and
     stability of each orbit, with folds, period doublings, Neimark-Sacker points and peaks located.
 
-    Writes follow.json, follow.csv and follow.png. The scene's integrator and identifier count for nothing. Stopped by Ctrl-C, it writes
+    Writes follow.json, follow.csv and follow.png. The scene's integrator and identifier are ignored. Stopped by Ctrl-C, it writes
     the orbits so far, and where to go on.
 
     \b
@@ -129,20 +129,20 @@ def follow(given: FollowOptions) -> int:
     pictures = given.pictures and has_matplotlib()
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.points.continuation import FollowInterrupt
-        from raceway.points.follow import follow as study
+        from raceway.points.follow import FollowInterrupt
+        from raceway.points.follow import follow as follow_scene
 
         stopped = None
         try:
-            found = study(
+            curve = follow_scene(
                 tables, given.over, points=given.points, aim=given.aim, doubled=given.doubled, turns=given.turns, plugins=given.plugins, progress=progress,
             )  # fmt: skip
         except FollowInterrupt as stop:
             if not stop.partial.rows:
                 raise
-            found, stopped = stop.partial, stop  # what there is of the curve is written and shown first
-    content, files = found.to_dict(), list[str]()
-    failed = attempt(lambda: found.write(folder, pictures and stopped is None), files)
+            curve, stopped = stop.partial, stop  # what there is of the curve is written and shown first
+    content, files = curve.to_dict(), list[str]()
+    failed = attempt(lambda: curve.write(folder, pictures and stopped is None), files)
 
     show(content, given.as_json, failed, lambda: follow_screen(content, files))
     if stopped is not None:

@@ -1,4 +1,12 @@
-"""A contact law in the laboratory, for Python and the command line alike: ``raceway.law``."""
+"""One contact of a bearing in the laboratory, ``raceway.law``: what its law does with an approach and the approach's rate, beside Hertz'.
+
+Notes
+-----
+A cycle moves the contact harmonically about its equilibrium.  With the approach d = d_0 + x cos(w t), a = (2/T) int F cos(w t) dt and
+b = -(2/T) int F sin(w t) dt over one period: K = a / x, C = b / (w x), and the energy per cycle is W = int F dd = pi b x = pi C w x^2.
+The loss factor is w C / K, the tangent of the phase.  Means over equal samples of a period are exact for the smooth forces of closed
+contacts.
+"""
 
 from __future__ import annotations
 
@@ -25,21 +33,35 @@ from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from raceway.core.ring.system import System
     from raceway.scene.scene import Scene
 
+#: The bearing of the article under its load, where no scene is given, and the frequency of its cycle [Hz].
+BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+FREQUENCY = 200.0
 RACES = ("inner", "outer")
+#: Ends and points of the curves, over the elastic approach of the equilibrium: from an open contact to some three times Hertz' load.
+_FIRST, _LAST, _POINTS = -0.2, 2.0, 111
+#: Approaches of the table over that of the equilibrium.
+_SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
+#: Samples per period, and periods of a law with memory, of which the last is taken: by then it has forgotten how the motion began.
+SAMPLES, PERIODS = 720, 4
+#: Of a mean of so many samples, over the largest force.
+_ROUNDING = 1e-13
+#: Colours of the picture.
+_LAW, _HERTZ, _MOVING = "#0b5fa5", "#555f6b", "#c8501e"
 
 
 @attrs.frozen(eq=False)
 class Contact:
-    """One ball-race contact.
+    """One ball-race contact in its equilibrium, alone.
 
     Attributes
     ----------
     race : "inner" or "outer";  ball : its number, from 1
-    load : normal force in the equilibrium [N]
-    approach : there [m]: minus the gap between the undeformed surfaces
+    load : normal force [N];  approach : minus the gap between the undeformed surfaces [m]
     reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
     hertz_factor : K of Hertz' force K delta^1.5 [N/m^1.5]
     system : a mass against the contact alone, whose x is approach + reach
@@ -70,62 +92,27 @@ class Contact:
 
     def curves(self, approach: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """(3, m, n) force, stiffness and damping over rates (m,) [m/s] and approaches (n,) [m], each without a history."""
-        found = [[self.at(float(one), float(rate))[:3] for one in approach] for rate in rates]
-        return np.moveaxis(np.array(found), -1, 0)
+        return np.moveaxis(np.array([[self.at(float(x), float(rate))[:3] for x in approach] for rate in rates]), -1, 0)
 
     def hertz(self, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and stiffness (n,) by Hertz' law over approaches (n,) [m]."""
         deep = np.maximum(approach, 0.0)
         return self.hertz_factor * deep**1.5, 1.5 * self.hertz_factor * np.sqrt(deep)
 
-
-def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
-    """A contact of a scene with rigid bodies, in its equilibrium.
-
-    Parameters
-    ----------
-    race : "inner" or "outer"
-    ball : its number, from 1 over all rows; None: the most loaded one
-
-    Raises
-    ------
-    SceneError
-        Another race, a ball that is not there, bodies that are not rigid.
-    RacewayError
-        A contact that carries nothing.
-    ConvergenceError
-        No equilibrium.
-    """
-    if race not in RACES:
-        raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
-    if scene.bodies.name != "rigid":
-        rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
-        raise SceneError.at("bodies.kind", scene.bodies.name, rule)
-    model = build_model(scene, make_plan(scene))
-    still = settle(model)
-    ring = compiled(model.system)
-    assert ring is not None, "rings of rigid bodies are compiled"
-    count = ring.ball_count
-    loads = still.contact_force.reshape(2, count)[RACES.index(race)]
-    number = int(np.argmax(loads)) + 1 if ball is None else ball
-    if not 1 <= number <= count:
-        raise SceneError.at("ball", ball, f"must be from 1 to {count}")
-    index = RACES.index(race) * count + number - 1
-    load = float(still.contact_force[index])
-    if load <= 0.0:
-        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads)) + 1}"
-        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
-    ellipse = model.inner if race == "inner" else model.outer
-    factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
-    reach = 0.0 if ring.reach is None else float(ring.reach[index])
-    approach = -float(still.gap[index]) - reach
-    return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))
-
-
-#: Samples a period, and periods of a law with memory, of which the last is taken: by then it has forgotten how the motion began.
-SAMPLES, PERIODS = 720, 4
-#: Of a mean of so many samples, over the largest force.
-_ROUNDING = 1e-13
+    def row(self, elastic: float) -> Tables:
+        """The law at rest at an elastic approach [m], and over Hertz'; None where Hertz' contact is open."""
+        approach = elastic - self.reach
+        force, stiffness, damping, _ = self.at(approach)
+        ((hertz_force,), (hertz_stiffness,)) = self.hertz(np.array([approach]))
+        closed = approach > 0.0
+        return {
+            "approach": approach,
+            "force": force,
+            "force_ratio": force / float(hertz_force) if closed else None,
+            "stiffness": stiffness,
+            "stiffness_ratio": stiffness / float(hertz_stiffness) if closed else None,
+            "damping": damping,
+        }
 
 
 @attrs.frozen(eq=False)
@@ -152,35 +139,6 @@ class Cycle:
     opens: bool
 
 
-def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
-    """A contact moved about its equilibrium with an amplitude [m] and a frequency [Hz]."""
-    w = 2.0 * np.pi * frequency
-    phase = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
-    approach, rate = contact.approach + amplitude * np.cos(phase), -w * amplitude * np.sin(phase)
-    remembers = contact.system.law_state.size > 0
-    step = Increment(0.0, 0.0, np.zeros_like(contact.system.law_state))  # no time has passed before the first sample
-    force = np.empty(SAMPLES)
-    for _ in range(PERIODS if remembers else 1):
-        for k in range(SAMPLES):
-            force[k], _, _, memory = contact.at(float(approach[k]), float(rate[k]), step)
-            step = attrs.evolve(step, dt=1.0 / (frequency * SAMPLES), memory=memory)
-    in_phase, ahead = 2.0 * float(np.mean(force * np.cos(phase))), -2.0 * float(np.mean(force * np.sin(phase)))
-    ahead = ahead if abs(ahead) > _ROUNDING * float(np.max(force)) else 0.0
-    return Cycle(
-        frequency, amplitude, approach, rate, force, in_phase / amplitude, ahead / (w * amplitude), np.pi * ahead * amplitude,
-        ahead / in_phase if in_phase > 0.0 else None, bool((force <= 0.0).any()),
-    )  # fmt: skip
-
-
-#: The bearing of the article under its load, where no scene is given.
-BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-AMPLITUDE, FREQUENCY = 0.2, 200.0
-#: Ends and points of the curves, over the elastic approach of the equilibrium: from an open contact to some three times Hertz' load.
-_FIRST, _LAST, _POINTS = -0.2, 2.0, 111
-#: Of the table.
-_PARTS = (0.25, 0.5, 1.0, 1.5, 2.0)
-
-
 @attrs.frozen(eq=False, repr=False)
 class LawCurves(Shown):
     """What a contact law does with one contact of a bearing, beside Hertz' law.
@@ -198,8 +156,8 @@ class LawCurves(Shown):
     Examples
     --------
     >>> import raceway as rw
-    >>> found = rw.law("hertz", None, "contact.damping=300")
-    >>> [round(1e-6 * found.cycle.stiffness, 1), round(found.cycle.damping, 1)]  # N/um, N s/m
+    >>> curves = rw.law("hertz", None, "contact.damping=300")
+    >>> [round(1e-6 * curves.cycle.stiffness, 1), round(curves.cycle.damping, 1)]  # N/um, N s/m
     [86.7, 300.0]
     """
 
@@ -220,15 +178,13 @@ class LawCurves(Shown):
     def to_dict(self) -> Tables:
         """Contact, table, curves and cycle as plain tables, SI."""
         curves = ("approach", "rate", "force", "stiffness", "damping", "hertz_force", "hertz_stiffness")
-        loop = attrs.asdict(self.cycle)
+        cycle = attrs.asdict(self.cycle)
         return {
-            "law": self.law,
-            "title": self.title,
-            "damping_origin": self.damping_origin,
+            **{key: getattr(self, key) for key in ("law", "title", "damping_origin")},
             **{key: getattr(self.contact, key) for key in ("race", "ball", "load", "approach", "reach", "hertz_factor")},
             "rows": list(self.rows),
             "curves": {name: getattr(self, name).tolist() for name in curves},
-            "cycle": {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in loop.items()},
+            "cycle": {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in cycle.items()},
         }
 
     def picture(self, path: str | Path) -> Path:
@@ -240,7 +196,6 @@ class LawCurves(Shown):
             matplotlib is missing, or a folder that cannot be written.
         """
         from raceway.plugins.pictures import save_figure
-        from raceway.points.law_picture import draw
 
         return save_figure(draw(self), Path(path))
 
@@ -263,7 +218,7 @@ def law(
     *changes: Change,
     race: str = "inner",
     ball: int | None = None,
-    amplitude: float = AMPLITUDE,
+    amplitude: float = 0.2,
     frequency: float | None = None,
     plugins: Iterable[str | Path] = (),
 ) -> LawCurves:
@@ -296,12 +251,12 @@ def law(
     Examples
     --------
     >>> import raceway as rw
-    >>> found = rw.law("penalty")
-    >>> [round(row["stiffness_ratio"], 2) for row in found.rows]  # against Hertz', at 1/4 to 2 times the approach at rest
+    >>> curves = rw.law("penalty")
+    >>> [round(row["stiffness_ratio"], 2) for row in curves.rows]  # against Hertz', at 1/4 to 2 times the approach at rest
     [0.67, 0.94, 1.33, 1.63, 1.89]
     """
-    given = as_given(BASE if scene is None else scene).changed({"contact.kind": name}, *changes)
-    read = given.scene(registry_with(plugins))
+    inputs = as_given(BASE if scene is None else scene).changed({"contact.kind": name}, *changes)
+    read = inputs.scene(registry_with(plugins))
     if read.contact.in_a_band:
         low, high = TIME_CONSTANTS
         rule = (
@@ -320,21 +275,88 @@ def law(
     hertz_force, hertz_stiffness = contact.hertz(approach)
     return LawCurves(
         read.contact.kind, read.title, damping_origin(read), contact, approach, rate, force, stiffness, damping,
-        hertz_force, hertz_stiffness, cycle(contact, size, frequency), tuple(_row(contact, part * elastic) for part in _PARTS),
+        hertz_force, hertz_stiffness, cycle(contact, size, frequency), tuple(contact.row(share * elastic) for share in _SHARES),
     )  # fmt: skip
 
 
-def _row(contact: Contact, elastic: float) -> Tables:
-    """The law at rest at an elastic approach [m], and over Hertz'; None where Hertz' contact is open."""
-    approach = elastic - contact.reach
-    force, stiffness, damping, _ = contact.at(approach)
-    ((hertz_force,), (hertz_stiffness,)) = contact.hertz(np.array([approach]))
-    closed = approach > 0.0
-    return {
-        "approach": approach,
-        "force": force,
-        "force_ratio": force / float(hertz_force) if closed else None,
-        "stiffness": stiffness,
-        "stiffness_ratio": stiffness / float(hertz_stiffness) if closed else None,
-        "damping": damping,
-    }
+def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
+    """A contact of a scene with rigid bodies, in its equilibrium; arguments and errors as of ``law``."""
+    if race not in RACES:
+        raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
+    if scene.bodies.name != "rigid":
+        rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
+        raise SceneError.at("bodies.kind", scene.bodies.name, rule)
+    model = build_model(scene, make_plan(scene))
+    still, ring = settle(model), compiled(model.system)
+    assert ring is not None, "rings of rigid bodies are compiled"
+    count = ring.ball_count
+    loads = still.contact_force.reshape(2, count)[RACES.index(race)]
+    number = int(np.argmax(loads)) + 1 if ball is None else ball
+    if not 1 <= number <= count:
+        raise SceneError.at("ball", ball, f"must be from 1 to {count}")
+    index, load = RACES.index(race) * count + number - 1, float(loads[number - 1])
+    if load <= 0.0:
+        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads)) + 1}"
+        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
+    ellipse = model.inner if race == "inner" else model.outer
+    factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
+    reach = 0.0 if ring.reach is None else float(ring.reach[index])
+    approach = -float(still.gap[index]) - reach
+    return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))
+
+
+def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
+    """A contact moved about its equilibrium with an amplitude [m] and a frequency [Hz]."""
+    w = 2.0 * np.pi * frequency
+    phase = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
+    approach, rate = contact.approach + amplitude * np.cos(phase), -w * amplitude * np.sin(phase)
+    remembers = contact.system.law_state.size > 0
+    step = Increment(0.0, 0.0, np.zeros_like(contact.system.law_state))  # no time has passed before the first sample
+    force = np.empty(SAMPLES)
+    for _ in range(PERIODS if remembers else 1):
+        for k in range(SAMPLES):
+            force[k], _, _, memory = contact.at(float(approach[k]), float(rate[k]), step)
+            step = attrs.evolve(step, dt=1.0 / (frequency * SAMPLES), memory=memory)
+    in_phase, ahead = 2.0 * float(np.mean(force * np.cos(phase))), -2.0 * float(np.mean(force * np.sin(phase)))
+    ahead = ahead if abs(ahead) > _ROUNDING * float(np.max(force)) else 0.0
+    return Cycle(
+        frequency, amplitude, approach, rate, force, in_phase / amplitude, ahead / (w * amplitude), np.pi * ahead * amplitude,
+        ahead / in_phase if in_phase > 0.0 else None, bool((force <= 0.0).any()),
+    )  # fmt: skip
+
+
+def draw(curves: LawCurves) -> Figure:
+    """Four panels over the approach: force, the loop of the cycle, stiffness and damping."""
+    from raceway.plugins.pictures import new_figure
+
+    figure = new_figure(9.6, 7.2)
+    (force, loop), (stiffness, damping) = figure.subplots(2, 2)
+    micro, contact, motion = 1e6 * curves.approach, curves.contact, curves.cycle
+    for panel, still, hertz, unit in (
+        (force, curves.force, curves.hertz_force, 1.0),
+        (stiffness, curves.stiffness, curves.hertz_stiffness, 1e-6),
+    ):
+        panel.plot(micro, unit * still[0], color=_LAW, label=f"{curves.law} at rest")
+        panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
+    damped = bool((curves.force != curves.force[0]).any())
+    for k, word, style in ((1, "closing", "-"), (2, "opening", ":")) if damped else ():
+        label = f"{word} at {1e3 * abs(curves.rate[k]):.3g} mm/s"
+        for panel, values in ((force, curves.force), (damping, curves.damping)):
+            panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
+    damping.plot(micro, curves.damping[0], color=_LAW, label="at rest" if damped else curves.damping_origin)
+    if not damped:
+        damping.set_ylim(0.0, 1.0)
+    force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
+    loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
+    force.set(ylabel="force [N]", title="Force")
+    stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
+    damping.set(ylabel="damping [N s/m]", title="Damping, the force's derivative by the rate")
+    title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.4g} N s/m"
+    loop.set(ylabel="force [N]", title=title)
+    for panel in (force, stiffness, damping, loop):
+        panel.set_xlabel("approach [µm]")
+        if panel is not loop:
+            panel.legend(frameon=False, fontsize=8.5)
+    title = f"{curves.law}, {contact.race} contact of ball {contact.ball}: {curves.title.partition(chr(10))[0]}"
+    figure.suptitle(title, fontsize=10.5)
+    return figure

@@ -22,17 +22,51 @@ from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, by_address, compiled
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.registry import Registry
 from raceway.pipeline.settle import settle
 from raceway.planning.plan import make_plan
-from raceway.scene.continuous import with_number
+from raceway.points.axes import numbers_at
+from raceway.scene.changes import parse_value, with_value
+from raceway.scene.continuous import key_of, with_number
+from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
+from raceway.scene.units import number_in
+from raceway.storage.tables import Tables
 
-#: A place between the ends where nothing special is to be expected.
+#: Part of the range, between its ends, where nothing special is to be expected.
 _BETWEEN = 0.382
-#: Problems that are kept: a correction asks for the same three again.
-_KEPT = 12
+#: Problems that are cached: a correction asks for the same three again.
+_CACHED = 12
 #: Rounding of a part that is linear in the key, over its size.
 _ROUNDING = 1e-12
+_FORM = "must have the form table.key=first:last, for instance excitation.speed_rpm=500:30000"
+
+
+def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
+    """The key and its ends of the text ``KEY=first:last``, in a scene that is solved for its steady orbits."""
+    key, sign, ends = over.partition("=")
+    texts = ends.split(":")
+    if not (sign and len(texts) == 2 and "." in key):
+        raise SceneError.at("--over", over, _FORM)
+    key, tables = key.strip(), with_value(tables, "integrator", {"kind": "periodic"})
+    # What has no number yet, as supports.tilt = "free", is read with one; keys of lists have theirs.
+    values = [parse_value(text) for text in texts]
+    if "[" not in key:
+        values = [numbers_at(tables, {key: value}, registry)[key] for value in values]
+        tables = with_value(tables, key, values[0])
+    scene = scene_from_dict(tables, registry)
+    unit = key_of(scene, key).unit
+    first, last = (_number(key, value, unit) for value in values)
+    if first == last:
+        raise SceneError.at(key, over, "begins where it ends: there is no branch to follow")
+    return Parameter(scene, key, first, last)
+
+
+def _number(key: str, value: Any, unit: str) -> float:
+    try:
+        return number_in(unit, value) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError):
+        raise SceneError.at(key, value, "is no number: only a continuous key can be followed") from None
 
 
 @attrs.define(eq=False)
@@ -41,42 +75,39 @@ class Parameter:
 
     Attributes
     ----------
-    whole : the scene, which has a number at the key;  key : a continuous one, such as "load.axial"
+    base : the scene, which has a number at the key;  key : a continuous one, such as "load.axial"
     linear : parts of the system that change linearly, where nothing else does but the excitation; None where more changes
     """
 
-    whole: Scene
+    base: Scene
     key: str
     first: float
     last: float
     linear: tuple[str, ...] | None = attrs.field(default=None, init=False)
     _ends: tuple[System, System] = attrs.field(init=False)
-    _kept: dict[float, Problem] = attrs.field(factory=dict, init=False)
+    _cached: dict[float, Problem] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
         self._check()
-        one, between, two = (self._built(p) for p in (self.first, self.value(_BETWEEN), self.last))
-        differing = [
-            field.name
+        first, between, last = (self._built(p) for p in (self.first, self.value(_BETWEEN), self.last))
+        parts = {
+            field.name: tuple(getattr(system, field.name) for system in (first, between, last))
             for field in attrs.fields(System)
-            if not (
-                _same(*(getattr(s, field.name) for s in (one, between)))
-                and _same(*(getattr(s, field.name) for s in (one, two)))
-            )
-        ]
+        }
+        differing = {name: (a, b, c) for name, (a, b, c) in parts.items() if not (_equal(a, b) and _equal(a, c))}
         if not differing:
             raise SceneError.at(self.key, None, "changes nothing of the motion: there is no branch over it")
-        differing.remove("force_params") if "force_params" in differing else None
-        if all(_linear(*(getattr(system, name) for system in (one, between, two))) for name in differing):
+        differing.pop("force_params", None)
+        if all(_linear(*values) for values in differing.values()):
             self.linear = tuple(differing)
-        self._ends = one, two
+        self._ends = first, last
 
     def value(self, part: float) -> float:
         """The key's value at a part of the range, from 0 to 1."""
         return self.first + part * (self.last - self.first)
 
     def scene(self, p: float) -> Scene:
-        return with_number(self.whole, self.key, float(p))
+        return with_number(self.base, self.key, float(p))
 
     def model(self, p: float) -> Model:
         """Model of the scene at a value of the key."""
@@ -90,41 +121,38 @@ class Parameter:
 
     def symmetry(self, q: np.ndarray) -> Symmetry:
         """One ball pitch where forces and bodies allow it everywhere, else one turn; q (5,): the first equilibrium."""
-        found = [self._symmetry(p, q) for p in (self.first, self.value(_BETWEEN), self.last)]
-        return found[0] if all(one.pitch for one in found) else one_turn(self.system(self.first))
-
-    def _symmetry(self, p: float, q: np.ndarray) -> Symmetry:
-        return problem_of(self.system(p), 2.0 * np.pi / self.excitation(p).period_s, q).symmetry
+        symmetries = [
+            problem_of(self.system(p), 2.0 * np.pi / self.excitation(p).period_s, q).symmetry
+            for p in (self.first, self.value(_BETWEEN), self.last)
+        ]
+        return symmetries[0] if all(symmetry.pitch for symmetry in symmetries) else one_turn(self.system(self.first))
 
     def excitation(self, p: float) -> Any:
         """Of the scene at a value of the key."""
         return self.scene(p).excitation
 
-    def system(self, p: float) -> System:
-        """The compiled ring at a value of the key."""
-        return self._system(p, self.excitation(p))
-
-    def _system(self, p: float, excitation: Any) -> System:
+    def system(self, p: float, excitation: Any = None) -> System:
+        """The compiled ring at a value of the key, whose excitation may be at hand."""
         if self.linear is None:
             return self._built(p)
         part = (p - self.first) / (self.last - self.first)
-        one, two = self._ends
-        changed = {name: (1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in self.linear}
-        return attrs.evolve(one, force_params=excitation.parameters(), **changed)
+        first, last = self._ends
+        changed = {name: (1.0 - part) * getattr(first, name) + part * getattr(last, name) for name in self.linear}
+        return attrs.evolve(first, force_params=(excitation or self.excitation(p)).parameters(), **changed)
 
     def problem_at(self, p: float, symmetry: Symmetry) -> Problem:
-        """The boundary-value problem at a value of the key; the last ones are kept."""
-        found = self._kept.get(p)
-        if found is None or found.symmetry is not symmetry:
+        """The boundary-value problem at a value of the key; the last ones are cached."""
+        problem = self._cached.get(p)
+        if problem is None or problem.symmetry is not symmetry:
             try:
                 excitation = self.excitation(p)
-                found = Problem(self._system(p, excitation), 2.0 * np.pi / excitation.period_s, symmetry)
+                problem = Problem(self.system(p, excitation), 2.0 * np.pi / excitation.period_s, symmetry)
             except (SceneError, ValueError) as why:
                 raise ConvergenceError(f"beyond it there is no scene ({why})") from why
-            if len(self._kept) >= _KEPT:
-                self._kept.clear()
-            self._kept[p] = found
-        return found
+            if len(self._cached) >= _CACHED:
+                self._cached.clear()
+            self._cached[p] = problem
+        return problem
 
     def _built(self, p: float) -> System:
         ring = compiled(self.model(p).system)
@@ -157,15 +185,15 @@ class Parameter:
             raise SceneError.at("kinematics.orbiting", True, words)
 
 
-def _same(one: object, two: object) -> bool:
-    if isinstance(one, np.ndarray) and isinstance(two, np.ndarray):
-        return bool(one.shape == two.shape and np.array_equal(one, two))
-    return one is two or one == two
+def _equal(first: object, second: object) -> bool:
+    if isinstance(first, np.ndarray) and isinstance(second, np.ndarray):
+        return bool(first.shape == second.shape and np.array_equal(first, second))
+    return first is second or first == second
 
 
-def _linear(one: object, between: object, two: object) -> bool:
-    """Whether an array at a place between lies on the line from the first to the last one."""
-    if not (isinstance(one, np.ndarray) and isinstance(between, np.ndarray) and isinstance(two, np.ndarray)):
+def _linear(first: object, between: object, last: object) -> bool:
+    """Whether an array between the ends lies on the line from the first to the last one."""
+    if not (isinstance(first, np.ndarray) and isinstance(between, np.ndarray) and isinstance(last, np.ndarray)):
         return False
-    there = (1.0 - _BETWEEN) * one + _BETWEEN * two
-    return bool(np.abs(there - between).max(initial=0.0) <= _ROUNDING * max(np.abs(one).max(), np.abs(two).max()))
+    interpolated = (1.0 - _BETWEEN) * first + _BETWEEN * last
+    return bool(np.abs(interpolated - between).max(initial=0.0) <= _ROUNDING * max(np.abs(first).max(), np.abs(last).max()))

@@ -24,7 +24,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.points.attractor import FAILED, Instead, from_rest, instead_of
+from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
 from raceway.points.engine import Item, local, processor_time, reference_cases, without_mesh, work_through
 from raceway.points.store import RowStore, program_key
 from raceway.scene.changes import with_value
@@ -251,7 +251,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
         except ConvergenceError as why:
             if not scene.integrator.method.steady:
                 raise
-            motion = from_rest(scene, row["speed_rpm"], TURNS)
+            motion = attractor_from_rest(scene, row["speed_rpm"], TURNS)
             if motion.kind == FAILED:
                 raise
             reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
@@ -262,7 +262,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
     assert identified is not None
     status, reason = Status.COMPLETED, ""
     if floquet is not None and floquet["verdict"] == "unstable":
-        motion = instead_of(result, row["speed_rpm"], TURNS)
+        motion = attractor_beside_run(result, row["speed_rpm"], TURNS)
         row["instead"] = _plain(motion)
         grows = f"the steady motion is unstable, disturbances grow {floquet['largest']:.4g} times a turn"
         status, reason = Status.UNSTABLE, f"{grows}; instead: {motion.words}"
@@ -279,7 +279,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
     }
 
 
-def _plain(motion: Instead) -> Tables:
+def _plain(motion: Attractor) -> Tables:
     """Without the section, which a page of hundreds of points has no use for."""
     return {name: value for name, value in motion.to_dict().items() if name != "section"}
 
