@@ -3,8 +3,9 @@
 cli            the command line: ``raceway``
 ross           bearings inside rotors of the program ROSS
 front          what ``import raceway`` offers for one scene: run, plan, check, evolve
-commands       what all commands share: options, progress, screens, how a command ends
 studies        many runs made into one answer, a folder a study, each with its command
+points         one scene at many points: sweeps, comparisons, precision, bands, branches
+out            how an answer is shown: tables, pages, progress
 testing        conformance suites for plug-ins; the scaffold of a new one
 pipeline       one run: equilibrium, motion, identification, error, result
 bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
@@ -13,6 +14,7 @@ contact_laws, integrators   built-in plug-ins of these kinds
 plugins        built-in excitations, identifiers, meshers, formats, reports and executors
 scene          the scene file: tables, catalogue of bearings, schema
 framework      kinds of plug-ins: contracts, hooks, options, registry
+elastic        finite elements in full: every node of rings and balls an unknown
 core           numerics: arrays in, arrays out
 storage        files and caches on disk
 errors         exceptions, one class by who must act

@@ -59,7 +59,7 @@ plugin_files = click.option(
 
 
 def on_scene(command: F) -> F:
-    """SCENE and --set, of every command that reads a scene; ``command_inputs.load`` takes both."""
+    """SCENE and --set, of every command that reads a scene; ``load`` takes both."""
     return scene_file(set_keys(command))
 
 

@@ -1,8 +1,6 @@
 """Plan of a scene: parts kept and left out with reasons, predicted size and cost.  Nothing is built here.
 
-The model builder obeys the plan; it decides nothing of this by itself.  ``combinations`` refuses what cannot run,
-``part_plan`` decides part by part, ``module_plan`` module by module, ``recording`` counts steps and samples, ``wall_plan``
-predicts seconds.
+The model builder obeys the plan; it decides nothing of this by itself.
 """
 
 from __future__ import annotations

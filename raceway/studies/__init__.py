@@ -1,10 +1,7 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
-many        what they share: the engine (items in, rows out, kept and resumed), points, axes, row store, pages
-compare, precision, stability, sweep, verify, view, ross, measured    one folder a command, with what it prints and draws
-rotor_files  coefficients for Nastran and Ansys, as CSV and JSON
-band        the range of an answer over the tolerances of its scene
-sensitivities   derivatives of an answer by every number of its scene
+stability, verify, view    one folder a command, with what it prints and draws
+rotor       coefficients for ROSS, Nastran and Ansys, as CSV and JSON; the bearing in a rotor
 fit         numbers of a scene from measured data, with what these do not determine
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are

@@ -1,7 +1,7 @@
 """Writes the package of a new plug-in, which passes its own tests at once.
 
-The templates are package data, ``data/templates/KIND``; a file ``package_x.py.txt`` becomes ``x.py`` in the package's
-folder, ``tests_x.py.txt`` a file in ``tests``, the rest stands at the top.
+The templates are package data, ``data/templates/KIND``; a file package_x.py.txt becomes x.py in the package's
+folder, tests_x.py.txt a file in tests, the rest stands at the top.
 """
 
 from __future__ import annotations

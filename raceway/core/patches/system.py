@@ -479,7 +479,7 @@ class PatchSystem(SteppedRing):
         )
 
     def pressures(self) -> list[ContactState]:
-        """Answers of all contacts (``raceway.core.patches.pressure.Pressed``), inner races first, at the last state."""
+        """Answers of all contacts, inner races first, at the last state."""
         last = self.pool.row(self.table, self.with_friction).last
         return [] if last is None else last.contact_states
 

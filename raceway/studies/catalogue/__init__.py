@@ -6,4 +6,5 @@ ratings              load ratings of ISO 281 and ISO 76; Hertz contacts of many 
 rating_conventions   how makers rate: by the standards' tables, or by their own grooves; candidates of ball count and diameter
 inferred             from printed numbers to balls and grooves, each number with scatter and reason
 infer                ``raceway.infer``, and tables of many bearings
+command, infer_command    ``raceway catalogue`` and ``raceway infer``
 """

@@ -47,7 +47,7 @@ class Point:
     state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
     signals, slow : the records;  identified : what is identified from them
     readings : by the article's procedure, on the same signals
-    causes : ``error_split``
+    causes : errors of the readings, a cause at a time, by ``split``
     """
 
     axial: float

@@ -1,6 +1,6 @@
 """The page of ``raceway view``: the bearing to turn about with WebGL, its balls as a table, and the pictures.
 
-The page carries everything and asks for nothing.  pyvista's own ``export_html`` is not used: it wants a server's packages
+The page carries everything and asks for nothing.  pyvista's own export to HTML is not used: it wants a server's packages
 besides pyvista, and its scene carries no numbers.
 """
 

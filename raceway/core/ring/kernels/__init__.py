@@ -9,11 +9,11 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records
                 of its inner and outer contact where there is friction [m], of condensed bodies the structural approach of
                 both contacts and, where balls act on each other through the rings, at last the displacement of the inner
                 groove centre against the outer one by that [m].  gain [1/s], known (like place) [m/s]: 0 and zeros at
-                rest; the columns of slips hold those that were committed last [m]; see ``columns``
+                rest; the columns of slips hold those that were committed last [m]; see ``layout``
     contacts    the law, its parameters and memory: inner races first, then outer
     constants   of the model, laid out in ``layout``
     response    f, K, C: internal force [N, N m] and its derivatives by q and by v; a caller that needs no tangents gives K and
-                C of shape (0, 0), which are left alone.  work (rows, 2 Z): ``columns.work_rows`` tells how many; on return
+                C of shape (0, 0), which are left alone.  work (rows, 2 Z): ``layout.work_rows`` tells how many; on return
                 rows GAP and CONTACT_FORCE hold gap [m] and force [N] of every contact
 
 and returns 0, or 1 when the balls did not find their equilibrium.  Damping and tilt stiffness of the shaft, masses and
@@ -21,15 +21,10 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-rigid_tangential   the same with gyroscopic moments or friction: no potential;  tangential_rows: rows of ``work`` for it
-gyroscopic, friction   tangential forces of a ball
-tangential_newton, tangential_tangents   where the ball finds its balance, and its derivatives by the ring's motion
-condensed   each of these on elastic rings and balls
-structural         contacts and structural compliances in series;  structural_rows: rows of ``work`` for them
+tangential         the same with gyroscopic moments or friction: no potential;  tangential_rows: rows of ``work`` for it
+structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
-section            one ball's contribution to the ring;  planar: vectors and 2x2 matrices of its meridian plane
-normal      the law with the damping of the contacts
-layout, columns    constants of a model, columns of ``ball``, rows of ``work``
+layout             constants of a model, columns of ``ball``, rows of ``work``; vectors of a ball's meridian plane, its seat on the ring
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 
