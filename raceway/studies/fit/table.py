@@ -202,26 +202,6 @@ class TableResiduals:
     scenes: list[Scene]
     _answers: list[Gradients] = attrs.field(factory=list, init=False)
 
-    @classmethod
-    def of(cls, measured: Measurements, scene: Scene, free: Sequence[Free]) -> TableResiduals:
-        """Of the answers of a scene.
-
-        Raises
-        ------
-        SceneError
-            A key that is both free and measured, a number that a key cannot have, or a quantity of a motion in a scene at rest.
-        """
-        if both := next((key.name for key in free if key.name in measured.keys), None):
-            raise SceneError.at(
-                "--free", both, "is a column of the data, too: a key is either free or known in each measurement"
-            )
-        moving = [name for name in measured.values if name in _MOTION]
-        if moving and scene.excitation is None:
-            raise SceneError.at(
-                "excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation"
-            )
-        return cls(measured, free, measured.scenes(scene))
-
     @property
     def _moving(self) -> bool:
         return any(name in _MOTION for name in self.measured.values)
@@ -303,7 +283,14 @@ def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
     """Free keys of a scene from a table."""
     free = free_keys(scene, names)
     refuse_few(measured.count * len(measured.values), len(free), measured.source)
-    problem = TableResiduals.of(measured, scene, free)
+    if both := next((key.name for key in free if key.name in measured.keys), None):
+        raise SceneError.at(
+            "--free", both, "is a column of the data, too: a key is either free or known in each measurement"
+        )
+    moving = [name for name in measured.values if name in _MOTION]
+    if moving and scene.excitation is None:
+        raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
+    problem = TableResiduals(measured, free, measured.scenes(scene))
     answer = estimate(problem, free, measured.stated)
     fitted = problem.answers(answer.values)
     causes, left_out = problem.uncertain()
