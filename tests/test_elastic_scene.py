@@ -16,7 +16,7 @@ from raceway.elastic.iterative_solver import LinearSolver
 from raceway.elastic.ring import from_orbit
 from raceway.pipeline.run import Allowance
 from raceway.scene.unused import unused
-from raceway.testing import run, settle
+from raceway.testing import run, solve_equilibrium
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
 TINY = {
@@ -141,7 +141,7 @@ def test_dashpots_over_the_ellipse_at_the_reference_load_are_the_scene_s():
 
 def test_the_matrix_of_a_step_is_that_of_its_forces():
     model = built(**EXCITED, rotor={"damping": 300.0}, supports={"tilt": "locked"})
-    settle(model)
+    solve_equilibrium(model)
     system = model.bearing.bearing.system
     y = np.random.default_rng(2).standard_normal(system.size) * system.assembly.unknown
     m, damped = system.assembly.frame_size, np.zeros(system.size)
@@ -155,7 +155,7 @@ def test_the_matrix_of_a_step_is_that_of_its_forces():
 def test_a_motion_on_an_orbit_starts_as_it_goes_on():
     """In a circle nearly: three balls are no full ring, and contacts are not linear; 20 % of radius, speed and acceleration."""
     model = built(**EXCITED, supports={"tilt": "locked"})
-    equilibrium, w = settle(model), 15000.0 * np.pi / 30.0
+    equilibrium, w = solve_equilibrium(model), 15000.0 * np.pi / 30.0
     start = from_orbit(model.system, steady_orbit(model.system.surrogate, 2.0 * np.pi / w, equilibrium.displacement), 1e-5)
     y, z = start.q[1:3] - equilibrium.displacement[1:3]
     radius = np.hypot(y, z)

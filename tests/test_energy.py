@@ -8,7 +8,7 @@ import pytest
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import cumulative, energy_balance
-from raceway.testing import model_of, settle, simulate
+from raceway.testing import model_of, solve_equilibrium, simulate
 from validation.scenes import rotating
 
 
@@ -18,7 +18,7 @@ def drift(integrator: str, steps: int, damping: float = 0.0, inertia: bool = Fal
     tables["rotor"]["damping"] = 100.0 * damping
     tables["integrator"] = {"kind": integrator, "turns": 2, "steps_per_turn": steps, "start": "static"}
     model = model_of(tables)
-    return energy_balance(model.system, simulate(model, settle(model)).whole).drift
+    return energy_balance(model.system, simulate(model, solve_equilibrium(model)).whole).drift
 
 
 @pytest.mark.parametrize("inertia", [False, True])
@@ -45,7 +45,7 @@ def test_losses_in_contacts_do_not_depend_on_how_the_record_lies_in_memory():
     tables["contact"] = {"kind": "hertz", "time_constant": 1e-5}
     tables["integrator"] = {"kind": "newmark", "turns": 2, "steps_per_turn": 360, "start": "static"}
     model = model_of(tables)
-    record = simulate(model, settle(model)).whole
+    record = simulate(model, solve_equilibrium(model)).whole
     apart = attrs.evolve(record, gap=np.asfortranarray(record.gap), contact_force=np.asfortranarray(record.contact_force))
     one, other = (energy_balance(model.system, each) for each in (record, apart))
     assert np.array_equal(one.losses, other.losses) and one.losses[-1] > 0.0
@@ -56,7 +56,7 @@ def test_the_shaft_s_springs_store_half_k_theta_squared():
     tables = rotating(1000.0, 2e4, 12000.0, False, "newmark")
     tables["integrator"] = {"kind": "newmark", "turns": 2, "steps_per_turn": 1440, "start": "static"}
     model = model_of(tables)
-    balance = energy_balance(model.system, simulate(model, settle(model)).whole)
+    balance = energy_balance(model.system, simulate(model, solve_equilibrium(model)).whole)
     assert balance.drift < 5e-3
 
 

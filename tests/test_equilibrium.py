@@ -8,7 +8,7 @@ import pytest
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
 from raceway.planning.closed_form import axial_approach
-from raceway.testing import Model, model_of, settle, settled
+from raceway.testing import Model, model_of, solve_equilibrium, settled
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring
 from validation.reference.statics import equilibrium
@@ -125,7 +125,7 @@ def test_load_along_a_free_motion_is_named():
 
 def test_no_load_is_refused():
     with pytest.raises(ConvergenceError, match="nothing loads the bearing"):
-        settle(model_of(static(0.0, "locked")))
+        solve_equilibrium(model_of(static(0.0, "locked")))
 
 
 @pytest.mark.parametrize("axial", [50.0, 400.0, 1000.0, 4000.0])
@@ -133,7 +133,7 @@ def test_no_load_is_refused():
 def test_the_axial_approach_is_that_of_the_equilibrium(built, preset, axial):
     """Balls without inertia, tilt locked.  Hamrock and Brewe's fits are within 5 % in stiffness; here they are within 1 %."""
     model = built(bearing={"preset": preset}, load={"axial": axial}, kinematics={"ball_inertia": False})
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     approach, load = axial_approach(model.scene)
     assert approach == pytest.approx(equilibrium.displacement[0], rel=0.02)
     assert load == pytest.approx(equilibrium.contact_force.mean(), rel=0.005)
@@ -174,7 +174,7 @@ def test_two_balls_in_line_with_the_load_share_it(built):
     """Tangent of the axial direction equals the closed form of equally loaded balls in series."""
     model = built(load={"axial": 1000.0})
 
-    now = settle(model)
+    now = solve_equilibrium(model)
     z, load, angle = 12, now.contact_force[0], now.angle_inner[0]
     soft = [2.0 / 3.0 / (ellipse.factor ** (2.0 / 3.0) * load ** (1.0 / 3.0)) for ellipse in (model.inner, model.outer)]
     length = np.hypot(model.geometry.rest[0] + now.displacement[0], model.geometry.rest[1])

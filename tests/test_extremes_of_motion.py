@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway import StabilityError, scene_from_dict
-from raceway.testing import b7206c, run, settle, simulate
+from raceway.testing import b7206c, run, solve_equilibrium, simulate
 
 #: A force that lifts balls off and presses others with many times the preload.
 HEAVY = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1500.0}
@@ -28,7 +28,7 @@ def test_the_largest_penetration_is_hertz_s_approach_at_the_largest_load():
 
 def test_the_stable_limit_is_that_of_the_orbit_where_it_is_stiffer_than_the_equilibrium(built):
     model = built(**{k: v for k, v in heavy(integrator={"kind": "central_difference", "turns": 2}).items() if k != "title"})
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     at_rest = model.system.critical_time_step(equilibrium.stiffness)
     found = simulate(model, equilibrium)
     assert found.start.orbit is not None
@@ -52,7 +52,7 @@ def test_a_sudden_start_uses_its_last_third(built):
         excitation={**HEAVY, "force": 100.0},
         integrator={"kind": "newmark", "turns": 9, "start": "static"},
     )
-    found = simulate(model, settle(model))
+    found = simulate(model, solve_equilibrium(model))
     period = model.excitation.period_s
     assert found.whole.time[-1] - found.record.time[0] <= (3.0 + 1e-6) * period
     assert found.record.time[-1] == pytest.approx(9.0 * period, rel=1e-9)

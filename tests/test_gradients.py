@@ -9,7 +9,7 @@ from raceway import SceneError, build_model, scene_from_dict
 from raceway.pipeline.gradient import Gradients, SteadyOrbit, derivatives, values
 from raceway.pipeline.static_gradient import NoDerivative, derivative, static_gradient
 from raceway.scene.continuous import continuous_keys, key_of, with_number
-from raceway.testing import b7206c, settle, settled
+from raceway.testing import b7206c, solve_equilibrium, settled
 from validation.command_line import invoke
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
@@ -23,7 +23,7 @@ def by_runs(model, path, step, of):
     found = {}
     for k in (-2, -1, 1, 2):
         one = build_model(with_number(model.scene, path, value + k * step), model.plan)
-        found[k] = of(one, settle(one))
+        found[k] = of(one, solve_equilibrium(one))
     return derivative(found, step)
 
 

@@ -9,7 +9,7 @@ import raceway as rw
 from raceway import run
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
-from raceway.testing import model_of, settle
+from raceway.testing import model_of, solve_equilibrium
 from validation.scenes import rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
@@ -37,7 +37,7 @@ def identified(identifier: str, turns: float, force: np.ndarray, displacement: n
         contact_force=empty, ball=np.zeros((len(time), 12, 2)), final=still,
         schedule=Schedule(time[1] - time[0], 360, max(int(turns), 1)), counts={},
     )  # fmt: skip
-    return model.scene.identifier.method.identify([record], settle(model), model), model.mass_used
+    return model.scene.identifier.method.identify([record], solve_equilibrium(model), model), model.mass_used
 
 
 @pytest.mark.parametrize("kind", ["forward", "backward", "fixed"])

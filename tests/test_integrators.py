@@ -18,7 +18,7 @@ from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
 from raceway.integrators.newmark import Newmark
 from raceway.studies.stability.catalogue import BASE
-from raceway.testing import Registry, model_of, settle, settled, simulate
+from raceway.testing import Registry, model_of, solve_equilibrium, settled, simulate
 from validation import orders
 from validation.scenes import rotating
 
@@ -32,7 +32,7 @@ def test_generalized_alpha_without_dissipation_and_newmark_agree():
     first = model_of(tables)
     tables["integrator"] = {"kind": "newmark", "steps_per_turn": 2880, "turns": 1, "start": "static"}
     second = model_of(tables)
-    one, two = (simulate(m, settle(m)).whole.displacement for m in (first, second))
+    one, two = (simulate(m, solve_equilibrium(m)).whole.displacement for m in (first, second))
     assert np.abs(one - two).max() <= 2e-3 * np.abs(two[:, 1:]).max()  # each is off by about 1e-3 at this step
 
 
@@ -58,7 +58,7 @@ def test_generalized_alpha_removes_what_is_too_fast_for_the_step():
 def test_restart_equals_going_on(integrator):
     """Two halves joined by the first's final motion are the whole, but for the clock's rounding and the steps' tolerance."""
     model = model_of(rotating(1000.0, "locked", 12000.0, True, integrator))
-    now = settle(model)
+    now = solve_equilibrium(model)
     method, steps = model.scene.integrator.method, 360
     period = model.excitation.period_s
     start = at_rest(model.system, now.displacement, now.ball, False)
@@ -73,7 +73,7 @@ def test_restart_equals_going_on(integrator):
 
 def test_same_answer_twice():
     model = model_of(rotating(400.0, "free", 15000.0, True, "newmark"))
-    now = settle(model)
+    now = solve_equilibrium(model)
     assert (simulate(model, now).whole.displacement == simulate(model, now).whole.displacement).all()
 
 
@@ -82,7 +82,7 @@ def test_step_above_the_stable_limit_is_refused():
     tables["integrator"]["steps_per_turn"] = 12
     model = model_of(tables)
     with pytest.raises(StabilityError, match="above the stable limit"):
-        simulate(model, settle(model))
+        simulate(model, solve_equilibrium(model))
 
 
 def test_stable_limit_is_where_central_differences_blow_up():
@@ -106,7 +106,7 @@ def test_progress_and_stop():
         seen.append((done, total))
         raise KeyboardInterrupt
 
-    start = at_rest(model.system, settle(model).displacement, np.zeros((12, 2)), True)
+    start = at_rest(model.system, solve_equilibrium(model).displacement, np.zeros((12, 2)), True)
     with pytest.raises(KeyboardInterrupt):
         integrate(model.scene.integrator.method, model.system, start, Schedule(1e-6, 60_000, 1, 60), stop)
     assert seen == [(20_000, 60_000)]
@@ -224,7 +224,7 @@ def test_a_foreign_integrator_has_its_order_on_every_kind_of_bodies(bodies, inte
     """A force that grows over 0.1 ms: the error falls with the square of the step, from 10 to 20 and 40 steps."""
     chosen = scene(bodies, integrator)
     model = build_model(chosen, make_plan(chosen))
-    still = settle(model)
+    still = solve_equilibrium(model)
     start = model.bearing.at_rest(model.system, still.displacement, still.ball, True)
     time = 1e-4
     ends = []

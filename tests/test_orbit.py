@@ -8,7 +8,7 @@ import pytest
 from raceway.core.periodic.floquet import Floquet, fate_of
 from raceway.core.ring.orbit import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import chosen_start
-from raceway.testing import b7206c, model_of, settle
+from raceway.testing import b7206c, model_of, solve_equilibrium
 from validation.reference.ring import Ring
 from validation.reference.shooting import periodic, swinging
 from validation.scenes import rig_force, rotating
@@ -36,7 +36,7 @@ def test_equals_shooting(kind):
     tables["contact"]["damping"] = 0.0
     model = model_of(tables)
     w, system = 12000.0 * np.pi / 30.0, model.system
-    orbit = steady_orbit(system, 2.0 * np.pi / w, settle(model).displacement)
+    orbit = steady_orbit(system, 2.0 * np.pi / w, solve_equilibrium(model).displacement)
     ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522)
     if kind == "unidirectional":
         force = swinging(rig_force(12000.0), w)
@@ -55,7 +55,7 @@ def test_equals_shooting(kind):
 def test_without_inertia_it_is_a_series_of_equilibria():
     model = model_of(rotating(1000.0, "free", 12000.0, True, "newmark"))
     system = model.system
-    orbit = steady_orbit(system, 5e-3, settle(model).displacement, samples=9, inertial=False)
+    orbit = steady_orbit(system, 5e-3, solve_equilibrium(model).displacement, samples=9, inertial=False)
     for q, force in zip(orbit.displacement, orbit.force, strict=True):
         rest = system.evaluate(q).force - system.load - force
         assert np.abs(rest * [1, 1, 1, 1 / system.arm, 1 / system.arm]).max() < 1e-5  # N, of 1500 N
@@ -67,7 +67,7 @@ def test_a_transient_starts_with_the_orbit_s_acceleration():
     tables["rotor"] |= {"damping": 2e4, "polar_inertia": 1e-2, "transverse_inertia": 1e-3}
     model = model_of(tables)
     system = model.system
-    orbit = steady_orbit(system, 5e-3, settle(model).displacement)
+    orbit = steady_orbit(system, 5e-3, solve_equilibrium(model).displacement)
     start = from_orbit(system, orbit, 1e-6)
     weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
     size = np.abs(orbit.acceleration * weight).max()
@@ -84,7 +84,7 @@ def test_a_slow_motion_starts_on_its_orbit(built, rpm):
     model = built(
         **b7206c(load={"axial": 1000.0}, excitation={"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4})
     )
-    now = settle(model)
+    now = solve_equilibrium(model)
     start = chosen_start(model, now)
     assert start.kind == "orbit" and start.settled and not start.warnings
     found = np.abs(np.fft.rfft(start.orbit.displacement[:, 1])[1]) * 2.0 / len(start.orbit.displacement)

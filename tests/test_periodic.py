@@ -33,7 +33,7 @@ from raceway.core.ring.system import by_address
 from raceway.core.time.schemes import integrate
 from raceway.integrators.periodic import Periodic
 from raceway.pipeline.simulate import steady_record
-from raceway.testing import model_of, settle
+from raceway.testing import model_of, solve_equilibrium
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
 from validation.command_line import ARTICLE, invoke
 from validation.scenes import rotating
@@ -69,7 +69,7 @@ ONE_WAY = {"kind": "unidirectional"}
 def test_equals_collocation_in_fourier_series(tables):
     result = solved(tables, tolerance=1e-9)
     model = model_of(tables)
-    orbit = steady_orbit(model.system, model.excitation.period_s, settle(model).displacement, 65, tolerance=1e-11)
+    orbit = steady_orbit(model.system, model.excitation.period_s, solve_equilibrium(model).displacement, 65, tolerance=1e-11)
     line = np.fft.fft(orbit.displacement, axis=0)[1, 1:3]
     push = np.fft.fft(orbit.force, axis=0)[1, 1:3]
     wanted = np.vdot(push, push) / np.vdot(push, line)
@@ -225,7 +225,7 @@ def test_a_motion_is_kept_where_two_exist(softening):
 def test_newton_ends_at_its_tolerance():
     """Where the answer is solved for once more, to rounding, it moves by no more than that."""
     model = model_of(scene(axial=400.0, tilt="free"))
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     problem = Problem(model.system, 1256.0, one_turn(model.system))
     nodes = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
     for tolerance in (1e-4, 1e-6, 1e-8):
@@ -237,7 +237,7 @@ def test_newton_ends_at_its_tolerance():
 
 def test_a_start_off_the_equilibrium_is_settled():
     model = model_of(scene())
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     there = equilibrium.displacement + np.array([1e-6, 2e-6, 0.0, 0.0, 0.0])
     off = Motion(there, np.zeros(5), np.zeros(5), equilibrium.ball, equilibrium.ball.copy())
     q, tangent = _equilibrium(model.system, off)
@@ -250,7 +250,7 @@ def test_a_start_off_the_equilibrium_is_settled():
 def test_rates_of_the_balls_are_the_derivatives_of_their_places(damping):
     """Put in after every sweep, or solved for; 1e-3 of the largest rate for balls that are interpolated."""
     model = model_of(scene(contact={"damping": damping}, inertia=True))
-    equilibrium, step = settle(model), 1e-3
+    equilibrium, step = solve_equilibrium(model), 1e-3
     problem = Problem(model.system, 1256.0, one_turn(model.system))
     path = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8).refined.solved.path
     assert stiff(problem, path) == (damping == 500.0)
@@ -267,7 +267,7 @@ def test_a_motion_of_which_rounding_is_much_takes_no_finer_mesh(monkeypatch):
         "raceway.core.periodic.collocation._newton", lambda *given: (taken.append(given[1].intervals), _newton(*given))[1]
     )
     model = model_of(scene(contact={"damping": 500.0}, excitation={"unbalance": 1e-13}))
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     problem = Problem(model.system, 1256.0, one_turn(model.system))
     refined = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8).refined
     assert 1e-8 < refined.error <= refined.solved.rounding < 1e-3
@@ -319,7 +319,7 @@ def test_far_below_resonance_the_message_names_the_share_and_the_way_out():
 def test_a_recorded_turn_leads_to_its_own_motion(which):
     """80 kg, two stable motions: a turn of each leads to that one, without it the first is found."""
     model = model_of(heavy(80.0))
-    equilibrium, period = settle(model), model.excitation.period_s
+    equilibrium, period = solve_equilibrium(model), model.excitation.period_s
     system = by_address(model.system)
     problem = problem_of(system, 2.0 * np.pi / period, equilibrium.displacement)
     found = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8)
@@ -347,7 +347,7 @@ def test_a_recorded_turn_is_met_at_its_samples(softening, count):
 def test_the_linear_response_at_another_speed_has_the_lines_of_the_force():
     """A branch over the speed keeps the bodies' clock: one turn of the force is one of its own angle."""
     model = model_of(scene())
-    q, w = settle(model).displacement, 2.0 * np.pi / model.excitation.period_s
+    q, w = solve_equilibrium(model).displacement, 2.0 * np.pi / model.excitation.period_s
     tangent = model.system.evaluate(q).stiffness
     here = problem_of(by_address(model.system), w, q, False)
     for ratio in (0.85, 1.15):

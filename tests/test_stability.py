@@ -16,7 +16,7 @@ import pytest
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.studies.stability import scenes, systems
 from raceway.studies.stability.catalogue import BASE, SCENES, catalogue, laws_with, transient, with_law
 from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Rows, measured, rows_of, stability
@@ -136,7 +136,7 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     found = {}
     for load in (1e5, 1.001e5):
         model = model_at(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY)
-        found[load] = settle(model)
+        found[load] = solve_equilibrium(model)
         # A difference over a thousandth of the penetration errs by the square of that.
         assert axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
     # The state decides, not the load that the model was given.
@@ -272,7 +272,7 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
     model = model_at(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY)
-    own, found = axial_displacement(model), settle(model).displacement[0]
+    own, found = axial_displacement(model), solve_equilibrium(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
     # Deliberate fault: surfaces that touch.

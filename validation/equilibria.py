@@ -16,7 +16,7 @@ import attrs
 import numpy as np
 
 from raceway import ConvergenceError
-from raceway.testing import Model, model_of, settle
+from raceway.testing import Model, model_of, solve_equilibrium
 from validation.scenes import imbalance, random_tables
 
 #: Residual over the sum of the loads and of the inner races' forces that counts as solved; the program's own tolerance is
@@ -67,7 +67,7 @@ def solve(scenes: Iterator[dict[str, Any]], residual: float = RESIDUAL) -> Tally
         model = model_of(tables)
         start = time.perf_counter()
         try:
-            found = settle(model)
+            found = solve_equilibrium(model)
         except ConvergenceError as error:
             tally.seconds.append(time.perf_counter() - start)
             if "singular" in str(error) and loose(model, error.state["q"]):

@@ -15,7 +15,7 @@ import numpy as np
 from raceway import scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals import stiffness
-from raceway.testing import model_of, run, settle
+from raceway.testing import model_of, run, solve_equilibrium
 from validation.scenes import rotating
 
 #: An estimate is right within this factor, or when it and the error are below this size.  The factor is less than the 4 by which
@@ -102,7 +102,7 @@ def orbit_value(tables: dict[str, Any]) -> tuple[complex, float]:
         No orbit found.
     """
     model = model_of(tables)
-    start = settle(model).displacement
+    start = solve_equilibrium(model).displacement
     found = []
     for samples in _SAMPLES:
         orbit = steady_orbit(model.system, model.excitation.period_s, start, samples, tolerance=1e-11)

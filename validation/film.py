@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import raceway as rw
 from raceway import Scene, make_plan
-from raceway.testing import settle, simulate
+from raceway.testing import solve_equilibrium, simulate
 
 #: B7206C as the scenes here have it.
 BALLS, DIAMETER, PITCH, CONFORMITY, ANGLE = 12, 9.525e-3, 46e-3, 0.522, pi / 12.0
@@ -181,6 +181,6 @@ def motion(integrator: str, contact: dict[str, Any], steps_per_turn: int, keep: 
     method = {"kind": integrator, "turns": 2, "steps_per_turn": steps_per_turn, "start": "static"}
     found = scene(contact, excitation=excitation, integrator=method, rotor={"mass": 2.0}, kinematics={"ball_inertia": False})
     model = rw.build_model(found, make_plan(found))
-    whole = simulate(model, settle(model)).whole
+    whole = simulate(model, solve_equilibrium(model)).whole
     every = len(whole.time) // (2 * keep)
     return np.asarray(whole.displacement[every - 1 :: every, 1:3])

@@ -115,14 +115,14 @@ def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float |
     """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
     from raceway import build_model, load_scene, make_plan
     from raceway.core.ring.kernels.layout import CAGE
-    from raceway.testing import settle, simulate
+    from raceway.testing import solve_equilibrium, simulate
 
     scene = load_scene(SCENE, changes)
     plan = make_plan(scene, force)
     model = build_model(scene, plan)
     if cage is not None:
         model.system.scalars[CAGE] = cage
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     records = [simulate(model, equilibrium).record] if plan.turns > 0 else []
     found = scene.identifier.method.identify(records, equilibrium, model)
     return np.array([found.dynamic_stiffness.real, found.dynamic_stiffness.imag])
@@ -195,12 +195,12 @@ def history() -> Rule:
     from raceway.core.ring.orbit import at_rest
     from raceway.core.time.schemes import integrate
     from raceway.planning.recording import recorded_per_turn
-    from raceway.testing import settle
+    from raceway.testing import solve_equilibrium
 
     per_turn, many = 2880, 50
     scene = load_scene(SCENE, ("integrator.kind=central_difference",))
     model = build_model(scene, make_plan(scene))
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
 
     def run(stride: int) -> Answer:
         start = at_rest(model.system, equilibrium.displacement, equilibrium.ball, True)

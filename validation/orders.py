@@ -16,7 +16,7 @@ from raceway.core.record import Motion, Schedule
 from raceway.core.ring.system import System
 from raceway.core.time.schemes import integrate
 from raceway.scene.inner_ring import ring_inertia
-from raceway.testing import Model, model_of, settle, simulate
+from raceway.testing import Model, model_of, solve_equilibrium, simulate
 from validation.reference.ring import Ring
 from validation.reference.shooting import rotating as rotating_force
 from validation.reference.shooting import trajectory
@@ -90,7 +90,7 @@ def bearing(integrator: str, tilt: str, inertia: bool, damping: float, steps_per
 def motion(integrator: str, tilt: str, inertia: bool, damping: float, steps_per_turn: int, keep: int) -> np.ndarray:
     """(n, 2) radial motion at ``keep`` samples a turn."""
     model = bearing(integrator, tilt, inertia, damping, steps_per_turn)
-    whole = simulate(model, settle(model)).whole
+    whole = simulate(model, solve_equilibrium(model)).whole
     every = len(whole.time) // (TURNS * keep)
     return whole.displacement[every - 1 :: every, 1:3]
 
@@ -98,7 +98,7 @@ def motion(integrator: str, tilt: str, inertia: bool, damping: float, steps_per_
 def independent(tilt: str, keep: int) -> np.ndarray:
     """(n, 2) the same motion without damping and with weightless balls, by DOP853 on the reference's equations."""
     model = bearing("newmark", tilt, False, 0.0, 360)
-    start, w = settle(model).displacement, 12000.0 * np.pi / 30.0
+    start, w = solve_equilibrium(model).displacement, 12000.0 * np.pi / 30.0
     _, _, polar = ring_inertia(model.scene)
     ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin=polar * w)
     times = np.linspace(0.0, TURNS * 2.0 * np.pi / w, TURNS * keep + 1)

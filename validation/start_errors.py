@@ -15,7 +15,7 @@ import numpy as np
 from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals import stiffness
-from raceway.testing import model_of, run, settle
+from raceway.testing import model_of, run, solve_equilibrium
 from validation.error_estimate import SMALL
 from validation.scenes import rotating
 
@@ -55,7 +55,7 @@ def draw(rng: np.random.Generator) -> Start:
     ratio = float(rng.uniform(0.9, 1.1) if rng.integers(2) else rng.uniform(0.1, 0.9))
     model = model_of(tables)
     free = np.flatnonzero(model.system.free > 0.0)
-    tangent = model.system.reduced(settle(model).stiffness + model.system.stiffness)
+    tangent = model.system.reduced(solve_equilibrium(model).stiffness + model.system.stiffness)
     along = 1.0 / np.linalg.inv(tangent)[list(free).index(1), list(free).index(1)]
     mass = max(float(ratio**2 * along / (rpm * np.pi / 30.0) ** 2), 0.05)
     damping = float(10.0 ** rng.uniform(-3.0, -1.0)) if rng.integers(2) else 0.0
@@ -67,7 +67,7 @@ def _fourier_value(tables: dict[str, Any]) -> complex | None:
     """Z of the steady orbit by Fourier collocation; None where that finds none."""
     model = model_of(tables)
     try:
-        orbit = steady_orbit(model.system, model.excitation.period_s, settle(model).displacement, 65)
+        orbit = steady_orbit(model.system, model.excitation.period_s, solve_equilibrium(model).displacement, 65)
     except ConvergenceError:
         return None
     return stiffness(*(np.fft.fft(part, axis=0)[1] for part in (orbit.force, orbit.displacement)))

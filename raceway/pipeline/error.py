@@ -36,7 +36,7 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
 from raceway.planning.recording import fits
@@ -299,7 +299,7 @@ def _finer_value(run: Identified, count: int) -> complex:
     if compiled(run.model.system) is not None:
         return identified([(motion.model, motion.equilibrium) for motion in run.motions], count)
     models = [attrs.evolve(motion.model, system=surrogate(motion.model.system)) for motion in run.motions]
-    states = [(model, settle(model)) for model in models]
+    states = [(model, solve_equilibrium(model)) for model in models]
     return run.value + identified(states, count) - identified(states, run.motion.steps_per_turn)
 
 

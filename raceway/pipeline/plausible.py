@@ -35,7 +35,7 @@ from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
-from raceway.pipeline.settle import pressures, settle
+from raceway.pipeline.settle import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.scene.scene import Scene
@@ -280,7 +280,7 @@ def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equili
     system = by_address(system)
     bearing = attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
     variant = attrs.evolve(model, scene=scene, system=system, bearing=bearing)
-    return variant, settle(variant)
+    return variant, solve_equilibrium(variant)
 
 
 def _secant(

@@ -37,7 +37,7 @@ from raceway.pipeline.plausible import (
     sliding_warnings,
 )
 from raceway.pipeline.result import Result, band_table
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
 from raceway.planning.implausible import implausible
@@ -141,7 +141,7 @@ def _run(
             on_progress(label, step, total)
         allowance.check(label, step, total)
 
-    equilibrium = settle(model, progress, None if near is None else near.equilibrium.displacement)
+    equilibrium = solve_equilibrium(model, progress, None if near is None else near.equilibrium.displacement)
     if scene.excitation is None:
         answer = _Answer(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:

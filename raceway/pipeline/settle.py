@@ -37,7 +37,7 @@ from raceway.storage.tables import Tables
 _SEATED = 0.5
 
 
-def settle(
+def solve_equilibrium(
     model: Model, on_progress: Callable[[str, int, int], None] | None = None, near: np.ndarray | None = None
 ) -> Equilibrium:
     """The static equilibrium of a model.

@@ -18,7 +18,7 @@ from raceway.core.ring.system import compiled
 from raceway.core.signals import fourier_line, stiffness
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.planning.steady_orbits import searches_orbits
@@ -147,7 +147,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
         excitation = force.at_whirl(rpm) if hasattr(force, "at_whirl") else attrs.evolve(force, speed_rpm=rpm)
         scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
         at_speed = build_model(scene, make_plan(scene))
-        motions.append(simulate(at_speed, settle(at_speed), on_progress))
+        motions.append(simulate(at_speed, solve_equilibrium(at_speed), on_progress))
     return motions
 
 
@@ -298,7 +298,7 @@ class SteadyMotions:
         if model is None or self.missed >= _GIVEN_UP:
             return None
         near = None if self.last is None else self.last.solution
-        record = _steady(model, settle(model), near, self.on_progress)
+        record = _steady(model, solve_equilibrium(model), near, self.on_progress)
         self.missed = self.missed + 1 if record is None else 0
         if record is None:
             return None

@@ -18,7 +18,7 @@ from raceway.framework.shown import Fact, Shown, number, read_in
 from raceway.out.progress import telling
 from raceway.pipeline.gradient import UNITS, Gradients, definitions, described, values
 from raceway.pipeline.result import without_nan, write_json
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.plugins.pictures import new_figure
@@ -292,7 +292,7 @@ def _row(scene: Scene, paths: list[str], point: list[float]) -> Tables:
 def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     """Numbers, and what they are."""
     model = build_model(scene, make_plan(scene))
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
 
 

@@ -26,7 +26,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.result import damping_origin
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.scene.given import Change, as_given
 from raceway.scene.tables import TIME_CONSTANTS
@@ -287,7 +287,7 @@ def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Co
         rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
     model = build_model(scene, make_plan(scene))
-    still, ring = settle(model), compiled(model.system)
+    still, ring = solve_equilibrium(model), compiled(model.system)
     assert ring is not None, "rings of rigid bodies are compiled"
     count = ring.ball_count
     loads = still.contact_force.reshape(2, count)[RACES.index(race)]

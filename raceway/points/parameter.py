@@ -23,7 +23,7 @@ from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, by_address, compiled
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.axes import numbers_at
 from raceway.scene.changes import parse_value, with_value
@@ -117,7 +117,7 @@ class Parameter:
     def settled(self, p: float) -> tuple[Model, Equilibrium]:
         """Model and static equilibrium."""
         model = self.model(p)
-        return model, settle(model)
+        return model, solve_equilibrium(model)
 
     def symmetry(self, q: np.ndarray) -> Symmetry:
         """One ball pitch where forces and bodies allow it everywhere, else one turn; q (5,): the first equilibrium."""

@@ -20,7 +20,7 @@ from raceway.framework.shown import Fact, Shown, number
 from raceway.out.progress import telling
 from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, described, values
 from raceway.pipeline.result import without_nan, write_json
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress
 from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan
@@ -298,7 +298,7 @@ def sensitivities(
     with telling(progress) as told:
         begun = working_processor_time()
         model = build_model(read, make_plan(read))
-        equilibrium = settle(model)
+        equilibrium = solve_equilibrium(model)
         found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
     if keys and found.refused:
         raise SceneError([Mistake(key.path, key.value, why) for key, why in found.refused])

@@ -30,10 +30,10 @@ def model_of(scene: Scene | dict[str, Any]) -> Model:
 
 def settled(scene: Scene | dict[str, Any]) -> tuple[Model, Equilibrium]:
     """Model and static equilibrium of a scene, or of its tables."""
-    from raceway.pipeline.settle import settle
+    from raceway.pipeline.settle import solve_equilibrium
 
     model = model_of(scene)
-    return model, settle(model)
+    return model, solve_equilibrium(model)
 
 
 @cache

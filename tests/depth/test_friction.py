@@ -9,7 +9,7 @@ import pytest
 from raceway import run
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.testing import b7206c, model_of, settle, simulate
+from raceway.testing import b7206c, model_of, solve_equilibrium, simulate
 
 
 def rubbing(friction=0.03, turns=3, **tables):
@@ -150,7 +150,7 @@ def test_energy_balances_with_friction():
     drifts = []
     for steps in (180, 360, 720):
         model = model_of(rubbing(0.03, turns=2, integrator={"steps_per_turn": steps}))
-        drifts.append(energy_balance(model.system, simulate(model, settle(model)).whole).drift)
+        drifts.append(energy_balance(model.system, simulate(model, solve_equilibrium(model)).whole).drift)
     assert drifts[1] < 1e-3 and drifts[2] < 0.7 * drifts[0]
 
 

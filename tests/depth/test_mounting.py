@@ -15,7 +15,7 @@ from raceway.bodies import mounting
 from raceway.bodies.mounting import preload_table
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.scene.unused import unused
-from raceway.testing import b7206c, settle
+from raceway.testing import b7206c, solve_equilibrium
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
@@ -51,12 +51,12 @@ def test_offset_of_a_pair_stays_at_every_speed(rpm, told):
 def test_growth_loads_a_pair(built, growth, told):
     """kxx, kyy [N/um] and the preload [N]: a larger inner raceway stiffens a pair whose offset stays."""
     model = built(**pair(kinematics={"radial_expansion": growth}))
-    now = settle(model)
+    now = solve_equilibrium(model)
     grown, x = row(growth=growth), approach(row(), 300.0)
     tangent = 2.0 * np.diag(grown(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1])
     assert now.stiffness[0, 0] == pytest.approx(tangent[0], rel=TOLERANCE)
     assert now.stiffness[1, 1] == pytest.approx(tangent[1], rel=TOLERANCE)
-    assert (now.stiffness[1, 1] > settle(built(**pair())).stiffness[1, 1]) == (growth > 0.0)
+    assert (now.stiffness[1, 1] > solve_equilibrium(built(**pair())).stiffness[1, 1]) == (growth > 0.0)
     if told is not None:
         found = run(pair(kinematics={"radial_expansion": growth})).to_dict()["equilibrium"]
         values = 1e-6 * found["stiffness"][0][0], 1e-6 * found["stiffness"][1][1], found["preload"]["running_n"]
@@ -102,7 +102,7 @@ def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built
     """Mounted, too, the second row keeps the spring's force: the first one carries load and preload; at rest nothing changes."""
     more = {"load": {"axial": 400.0}, "bodies": {"kind": bodies}}
     held, free = (built(**pair("spring", supports={"axial": axial}, **more)) for axial in ("displacement", "force"))
-    now, loaded = settle(held), settle(free)
+    now, loaded = solve_equilibrium(held), solve_equilibrium(free)
     # The spring's force is met to 1e-9, and the force of 400 N by as much of the stiffness.
     assert now.displacement == pytest.approx(loaded.displacement, rel=1e-8, abs=1e-16)
     assert mounting.held_table(held, now)["running_n"] == pytest.approx(400.0, rel=1e-8)
@@ -111,7 +111,7 @@ def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built
         assert now.displacement[0] == pytest.approx(approach(row(), 700.0) - approach(row(), 300.0), rel=TOLERANCE)
     running = built(**pair("spring", supports={"axial": "displacement"}, kinematics=ALL, **more))
     assert running.guess[0] == pytest.approx(now.displacement[0], rel=1e-8)
-    assert preload_table(running, settle(running))["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
+    assert preload_table(running, solve_equilibrium(running))["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
 
 
 def run_up(first, last, **more):
@@ -126,7 +126,7 @@ def run_up(first, last, **more):
 def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
     """Between the speeds that it is placed at, too, the second row carries the spring's force; 1e-4 of it is what a spline leaves."""
     model = built(**run_up(first, last, bodies={"kind": bodies}, kinematics={"ring_growth": True}))
-    now = settle(model)
+    now = solve_equilibrium(model)
     for share in (0.0, 0.28, 0.53, 0.97, 1.0):
         system = model.system.at_speed(0.5 * share)
         q, ball, _ = system.settle(now.displacement)
@@ -192,7 +192,7 @@ def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics
     same = 1e-3 if bodies == "patches" else 1e-7
     still, running = (built(**pair(**tables, kinematics=one)) for one in ({}, kinematics))
     assert running.system.table[:, SHIFT] == pytest.approx(still.system.table[:, SHIFT], rel=same)
-    now = settle(still)
+    now = solve_equilibrium(still)
     assert preload_table(still, now)["rows_n"] == pytest.approx([300.0, 300.0], rel=1e-7)
     held = {"supports": {"axial": "displacement"}, "load": {"axial": 400.0}, **tables}
     still, running = (built(**held, kinematics=one) for one in ({}, kinematics))

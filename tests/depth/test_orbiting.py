@@ -11,7 +11,7 @@ from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
 from raceway.pipeline.settle import ball_pass, ball_pass_table
-from raceway.testing import b7206c, model_of, settle, settled, simulate
+from raceway.testing import b7206c, model_of, solve_equilibrium, settled, simulate
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
 
@@ -21,10 +21,10 @@ def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would():
     tables = scene(rotor={"mass": 4.0, "damping": 4000.0}, bearing={"ball_count": 7})
     tables["integrator"] = {"kind": "newmark", "turns": 12, "steps_per_turn": 360, "start": "static"}
     model = model_of(tables)
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     record = simulate(model, equilibrium).record
     slow = model_of({**tables, "integrator": {**tables["integrator"], "kind": "quasi_static"}})
-    still = simulate(slow, settle(slow)).whole
+    still = simulate(slow, solve_equilibrium(slow)).whole
     frequency = passing_hz(model)
     dynamic, static = (phasors(r.time, r.displacement[:, :3], [frequency])[0, 1] for r in (record, still))
     w = 2.0 * np.pi * frequency
@@ -61,7 +61,7 @@ def test_a_series_of_equilibria_has_no_rates(damping):
     """Contact dampers change nothing in it, however fast the balls travel."""
     tables = scene(turns=1, contact={"damping": damping})
     model = model_of(tables)
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     record = simulate(model, equilibrium).whole
     without = attrs.evolve(model.system, scalars=model.system.without(CAGE).scalars)
     np.testing.assert_allclose(equilibrium.displacement, without.settle(model.guess)[0], rtol=1e-9, atol=1e-14)

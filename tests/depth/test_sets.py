@@ -12,7 +12,7 @@ from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_
 from raceway.bodies.mounting import preload_table
 from raceway.scene.inner_ring import ring_inertia
 from raceway.scene.sets import NAMES
-from raceway.testing import settle
+from raceway.testing import solve_equilibrium
 from validation.command_line import EXAMPLES, invoke
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, press_together
@@ -32,7 +32,7 @@ def scene(arrangement="TBT", preload=200.0, bearing=None, **tables):
 def built(*args, **more):
     one = scene(*args, **more)
     model = build_model(one, make_plan(one))
-    return model, settle(model)
+    return model, solve_equilibrium(model)
 
 
 def ring(angle=25.0, balls=12, spin_rpm=0.0, first=0.0, diameter=9.525e-3):
@@ -163,7 +163,7 @@ def test_two_bearings_on_a_shaft():
     one = scene_from_dict({"bearing": {"row": rows, "preload": 250.0}, "kinematics": {"ball_inertia": False}})
     assert one.bearing.preset == "B7206C"
     model = build_model(one, make_plan(one))
-    now = settle(model)
+    now = solve_equilibrium(model)
     alone = [settled_alone(preset).stiffness for preset in ("B7206C", "7206A")]
     np.testing.assert_allclose(np.diag(now.stiffness)[:3], sum(np.diag(k)[:3] for k in alone), rtol=SAME)
 

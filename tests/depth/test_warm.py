@@ -11,7 +11,7 @@ from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_
 from raceway.bodies.mounting import preload_table
 from raceway.scene.growth import ball_growth, grooves, inner_fit, outer_fit, running_interference, warm_interference
 from raceway.scene.unused import unused
-from raceway.testing import run, settle
+from raceway.testing import run, solve_equilibrium
 from validation.fits import ALUMINIUM, fits_by_hand
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, warmed
@@ -30,7 +30,7 @@ def scene(word="DB", preload=300.0, kinematics=None, bearing=None, **mounting):
 
 def settled(one):
     model = build_model(one, make_plan(one))
-    return model, settle(model)
+    return model, solve_equilibrium(model)
 
 
 def ring():

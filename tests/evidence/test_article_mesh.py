@@ -22,7 +22,7 @@ from raceway.bodies.model import build_model
 from raceway.elastic.assembly import Assembly
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.ring import ElasticRing
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.storage.cache_folder import cache_root
 from validation.command_line import EXAMPLES
@@ -212,7 +212,7 @@ def test_cost_beside_other_solvers(claim):
         model = build_model(scene, plan)
         if not reduced:
             model.system.bodies.system = iterative(model.system.bodies.system)
-        settle(model)
+        solve_equilibrium(model)
         spent.append(time.process_time() - begin)
     _, superelements, former = spent
     claim("63 120 elements: CPU time over the iterative solver's", superelements / former, at_most=0.1, **COST,

@@ -20,7 +20,7 @@ from raceway import build_model, load_scene, make_plan
 from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.points.precision import EXACT, measure_settings
 from raceway.scene.file import read_toml
 from validation import fused_loop, left_out, plan_time
@@ -128,7 +128,7 @@ def compared(law: str, integrator: str, inertia: bool, repeats: int) -> SimpleNa
     model = build_model(scene, make_plan(scene))
     s, z, period, method = model.system, model.geometry.ball_count, model.excitation.period_s, scene.integrator.method
     schedule = Schedule(period / steps, steps, turns)
-    start = from_orbit(s, steady_orbit(s, period, settle(model).displacement), schedule.dt)
+    start = from_orbit(s, steady_orbit(s, period, solve_equilibrium(model).displacement), schedule.dt)
     numbers = (method.beta, method.gamma, method.tolerance) if method.implicit else (0.25, 0.5, 0.0)
     loop = (with_penalty() if law == "penalty" else fused_loop).fused_loop(inertia, bool(method.implicit))
 

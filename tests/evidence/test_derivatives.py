@@ -13,7 +13,7 @@ from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.gradient import SteadyOrbit
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.static_gradient import WEIGHTS, NoDerivative, derivative, static_gradient
 from raceway.points.band import band, design, indices
 from raceway.points.sensitivities import sensitivities, sensitivities_of
@@ -77,7 +77,7 @@ def static_errors(model, still, key):
     if gradient is None or gradient.step == 0.0 or gradient.remark:
         return None
     step = 1.5 * gradient.step
-    runs, result = {k: settle(one) for k, one in moved(model, key, step).items()}, {}
+    runs, result = {k: solve_equilibrium(one) for k, one in moved(model, key, step).items()}, {}
     for what, scale in scales(model).items():
         other = derivative({k: getattr(one, what) for k, one in runs.items()}, step)
         parts = getattr(gradient, what) - other, other
@@ -91,7 +91,7 @@ def test_static_derivatives(claim, bodies, wanted, seed):
     while scenes < wanted:
         try:
             model = model_of(scene_from_dict(drawn(rng, bodies)))
-            still = settle(model)
+            still = solve_equilibrium(model)
         except (ConvergenceError, SceneError):
             continue
         errors = [one for one in (static_errors(model, still, key) for key in continuous_keys(model.scene)) if one]
@@ -155,7 +155,7 @@ def moving(kind, damping, speed, force):
 def error_of_orbit(tables, step):
     """Largest error of a derivative over the largest derivative, both times the numbers at the keys, and how many keys there are."""
     model = model_of(scene_from_dict(tables))
-    still = settle(model)
+    still = solve_equilibrium(model)
     orbit, off, size = SteadyOrbit.of(model, still), [], []
     for key in continuous_keys(model.scene):
         if key.path not in OF_ORBITS or not key.value:
@@ -166,7 +166,7 @@ def error_of_orbit(tables, step):
             continue
         lines = {}
         for k, one in moved(model, key, step * abs(key.value)).items():
-            there = SteadyOrbit.of(one, settle(one))
+            there = SteadyOrbit.of(one, solve_equilibrium(one))
             real, damping, _, _ = there.line
             lines[k] = np.array([real, damping * there.solved.problem.speed])
         other = complex(*derivative(lines, step * abs(key.value)))
@@ -184,7 +184,7 @@ def seconds(work) -> float:
 def further_equilibria(scene) -> int:
     """Solutions for an equilibrium that derivatives by all keys begin."""
     model = model_of(scene)
-    still, begun, plain = settle(model), 0, System.settle
+    still, begun, plain = solve_equilibrium(model), 0, System.settle
 
     def counted(self, *given, **options):
         nonlocal begun

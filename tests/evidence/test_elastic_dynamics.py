@@ -20,7 +20,7 @@ from raceway.elastic.iterative_solver import sticking
 from raceway.elastic.ring import from_orbit
 from raceway.integrators.central_difference import CentralDifference
 from raceway.integrators.newmark import Newmark
-from raceway.testing import run, settle
+from raceway.testing import run, solve_equilibrium
 from validation.block import Block
 from validation.command_line import EXAMPLES
 from validation.impact import expected, model, structural_compliances
@@ -127,7 +127,7 @@ def bearing():
     """Model and the start on its orbit."""
     scene = scene_from_dict(BEARING)
     built = build_model(scene, make_plan(scene))
-    found = settle(built)
+    found = solve_equilibrium(built)
     orbit = steady_orbit(built.bearing.orbiting(built.system), built.excitation.period_s, found.displacement)
     return built, found, from_orbit(built.system, orbit, 0.0)
 

@@ -12,7 +12,7 @@ from raceway.contact_laws.film import Film
 from raceway.contact_laws.lubricant import GRADES, Walther
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.scene.tables import TIME_CONSTANTS
 from validation.film import (
@@ -240,7 +240,7 @@ def test_cost(claim):
         for law in laws:
             one = scene(law, integrator={"turns": 40, "steps_per_turn": 360}, kinematics={"ball_inertia": inertia})
             model = build_model(one, make_plan(one))
-            ready.append((model, settle(model)))
+            ready.append((model, solve_equilibrium(model)))
         for _ in range(9):
             for (model, still), times in zip(ready, spent, strict=True):
                 begun = time.process_time()

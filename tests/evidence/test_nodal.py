@@ -13,7 +13,7 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.patches.friction import Friction
-from raceway.testing import model_of, run, settle, settled, simulate
+from raceway.testing import model_of, run, solve_equilibrium, settled, simulate
 from validation.condensed import largest, quantities, tables
 from validation.reference.mindlin import Mindlin
 from validation.single import single
@@ -221,7 +221,7 @@ def test_gyroscopic_moments(claim):
 
 
 def dynamic_stiffness(model):
-    equilibrium = settle(model)
+    equilibrium = solve_equilibrium(model)
     motion = simulate(model, equilibrium, lambda what, done, total: None)
     return float(model.scene.identifier.method.identify([motion.record], equilibrium, model).equivalent_stiffness)
 

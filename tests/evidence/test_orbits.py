@@ -21,7 +21,7 @@ from raceway.core.time.schemes import integrate
 from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.scene.inner_ring import ring_inertia
-from raceway.testing import model_of, run, settle, simulate
+from raceway.testing import model_of, run, solve_equilibrium, simulate
 from raceway.testing.systems import SPEED, linear_system, motion
 from validation import followed, several
 from validation.crossed import compared, crossed
@@ -74,7 +74,7 @@ def test_against_transients(claim):
 def least_ms(tables, repeats):
     """From the equilibrium to the recorded motion, the start on the orbit included; the first call may compile."""
     model = model_of(tables)
-    equilibrium, spent = settle(model), []
+    equilibrium, spent = solve_equilibrium(model), []
     for _ in range(repeats + 1):
         begun = time.process_time_ns()
         simulate(model, equilibrium)
@@ -134,7 +134,7 @@ def monodromy(tables, result):
     force = (swinging if tables["excitation"]["kind"] == "unidirectional" else turning)(rig_force(12000.0), w)
     record = result.simulation.record
     q, v = record.displacement[-1].copy(), record.velocity[-1].copy()
-    q[system.free == 0.0] = settle(model).displacement[system.free == 0.0]
+    q[system.free == 0.0] = solve_equilibrium(model).displacement[system.free == 0.0]
     return shooting(ring, system.mass, system.load, force, system.free, 2.0 * np.pi / w, q, v)[2]
 
 
@@ -180,7 +180,7 @@ def test_no_motion_grows_out_of_rest(claim):
         scene(600.0, "free", 13500.0, True, excitation=ONE_WAY), scene(400.0, "locked", 15000.0, True, excitation=ONE_WAY)
     ):  # fmt: skip
         model = model_of(tables)
-        equilibrium, system = settle(model), by_address(model.system)
+        equilibrium, system = solve_equilibrium(model), by_address(model.system)
         speed, q = 2.0 * np.pi / model.excitation.period_s, equilibrium.displacement
         problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
         mesh = mesh_of(problem, highest_order(problem, equilibrium.stiffness))

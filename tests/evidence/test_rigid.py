@@ -15,7 +15,7 @@ from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
 from raceway.studies.article.study import SOLVER_SPEEDS, TRENDS
-from raceway.testing import b7206c, model_of, settle, settled, simulate
+from raceway.testing import b7206c, model_of, solve_equilibrium, settled, simulate
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
 from validation.expected_values import TABLE, axial_row, secant
@@ -117,7 +117,7 @@ def test_ball_pass(claim):
     for balls, tilt in product((4, 7, 12), ("locked", "free")):
         tables = passing_scene(bearing={"ball_count": balls}, supports={"tilt": tilt})
         model = model_of(tables)
-        record, expected, static = simulate(model, settle(model)).whole, passing_hz(model), static_amplitude(tables)
+        record, expected, static = simulate(model, solve_equilibrium(model)).whole, passing_hz(model), static_amplitude(tables)
         for direction in (0, 1):
             motion = record.displacement[:, direction : direction + 1]
             found = sharpest(record.time, motion[:, 0], expected, 0.03)
@@ -182,7 +182,7 @@ def test_friction_never_gives_energy_back(claim):
         for integrator in ("newmark", "generalized_alpha", "central_difference", "quasi_static"):
             steps = 360 if integrator == "central_difference" else 120
             model = model_of(rubbing(friction, tilt, integrator, steps))
-            whole = simulate(model, settle(model)).whole
+            whole = simulate(model, solve_equilibrium(model)).whole
             energy = friction_energy(model.system, whole)
             assert whole.schedule.stride == 1 and energy.stored.min() >= 0.0
             back.append(-np.diff(energy.lost).min() + 0.0)
@@ -195,7 +195,7 @@ def test_energy_balances_with_friction(claim):
     drifts = []
     for friction in (0.003, 0.03, 0.3, 1.0):
         model = model_of(rubbing(friction, "free", "newmark", 360))
-        drifts.append(energy_balance(model.system, simulate(model, settle(model)).whole).drift)
+        drifts.append(energy_balance(model.system, simulate(model, solve_equilibrium(model)).whole).drift)
     quantity = "friction 0.003 to 1, 360 Newmark steps a turn: drift of kinetic + stored + lost - work"
     source = "first law; a start of sliding is resolved to a step, in which the force turns by 1.7 %: a third of that"
     claim(quantity, max(drifts), at_most=5e-3, basis="closed form", source=source)

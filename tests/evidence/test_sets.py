@@ -10,7 +10,7 @@ import pytest
 
 from raceway import build_model, load_scene, make_plan, run, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, press_together, warmed
@@ -47,7 +47,7 @@ def ground(word, preset="B7206E"):
 def factors(word, preset):
     """Preload, axial and radial stiffness of a set whose rows were all ground for one preload."""
     model = built(ground(word, preset))
-    now = settle(model)
+    now = solve_equilibrium(model)
     return np.array([preload_table(model, now)["mounted_n"], now.stiffness[0, 0], now.stiffness[1, 1]])
 
 
@@ -75,7 +75,7 @@ def test_factors_over_a_pair(claim):
 
 def test_rows_in_tandem(claim):
     words = {"DT": 0.63, "TT": 0.48, "QT": 0.40}
-    single, *more = (settle(built(scene_of(word, load={"axial": PRELOAD}))).displacement[0] for word in ("single", *words))
+    single, *more = (solve_equilibrium(built(scene_of(word, load={"axial": PRELOAD}))).displacement[0] for word in ("single", *words))
     off = max(abs(one / single / printed - 1.0) for one, printed in zip(more, words.values(), strict=True))
     quantity = "deflection of 2, 3 and 4 rows in tandem over that of one: largest relative difference"
     claim(quantity, off, at_most=0.05, basis="published", source=MAKERS)
@@ -89,7 +89,7 @@ def test_lift_off(claim):
     ratios, off = [], []
     for word, printed in (("DB", 2.95), ("TBT", 5.91), ("QBC", 5.91), ("QBT", 8.87)):
         model = built(ground(word))
-        load = preload_table(model, settle(model))["lift_off_axial_n"][0]
+        load = preload_table(model, solve_equilibrium(model))["lift_off_axial_n"][0]
         ratios.append(abs(load / PRELOAD / printed - 1.0))
         sides, places = zip(*ground(word).bearing.rows, strict=True)
         reference = RowSet([ring() for _ in sides], list(sides), list(places), [press(ring(), PRELOAD)] * len(sides))
@@ -105,7 +105,7 @@ def test_different_and_warm_rows(claim):
     angles, sides, places, rpm = (25.0, 15.0, 15.0), [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], 15000.0
     bearing = {"preload": PRELOAD, "row": [{"contact_angle_deg": angle} for angle in angles]}
     kinematics, load = {"ball_inertia": True, "spin_speed_rpm": rpm}, {"axial": 60.0, "radial": [50.0, 20.0]}
-    now = settle(built(scene_of("TBT", bearing=bearing, kinematics=kinematics, load=load)))
+    now = solve_equilibrium(built(scene_of("TBT", bearing=bearing, kinematics=kinematics, load=load)))
     still = [ring(angle) for angle in angles]
     shifts = [press_together(still[:2], PRELOAD)] * 2 + [press(still[2], PRELOAD)]
     reference = RowSet([ring(angle, rpm) for angle in angles], sides, places, shifts)
@@ -123,7 +123,7 @@ def test_different_and_warm_rows(claim):
     rings = [warmed(ring(), strains, side, x) for side, x in zip(sides, places, strict=True)]
     reference = RowSet(rings, sides, places, shifts)
     expected = reference.rows(reference.settle(np.zeros(3)))[2]
-    off = abs(preload_table(model, settle(model))["running_n"] / expected - 1.0)
+    off = abs(preload_table(model, solve_equilibrium(model))["running_n"] / expected - 1.0)
     quantity = "TBT, inner rings +14 K, outer +5 K, balls +11 K: running preload, relative difference"
     claim(quantity, off, at_most=1e-5, **RING)
 

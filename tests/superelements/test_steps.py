@@ -12,7 +12,7 @@ from raceway.elastic.ring import at_rest
 from raceway.elastic.superelement import Closed
 from raceway.integrators.generalized_alpha import GeneralizedAlpha
 from raceway.integrators.newmark import Newmark
-from raceway.testing import settle
+from raceway.testing import solve_equilibrium
 from tests.superelements.bearings import built
 
 #: 15 000 r/min: a turn of 4 ms.  A force of a tenth of the load that acts at once.
@@ -29,7 +29,7 @@ STEP = 1e-5
 def stepped(reduced, **tables):
     """A settled model; the equilibrium itself is the same to 1e-11, see test_statics."""
     model = built(**TURNING | tables)
-    settle(model)
+    solve_equilibrium(model)
     system = model.bearing.bearing.system
     if not reduced:
         system.solver = LinearSolver(system.assembly, system.contact, model.bearing.bearing.setup.modulus)

@@ -16,7 +16,7 @@ from raceway import SceneError, scene_from_dict
 from raceway.bodies.model import build_model
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 
 N = 10.0 / 9.0
@@ -38,7 +38,7 @@ def found(clearance=0.0, growth=0.0, force=FORCE, bearing=None, **tables):
     changed["kinematics"] = {"ball_inertia": False, "radial_expansion": growth, **tables.get("kinematics", {})}
     scene = scene_from_dict({**changed, "load": {"radial": [force, 0.0]}}, REGISTRY)
     model = build_model(scene, make_plan(scene))
-    return model, settle(model)
+    return model, solve_equilibrium(model)
 
 
 def series(length=LENGTH):

@@ -16,7 +16,7 @@ from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.framework.shown import read_in
 from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, values
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.static_gradient import NoDerivative, static_gradient
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import Key, continuous_keys, key_of, with_number
@@ -219,7 +219,7 @@ class TableResiduals:
         for scene in self.scenes:
             loaded = with_free(scene, self.free, at)
             model = build_model(loaded, make_plan(loaded))
-            self._answers.append(Gradients(model, settle(model)))
+            self._answers.append(Gradients(model, solve_equilibrium(model)))
         rows = [self._values(answer) for answer in self._answers]
         return {name: np.array([row[name] for row in rows]) for name in self.measured.values}
 

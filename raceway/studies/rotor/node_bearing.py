@@ -16,7 +16,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.bodies.mounting import evaluate_following
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.plugins.excitations import harmonic_load
@@ -77,7 +77,7 @@ class NodeBearing:
             kinematics = attrs.evolve(self.scene.kinematics, spin_speed_rpm=speed * 30.0 / pi)
             scene = attrs.evolve(self.scene, kinematics=kinematics)
             model = build_model(scene, make_plan(scene))
-            self._equilibria[speed] = model, settle(model)
+            self._equilibria[speed] = model, solve_equilibrium(model)
         return self._equilibria[speed]
 
     def dynamic_stiffness(self, frequency: float, speed: float) -> np.ndarray:
@@ -110,7 +110,7 @@ class NodeBearing:
         full[self.moving] = load
         scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, full))
         model = build_model(scene, make_plan(scene))
-        record = simulate(model, settle(model)).record
+        record = simulate(model, solve_equilibrium(model)).record
         turning = np.exp(-1j * speed * record.time) * (2.0 / len(record.time))
         return np.asarray(turning @ record.displacement[:, self.moving])
 

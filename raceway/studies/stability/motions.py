@@ -18,7 +18,7 @@ from raceway.core.ring.orbit import at_time, from_orbit, steady_orbit
 from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.recording import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED
@@ -290,7 +290,7 @@ def orbit_at_the_safe_limit(rows: Rows, bench: Bench, integrator: str) -> None:
     if scene.excitation is None or scene.excitation.period_s is None:
         return  # of a user's scene: without a period there is no orbit
     period = scene.excitation.period_s
-    orbit = steady_orbit(system, period, settle(model).displacement, samples=129)
+    orbit = steady_orbit(system, period, solve_equilibrium(model).displacement, samples=129)
     limit = min(system.damped_time_step(k, c) for k, c in zip(orbit.stiffness, orbit.damping, strict=True))
     steps = ceil(period / (SAFETY * limit))
     states = [system.evaluate(q, ball=ball) for q, ball in zip(orbit.displacement, orbit.ball, strict=True)]

@@ -22,7 +22,7 @@ from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.closed_form import series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient
@@ -127,7 +127,7 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
     @cache
     def settled() -> tuple[Model, Equilibrium]:
         model = bench.model()
-        return model, settle(model)
+        return model, solve_equilibrium(model)
 
     def axial() -> float:
         model, equilibrium = settled()
@@ -149,7 +149,7 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
         model = bench.changed({"kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}).model()
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
         near, words = axial_displacement(model), "axial displacement [m]"
-        rows.check(words, lambda: float(settle(model).displacement[0]), why, near=near, within=1e-6)
+        rows.check(words, lambda: float(solve_equilibrium(model).displacement[0]), why, near=near, within=1e-6)
 
 
 def _too_stiff(rows: Rows, bench: Bench) -> bool:
@@ -270,7 +270,7 @@ def points_at_rest(rows: Rows, bench: Bench) -> None:
 def _loaded_at_rest(bench: Bench) -> tuple[Any, Motion, Equilibrium]:
     """Elastic bodies at rest, as a force meets them."""
     model = bench.model()
-    equilibrium, system = settle(model), cast("Any", model.system)
+    equilibrium, system = solve_equilibrium(model), cast("Any", model.system)
     return system, at_rest(system, equilibrium.displacement, equilibrium.ball, False), equilibrium
 
 

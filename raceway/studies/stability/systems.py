@@ -25,7 +25,7 @@ from raceway.core.ring.system import System, surrogate
 from raceway.framework.duties import reach_of, renews
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.axes import tables_at
 from raceway.scene.changes import without
@@ -124,7 +124,7 @@ class Bench:
     def still(self) -> Still:
         """The bearing in equilibrium, nothing exciting it."""
         model = self.model()
-        equilibrium = settle(model)
+        equilibrium = solve_equilibrium(model)
         system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
         damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
         limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)

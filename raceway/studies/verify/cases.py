@@ -26,7 +26,7 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import Entry, Registry
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import settle
+from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Case, Number
 from raceway.scene.reading import scene_from_dict
@@ -284,12 +284,12 @@ def _model(scene: Scene) -> Model:
 
 def _hertz(model: Model) -> dict[str, float]:
     """Largest peak pressure of each race by exact Hertz [MPa]."""
-    force, z = settle(model).contact_force, model.system.ball_count
+    force, z = solve_equilibrium(model).contact_force, model.system.ball_count
     loads = {"inner": force[:z].max(), "outer": force[z:].max()}
     return {race: 1e-6 * float(getattr(model, race).peak_pressure(load)) for race, load in loads.items()}
 
 
 def _nodal(model: Model) -> dict[str, float]:
     """Largest pressure at a surface point of each race [MPa]."""
-    columns = model.bearing.ball_columns(model, settle(model))
+    columns = model.bearing.ball_columns(model, solve_equilibrium(model))
     return {race: 1e-6 * float(np.max(columns[f"peak_pressure_nodal_{race}_pa"])) for race in ("inner", "outer")}
