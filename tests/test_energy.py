@@ -8,7 +8,7 @@ import pytest
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import cumulative, energy_balance
-from raceway.testing import model_of, solve_equilibrium, simulate
+from raceway.testing import model_of, simulate, solve_equilibrium
 from validation.scenes import rotating
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway import StabilityError, scene_from_dict
-from raceway.testing import b7206c, run, solve_equilibrium, simulate
+from raceway.testing import b7206c, run, simulate, solve_equilibrium
 
 #: A force that lifts balls off and presses others with many times the preload.
 HEAVY = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1500.0}

@@ -18,7 +18,7 @@ from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
 from raceway.integrators.newmark import Newmark
 from raceway.studies.stability.catalogue import BASE
-from raceway.testing import Registry, model_of, solve_equilibrium, settled, simulate
+from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 from validation import orders
 from validation.scenes import rotating
 

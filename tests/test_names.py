@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 import raceway as rw
-from raceway.pipeline.settle import race_of
+from raceway.pipeline.equilibrium import race_of
 from raceway.points.dataset import write_netcdf
 from raceway.points.plot import select
 from raceway.points.store import open_store

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
-from raceway.pipeline.settle import peak
+from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import hann_line
 from raceway.points import precision as module
 from raceway.points.engine import measured

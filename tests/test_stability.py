@@ -16,7 +16,7 @@ import pytest
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.studies.stability import scenes, systems
 from raceway.studies.stability.catalogue import BASE, SCENES, catalogue, laws_with, transient, with_law
 from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Rows, measured, rows_of, stability

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import raceway as rw
 from raceway import Scene, make_plan
-from raceway.testing import solve_equilibrium, simulate
+from raceway.testing import simulate, solve_equilibrium
 
 #: B7206C as the scenes here have it.
 BALLS, DIAMETER, PITCH, CONFORMITY, ANGLE = 12, 9.525e-3, 46e-3, 0.522, pi / 12.0

@@ -115,7 +115,7 @@ def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float |
     """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
     from raceway import build_model, load_scene, make_plan
     from raceway.core.ring.kernels.layout import CAGE
-    from raceway.testing import solve_equilibrium, simulate
+    from raceway.testing import simulate, solve_equilibrium
 
     scene = load_scene(SCENE, changes)
     plan = make_plan(scene, force)

@@ -1,7 +1,7 @@
 """One run: scene, plan, model, equilibrium, motion, identification, result.
 
 run              the order of these steps, and the time that they may take
-settle           static equilibrium under the constant loads; pressures, ball-pass frequencies
+equilibrium      static equilibrium under the constant loads; pressures, ball-pass frequencies
 simulate         how a motion begins, and the motion
 error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides

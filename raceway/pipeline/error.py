@@ -36,7 +36,7 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
 from raceway.planning.recording import fits

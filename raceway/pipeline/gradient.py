@@ -31,7 +31,7 @@ from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System, by_address, surrogate
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.shown import race_words, tilt_words
-from raceway.pipeline.settle import race_of
+from raceway.pipeline.equilibrium import race_of
 from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
 from raceway.scene.continuous import Key, key_of
 from raceway.scene.given import leaves

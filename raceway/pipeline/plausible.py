@@ -35,7 +35,7 @@ from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
-from raceway.pipeline.settle import pressures, solve_equilibrium
+from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.combinations import refuse_what_cannot_run
 from raceway.scene.scene import Scene

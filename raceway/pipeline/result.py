@@ -17,8 +17,8 @@ from raceway.bodies.model import Model
 from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
+from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import NEGLIGIBLE
-from raceway.pipeline.settle import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import plot

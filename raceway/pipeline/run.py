@@ -1,4 +1,4 @@
-"""scene -> plan -> model -> settle -> advance -> identify -> result, within the time and memory of the plan.
+"""scene -> plan -> model -> equilibrium -> motion -> identification -> result, within the time and memory of the plan.
 
 A busy machine ends no run: what is counted is processor time.
 """
@@ -28,6 +28,7 @@ from raceway.core.signals import Identification, Line, lines
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
 from raceway.pipeline.plausible import (
     inertia_warnings,
@@ -37,7 +38,6 @@ from raceway.pipeline.plausible import (
     sliding_warnings,
 )
 from raceway.pipeline.result import Result, band_table
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
 from raceway.planning.implausible import implausible

@@ -1,4 +1,4 @@
-"""From a model and its equilibrium to motion: integrated from its start, or the steady motion that it would settle on, solved for."""
+"""From a model and its equilibrium to motion: integrated from its start, or the steady motion, solved for."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from raceway.core.ring.system import compiled
 from raceway.core.signals import fourier_line, stiffness
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.planning.steady_orbits import searches_orbits

@@ -276,7 +276,7 @@ def _gradient(model: Model, direction: Direction, equilibrium: Equilibrium) -> S
 
 
 def _state(system: System, q: np.ndarray, ball: np.ndarray) -> _State:
-    """As ``raceway.pipeline.settle`` evaluates it: the balance without friction, then slips at which no contact sticks."""
+    """As ``raceway.pipeline.equilibrium`` evaluates it: the balance without friction, then slips at which no contact sticks."""
     balanced = system.without(CAGE, FRICTION)
     contacts = balanced.evaluate(q, ball=ball)
     residual = contacts.force + system.stiffness @ q - system.load

@@ -31,8 +31,8 @@ from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.integrators.newmark import Newmark
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import Result
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables

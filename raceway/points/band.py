@@ -16,9 +16,9 @@ from raceway.framework.doors import door
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, Shown, number, read_in
 from raceway.out.progress import telling
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import UNITS, Gradients, definitions, described, values
 from raceway.pipeline.result import without_nan, write_json
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.plugins.pictures import new_figure

@@ -106,7 +106,7 @@ def values_of(result: Result) -> Tables:
 
 def _loads(result: Result) -> Tables:
     """Of the motion where there is one, else of the equilibrium."""
-    from raceway.pipeline.settle import largest_contacts, motion_table, pressures
+    from raceway.pipeline.equilibrium import largest_contacts, motion_table, pressures
 
     model, z = result.model, result.model.system.ball_count
     if result.simulation is not None:

@@ -25,8 +25,8 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.scene.given import Change, as_given
 from raceway.scene.tables import TIME_CONSTANTS

@@ -23,7 +23,7 @@ from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, by_address, compiled
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.axes import numbers_at
 from raceway.scene.changes import parse_value, with_value

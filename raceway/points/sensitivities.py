@@ -18,9 +18,9 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.shown import Fact, Shown, number
 from raceway.out.progress import telling
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, described, values
 from raceway.pipeline.result import without_nan, write_json
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import OnProgress
 from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan

@@ -43,7 +43,7 @@ _PUBLIC = {
     **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.registry"),
     "Model": "raceway.bodies.model",
     "run": "raceway.pipeline.run",
-    "solve_equilibrium": "raceway.pipeline.settle",
+    "solve_equilibrium": "raceway.pipeline.equilibrium",
     "simulate": "raceway.pipeline.simulate",
 }
 __all__ = sorted([*_PUBLIC, "SUITES", "check", "check_named", "suite_of"])

@@ -30,7 +30,7 @@ def model_of(scene: Scene | dict[str, Any]) -> Model:
 
 def settled(scene: Scene | dict[str, Any]) -> tuple[Model, Equilibrium]:
     """Model and static equilibrium of a scene, or of its tables."""
-    from raceway.pipeline.settle import solve_equilibrium
+    from raceway.pipeline.equilibrium import solve_equilibrium
 
     model = model_of(scene)
     return model, solve_equilibrium(model)

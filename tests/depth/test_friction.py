@@ -9,7 +9,7 @@ import pytest
 from raceway import run
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.testing import b7206c, model_of, solve_equilibrium, simulate
+from raceway.testing import b7206c, model_of, simulate, solve_equilibrium
 
 
 def rubbing(friction=0.03, turns=3, **tables):

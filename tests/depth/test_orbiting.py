@@ -10,8 +10,8 @@ from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
-from raceway.pipeline.settle import ball_pass, ball_pass_table
-from raceway.testing import b7206c, model_of, solve_equilibrium, settled, simulate
+from raceway.pipeline.equilibrium import ball_pass, ball_pass_table
+from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
 

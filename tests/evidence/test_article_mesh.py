@@ -22,7 +22,7 @@ from raceway.bodies.model import build_model
 from raceway.elastic.assembly import Assembly
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.ring import ElasticRing
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.storage.cache_folder import cache_root
 from validation.command_line import EXAMPLES

@@ -20,7 +20,7 @@ from raceway import build_model, load_scene, make_plan
 from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.precision import EXACT, measure_settings
 from raceway.scene.file import read_toml
 from validation import fused_loop, left_out, plan_time

@@ -11,9 +11,9 @@ from raceway import build_model, load_scene, make_plan, scene_from_dict
 from raceway.core.jit import working_processor_time
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, SceneError
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import SteadyOrbit
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.static_gradient import WEIGHTS, NoDerivative, derivative, static_gradient
 from raceway.points.band import band, design, indices
 from raceway.points.sensitivities import sensitivities, sensitivities_of

@@ -11,8 +11,8 @@ from raceway import build_model, make_plan, scene_from_dict
 from raceway.contact_laws.film import Film
 from raceway.contact_laws.lubricant import GRADES, Walther
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.scene.tables import TIME_CONSTANTS
 from validation.film import (

@@ -13,7 +13,7 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.patches.friction import Friction
-from raceway.testing import model_of, run, solve_equilibrium, settled, simulate
+from raceway.testing import model_of, run, settled, simulate, solve_equilibrium
 from validation.condensed import largest, quantities, tables
 from validation.reference.mindlin import Mindlin
 from validation.single import single

@@ -21,7 +21,7 @@ from raceway.core.time.schemes import integrate
 from raceway.integrators.newmark import Newmark
 from raceway.integrators.periodic import Periodic
 from raceway.scene.inner_ring import ring_inertia
-from raceway.testing import model_of, run, solve_equilibrium, simulate
+from raceway.testing import model_of, run, simulate, solve_equilibrium
 from raceway.testing.systems import SPEED, linear_system, motion
 from validation import followed, several
 from validation.crossed import compared, crossed

@@ -15,7 +15,7 @@ from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
 from raceway.studies.article.study import SOLVER_SPEEDS, TRENDS
-from raceway.testing import b7206c, model_of, solve_equilibrium, settled, simulate
+from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
 from validation.expected_values import TABLE, axial_row, secant
@@ -117,7 +117,11 @@ def test_ball_pass(claim):
     for balls, tilt in product((4, 7, 12), ("locked", "free")):
         tables = passing_scene(bearing={"ball_count": balls}, supports={"tilt": tilt})
         model = model_of(tables)
-        record, expected, static = simulate(model, solve_equilibrium(model)).whole, passing_hz(model), static_amplitude(tables)
+        record, expected, static = (
+            simulate(model, solve_equilibrium(model)).whole,
+            passing_hz(model),
+            static_amplitude(tables),
+        )
         for direction in (0, 1):
             motion = record.displacement[:, direction : direction + 1]
             found = sharpest(record.time, motion[:, 0], expected, 0.03)

@@ -10,7 +10,7 @@ import pytest
 
 from raceway import build_model, load_scene, make_plan, run, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from validation.reference.mounted import FORCE, approach, axial, row, secant
 from validation.reference.ring import Ring
 from validation.reference.row_set import RowSet, press, press_together, warmed
@@ -75,7 +75,9 @@ def test_factors_over_a_pair(claim):
 
 def test_rows_in_tandem(claim):
     words = {"DT": 0.63, "TT": 0.48, "QT": 0.40}
-    single, *more = (solve_equilibrium(built(scene_of(word, load={"axial": PRELOAD}))).displacement[0] for word in ("single", *words))
+    single, *more = (
+        solve_equilibrium(built(scene_of(word, load={"axial": PRELOAD}))).displacement[0] for word in ("single", *words)
+    )
     off = max(abs(one / single / printed - 1.0) for one, printed in zip(more, words.values(), strict=True))
     quantity = "deflection of 2, 3 and 4 rows in tandem over that of one: largest relative difference"
     claim(quantity, off, at_most=0.05, basis="published", source=MAKERS)

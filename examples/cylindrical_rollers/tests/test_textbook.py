@@ -15,8 +15,8 @@ from scipy.optimize import brentq
 from raceway import SceneError, scene_from_dict
 from raceway.bodies.model import build_model
 from raceway.framework.registry import Registry
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 
 N = 10.0 / 9.0

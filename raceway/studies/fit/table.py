@@ -15,8 +15,8 @@ from raceway.bodies.model import build_model
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.framework.shown import read_in
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, values
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.pipeline.static_gradient import NoDerivative, static_gradient
 from raceway.planning.plan import make_plan
 from raceway.scene.continuous import Key, continuous_keys, key_of, with_number

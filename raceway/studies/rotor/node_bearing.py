@@ -16,7 +16,7 @@ from raceway.bodies.model import Model, build_model
 from raceway.bodies.mounting import evaluate_following
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.plugins.excitations import harmonic_load

@@ -18,7 +18,7 @@ from raceway.core.ring.orbit import at_time, from_orbit, steady_orbit
 from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.recording import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED

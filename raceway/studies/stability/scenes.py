@@ -22,7 +22,7 @@ from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
-from raceway.pipeline.settle import solve_equilibrium
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.closed_form import series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient

@@ -24,8 +24,8 @@ from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.system import System, surrogate
 from raceway.framework.duties import reach_of, renews
 from raceway.framework.registry import Registry
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.axes import tables_at
 from raceway.scene.changes import without

@@ -25,8 +25,8 @@ from raceway.core.record import Motion, Schedule
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import Entry, Registry
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Case, Number
 from raceway.scene.reading import scene_from_dict

@@ -14,7 +14,7 @@ from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
 from raceway.core.contact.hertz import axis_shear, axis_stresses
 from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
 from raceway.elastic.stress import cells_near
-from raceway.pipeline.settle import pressures
+from raceway.pipeline.equilibrium import pressures
 from raceway.plugins.pictures import new_figure, save_figure
 from raceway.storage.files import write_whole
 from raceway.studies.view.pictures import new_plotter, png, pyvista_of, quietly

@@ -21,9 +21,9 @@ from raceway.framework.duties import traits_of
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, largest_facts, race_words
 from raceway.out.progress import ShowProgress, telling
+from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.pipeline.settle import equilibrium_table, largest_contacts
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.pictures import given_axes, picture, save_figure
 from raceway.plugins.system_libraries import refuse_pictures

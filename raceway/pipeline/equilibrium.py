@@ -45,7 +45,7 @@ def solve_equilibrium(
     Parameters
     ----------
     near : (5,) equilibrium of a similar model, which contacts at surface points start from; others take microseconds
-    on_progress : called as ``on_progress(what, done, total)`` while elastic bodies settle; ``total`` is 0: nobody knows
+    on_progress : called as ``on_progress(what, done, total)`` while elastic bodies are solved; ``total`` is 0: nobody knows
 
     Raises
     ------
