@@ -75,13 +75,14 @@ def _compared(folder: Path, name: str) -> Row:
     if not stored.exists():
         write_whole(json.dumps(_result(folder / "tree", path, changes)).encode(), stored)
     before, after = (dict(_numbers(result)) for result in (json.loads(stored.read_text()), _result(_HERE, path, changes)))
-    differing = {key: _difference(before.get(key), after.get(key)) for key in {**before, **after}}
-    largest = max(differing.values(), default=math.inf)
+    differing = {key: _difference(number, after.get(key)) for key, number in before.items()}
+    largest, added = max(differing.values()), len(after.keys() - before.keys())
     first = next((key for key, difference in differing.items() if difference > 0.0), "")
-    note = f"{first}: {before.get(first, 'absent')} -> {after.get(first, 'absent')}" if first else "bit for bit"
+    note = f"{first}: {before[first]} -> {after.get(first, 'absent')}" if first else "bit for bit"
+    note += f", {added} are new" if added else ""
     command = " ".join([f"raceway run examples/{scene}.toml", *(f"--set {change}" for change in changes)])
     ok = largest <= _LIMIT and after["exit code"] == 0
-    return Row(name, largest, f"at most {_LIMIT:g}", ok, command, f"{len(after)} numbers, {note}")
+    return Row(name, largest, f"at most {_LIMIT:g}", ok, command, f"{len(before)} numbers, {note}")
 
 
 def _result(tree: Path, scene: Path, changes: list[str]) -> Any:
