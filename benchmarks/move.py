@@ -20,7 +20,7 @@ from pathlib import Path
 import attrs
 
 #: Kinds of files in which references are rewritten.
-TEXTS = (".py", ".toml", ".md", ".json", ".cfg", ".yml", ".tmpl", "")
+TEXTS = (".py", ".toml", ".md", ".json", ".cfg", ".yml", ".tmpl", ".txt", "")
 
 
 def dotted(path: str) -> str:

@@ -36,7 +36,7 @@ from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.tables import Tables
 from raceway.testing.integrator import FromPython, has_both
-from raceway.testing.scenes import settled
+from raceway.testing.scenes import b7206c, settled
 from raceway.testing.suite import ConformityError, Suite, check_shape, duty, require
 
 if TYPE_CHECKING:
@@ -56,11 +56,11 @@ Changes = dict[str, Tables]
 Shows = Callable[[Model, Equilibrium, np.ndarray], bool]
 
 #: For kinds that give no scene of their own: 30 mm bore under a skew load and a turning force.
-_USUAL: Tables = {
-    "title": "conformance", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]},
-    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
-    "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90}, "kinematics": {"ball_inertia": False},
-}  # fmt: skip
+_USUAL: Tables = b7206c(
+    title="conformance", load={"radial": [200.0, 0.0]}, kinematics={"ball_inertia": False},
+    excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+    integrator={"kind": "newmark", "turns": 2, "steps_per_turn": 90},
+)  # fmt: skip
 
 
 def _moves(_model: Model, equilibrium: Equilibrium, plain: np.ndarray) -> bool:

@@ -54,9 +54,9 @@ def scale_of(unit: str, length: float, force: float, time: float) -> float:
 
 
 #: Contacts of a small ball bearing: curvatures 1/m, contact modulus Pa, Hertz factor N/m^1.5, load N, area of a point m2.
-_CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA = 5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9
-#: Entraining speed m/s, Young's modulus Pa, Poisson's ratio.
-_SPEED, _YOUNG, _POISSON = 8.0, 2.1e11, 0.29
+_CONTACT = (5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9)
+#: Entraining speed m/s, load N, Young's modulus Pa, Poisson's ratio.
+_SPEED, _LOAD, _YOUNG, _POISSON = 8.0, 300.0, 2.1e11, 0.29
 #: Units of all arrays that a law may get.
 _PAIR_UNITS = {
     "curvature_a": "1/m", "curvature_b": "1/m", "contact_modulus": "Pa", "hertz_factor": "N/m^1.5", "reference_load": "N",
@@ -68,9 +68,7 @@ _PAIR_UNITS = {
 def example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
     """n running contacts, each within a factor two of those of a bearing of 30 mm bore; resultants have no ``area``."""
     rng = np.random.default_rng(seed)
-    spread = rng.uniform(0.7, 1.4, (6, n))
-    values = (_CURVATURE_A, _CURVATURE_B, _MODULUS, _FACTOR, _LOAD, _AREA)
-    pairs = ContactPairs(*(value * row for value, row in zip(values, spread, strict=True)))
+    pairs = ContactPairs(*(np.array(_CONTACT)[:, None] * rng.uniform(0.7, 1.4, (6, n))))
     speed, load = _SPEED * rng.uniform(0.7, 1.4, n), _LOAD * rng.uniform(0.7, 1.4, n)
     young, poisson = np.full(n, _YOUNG), np.full(n, _POISSON)
     return attrs.evolve(
@@ -89,9 +87,9 @@ def _third(pairs: ContactPairs) -> ContactPairs:
     return attrs.evolve(pairs, **{name: array[2:3] for name, array in _arrays(pairs).items()})
 
 
-def discretisation_of(law: ContactLaw) -> str:
-    """What the suite drives a law as: resultants where it knows them."""
-    return "resultant" if "resultant" in law.discretisations else "nodal"
+def _pairs_of(law: ContactLaw, n: int, nodal: bool = False) -> ContactPairs:
+    """What the suite drives a law at: resultants where it knows them."""
+    return example_pairs(n, nodal=nodal or "resultant" not in law.discretisations)
 
 
 @attrs.define(eq=False)
@@ -122,13 +120,10 @@ class Driven:
         return force, d_gap, d_rate, new
 
 
-def drive(law: ContactLaw, n: int, discretisation: str = "") -> Driven:
-    """A law built for n example contacts."""
-    return _driven(law, example_pairs(n, nodal=(discretisation or discretisation_of(law)) == "nodal"))
-
-
-def _driven(law: ContactLaw, pairs: ContactPairs) -> Driven:
-    return Driven(law, law.kernel(), np.ascontiguousarray(law.build(pairs), dtype=float))
+def drive(law: ContactLaw, n: int, nodal: bool = False, pairs: ContactPairs | None = None) -> Driven:
+    """A law built for n example contacts, or for others."""
+    params = law.build(_pairs_of(law, n, nodal) if pairs is None else pairs)
+    return Driven(law, law.kernel(), np.ascontiguousarray(params, dtype=float))
 
 
 def _along(driven: Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
@@ -165,7 +160,7 @@ class ContactLawSuite(Suite):
 
     @duty("build(pairs) returns (n, k) finite parameters, a row for each contact")
     def test_parameters(self, law: ContactLaw) -> None:
-        pairs = example_pairs(7, nodal=discretisation_of(law) == "nodal")
+        pairs = _pairs_of(law, 7)
         params = np.asarray(law.build(pairs))
         require(params.ndim == 2 and len(params) == 7, f"build() of 7 contacts returns shape {params.shape}, not (7, k)")
         require(params.dtype == np.float64, f"build() returns {params.dtype}, not float64")
@@ -182,7 +177,7 @@ class ContactLawSuite(Suite):
         require(type(renewed) is bool, f"`renewed` = {renewed!r} must be True or False")
         for name in ("reach", "report"):
             require(renewed or not hasattr(law, name), f"{name}() is called for laws with `renewed` = True only")
-        pairs = example_pairs(9, nodal=discretisation_of(law) == "nodal")
+        pairs = _pairs_of(law, 9)
         assert pairs.entraining_speed is not None and pairs.load is not None, "as made above"
         standstill = attrs.evolve(pairs, entraining_speed=None, load=None)
         resting, running = np.asarray(law.build(standstill)), np.asarray(law.build(pairs))
@@ -306,7 +301,7 @@ class ContactLawSuite(Suite):
         lambda law: "" if law.discretisations == {"resultant", "nodal"} else "one discretisation",
     )
     def test_pressures(self, law: ContactLaw) -> None:
-        driven, h = drive(law, 64, "nodal"), 1e-6 * self.depth
+        driven, h = drive(law, 64, nodal=True), 1e-6 * self.depth
         approaches = np.linspace(0.01, 1.0, 100) * self.depth
         outside = driven(1e-9)
         require(not outside[0].any() and not outside[1].any(), "a pressure or a derivative outside contact")
@@ -384,12 +379,12 @@ class ContactLawSuite(Suite):
             other = attrs.evolve(instance, **options)
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
-        pairs = example_pairs(64, nodal=discretisation_of(law) == "nodal")
+        pairs = _pairs_of(law, 64)
         factors = {name: scale_of(unit, length, force, time) for name, unit in _PAIR_UNITS.items()}
         scaled = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
         gap, rate = self._random(7, (20, 64), 0.3)
-        forces, _ = _along(_driven(law, pairs), gap, rate, 1e-5)
-        others, _ = _along(_driven(other, scaled), gap * length, rate * length / time, 1e-5 * time)
+        forces, _ = _along(drive(law, 64, pairs=pairs), gap, rate, 1e-5)
+        others, _ = _along(drive(other, 64, pairs=scaled), gap * length, rate * length / time, 1e-5 * time)
         area = 1.0 if "resultant" in law.discretisations else length**2
         off = np.abs(others * area / force - forces).max() / forces.max()
         words = "in other units: a dimensional number hides in"
