@@ -32,7 +32,7 @@ from numba.core.registry import CPUDispatcher
 
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.cache_folder import current_folder
-from raceway.storage.kernel_files import FilesOfKernel, KernelFolder, opened
+from raceway.storage.kernel_files import FilesOfKernel, OpenFolder, opened
 
 if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(
@@ -67,10 +67,10 @@ def take_compile_seconds() -> float:
 
 
 @cache
-def kernel_folder() -> KernelFolder | None:
+def kernel_folder() -> OpenFolder | None:
     """The folder that this process reads and writes compiled kernels in; None when there is none."""
     found = opened(current_folder())
-    if isinstance(found, KernelFolder):
+    if isinstance(found, OpenFolder):
         return found
     warnings.warn(
         f"compiled kernels cannot be kept in {current_folder()} ({found}); compiling in memory, which costs some ten seconds "

@@ -22,14 +22,14 @@ _DIGEST = ".digest"
 
 
 @attrs.frozen
-class KernelFolder:
+class OpenFolder:
     """A folder that numba reads and writes; ``unwritable`` says why it only stands for one that cannot be written, or is ""."""
 
     path: Path
     unwritable: str = ""
 
 
-def opened(folder: Path) -> KernelFolder | str:
+def opened(folder: Path) -> OpenFolder | str:
     """The folder to use for compiled kernels, or why there is none."""
     if fault := refusal(folder):
         return fault
@@ -38,12 +38,12 @@ def opened(folder: Path) -> KernelFolder | str:
         with tempfile.TemporaryFile(dir=folder) as probe:
             probe.write(b"raceway" * 1024)
             probe.flush()
-        return KernelFolder(folder)
+        return OpenFolder(folder)
     except OSError as why:
         reason = why.strerror or str(why)
     with suppress(OSError):
         if any(folder.iterdir()):
-            return KernelFolder(_linked(folder), reason)
+            return OpenFolder(_linked(folder), reason)
     return reason
 
 
