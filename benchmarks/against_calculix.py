@@ -110,7 +110,7 @@ def groove_deck(load: float, nodes: float, approach: float, element: str = "C3D8
 def scene_deck(path: Path) -> str:
     """CalculiX's input for the bearing of a scene with [mesh]: its loads, tilt locked, seats rigid."""
     from raceway import load_scene
-    from raceway.bodies.meshing import mesh_scene, scene_mesher
+    from raceway.bodies.mesh import mesh_scene, scene_mesher
     from raceway.core.contact.hertz import contact_modulus
 
     scene = load_scene(path)

@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.kernel import least
 from raceway import load_scene
 from raceway.bodies.basis import make_basis
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import mesh_scene
 from raceway.core.contact.laws import linear
 from raceway.core.record import Recorder, Schedule, State
 from raceway.core.threads import ThreadPool, usable_cores

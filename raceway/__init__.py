@@ -2,7 +2,6 @@
 
 cli            the command line: ``raceway``
 ross           bearings inside rotors of the program ROSS
-front          what ``import raceway`` offers for one scene: run, plan, check, evolve
 studies        many runs made into one answer, a folder a study, each with its command
 points         one scene at many points: sweeps, comparisons, precision, bands, branches
 out            how an answer is shown: tables, pages, progress
@@ -56,10 +55,7 @@ from typing import Any
 __version__ = "0.1.0"
 
 _MODULES = {
-    "raceway.front.run": "run",
-    "raceway.front.plan": "plan ScenePlan",
-    "raceway.front.check": "check Check",
-    "raceway.front.evolve": "evolve",
+    "raceway.pipeline.front": "run",
     "raceway.points.compare": "compare Comparison",
     "raceway.points.sweep": "sweep",
     "raceway.points.follow": "follow",
@@ -67,8 +63,7 @@ _MODULES = {
     "raceway.points.band": "band Band",
     "raceway.points.sensitivities": "sensitivities Sensitivities",
     "raceway.studies.fit.identify": "identify Identified",
-    "raceway.studies.fit.fit": "fit",
-    "raceway.studies.fit.fitted": "Fitted",
+    "raceway.studies.fit.fit": "fit Fitted",
     "raceway.studies.rotor.export": "export_ross export_coefficients RossTable CoefficientFile",
     "raceway.studies.view.view": "view View",
     "raceway.studies.catalogue.infer": "infer",
@@ -78,9 +73,9 @@ _MODULES = {
     "raceway.points.branch": "Followed",
     "raceway.scene.catalogue": "Preset",
     "raceway.scene.scene": "Scene",
-    "raceway.scene.file": "load_scene",
+    "raceway.scene.inputs": "load_scene evolve",
     "raceway.scene.reading": "scene_from_dict",
-    "raceway.planning.plan": "make_plan",
+    "raceway.planning.plan": "plan ScenePlan check Check make_plan",
     "raceway.bodies.model": "build_model",
     "raceway.pipeline.result": "Result",
     "raceway.framework.hookspecs": "hookimpl",

@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 
 from raceway import ConvergenceError, Mistake, make_plan
-from raceway.bodies.rigid.build import RigidBearing
-from raceway.bodies.rigid.kind import Rigid
+from raceway.bodies.rigid import Rigid
+from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.ring.system import System
 from raceway.framework.contracts import Cost, Traits
 

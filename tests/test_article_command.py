@@ -12,7 +12,7 @@ import pytest
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Attractor
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.studies.article import study as driver
 from raceway.studies.article.design import (
     ARTICLE,

@@ -13,7 +13,7 @@ import pytest
 import raceway as rw
 from raceway import ConvergenceError, SceneError
 from raceway.out.progress import RemainingTime
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.studies.article import elastic
 from raceway.studies.article.elastic import SCENE, Design, Run, design
 from raceway.studies.article.elastic_page import drawings, page

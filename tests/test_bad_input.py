@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from raceway.errors import SceneError
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from validation.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
 
 #: What is set; the path that is named; words of the message.
@@ -271,7 +271,7 @@ def test_a_run_that_diverges_says_when_and_why_and_keeps_the_last_good_state(tmp
 
 
 def test_a_fault_of_the_program_is_one_message(monkeypatch):
-    monkeypatch.setattr("raceway.front.check.make_plan", lambda scene, **_: 1 / 0)
+    monkeypatch.setattr("raceway.planning.plan.make_plan", lambda scene, **_: 1 / 0)
     found = invoke("check", ARTICLE)
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr

@@ -8,7 +8,7 @@ KIND = '''
 import attrs
 
 from raceway import hookimpl
-from raceway.bodies.rigid.kind import Rigid
+from raceway.bodies.rigid import Rigid
 
 
 @attrs.frozen

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from raceway import RacewayError, scene_from_dict
-from raceway.bodies.pressure import approach_at
+from raceway.bodies.contacts import approach_at
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
 from raceway.testing import run

@@ -11,7 +11,7 @@ from raceway import scene_from_dict
 from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.testing import check
 
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.bodies.elastic.plan import allowed_bytes
+from raceway.bodies.elastic import allowed_bytes
 from raceway.core.ring.orbit import steady_orbit
 from raceway.elastic.iterative_solver import LinearSolver
 from raceway.elastic.ring import from_orbit
@@ -257,7 +257,7 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.plan.allowed_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 

@@ -7,7 +7,7 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
-from raceway.planning.closed_form import axial_approach
+from raceway.planning.cost import axial_approach
 from raceway.testing import Model, model_of, settled, solve_equilibrium
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring

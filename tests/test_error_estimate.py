@@ -12,7 +12,7 @@ from raceway.out.table import number_within
 from raceway.pipeline import error as error_estimate
 from raceway.pipeline.error import more_equilibria
 from raceway.pipeline.simulate import _at_speed, settles_elsewhere
-from raceway.planning.recording import recorded_per_turn, samples_per_turn
+from raceway.planning.resolve import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
 from validation.error_estimate import judge, named, right
 from validation.scenes import rotating

@@ -15,7 +15,7 @@ from matplotlib.text import Text
 
 import raceway
 from raceway import scene_from_dict
-from raceway.bodies.elastic.subsurface import below_contacts
+from raceway.bodies.elastic_stress import below_contacts
 from raceway.plugins import pictures
 from raceway.points import band as band_picture
 from raceway.points import compare_picture as comparison

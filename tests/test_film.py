@@ -6,8 +6,7 @@ import pytest
 
 import raceway as rw
 from raceway import make_plan
-from raceway.contact_laws.film import Film
-from raceway.contact_laws.lubricant import GRADES, Walther, mineral_thinning, pressure_viscosity
+from raceway.contact_laws.film import GRADES, Film, Walther, mineral_thinning, pressure_viscosity
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
 from raceway.pipeline.result import DRY
 from raceway.scene.tables import TIME_CONSTANTS

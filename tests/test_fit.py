@@ -8,7 +8,7 @@ import pytest
 
 import raceway as rw
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.scene.continuous import with_number
+from raceway.scene.changes import with_number
 from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.disturbances import aliased, spectrum, tone, uneven

@@ -15,7 +15,7 @@ import pytest
 
 import raceway as rw
 from raceway.framework.shown import LINES, WIDTH, as_html, as_text
-from raceway.scene.given import as_given
+from raceway.scene.inputs import as_given
 from raceway.testing import b7206c
 from validation.command_line import EXAMPLES, invoke, python
 
@@ -171,7 +171,7 @@ def test_a_static_result_has_no_stiffness_of_a_motion(static):
 
 def test_a_folder_that_cannot_be_written_is_told_before_the_run(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr("raceway.front.run.compute", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("raceway.pipeline.front.compute", lambda *_, **__: pytest.fail("computed"))
     with pytest.raises(rw.RacewayError, match="cannot be"):
         rw.run(STATIC, out=tmp_path / "file")
 
@@ -308,8 +308,10 @@ def test_a_missing_library_is_one_message(static, monkeypatch, module, call):
 # --- the command line is a thin caller
 
 
-@pytest.mark.parametrize("command", ["run", "plan", "check"])
-def test_the_command_line_calls_the_same_function(command, monkeypatch, tmp_path):
+@pytest.mark.parametrize(
+    ("command", "module"), [("run", "pipeline.front"), ("plan", "planning.plan"), ("check", "planning.plan")]
+)
+def test_the_command_line_calls_the_same_function(command, module, monkeypatch, tmp_path):
     called = []
     real = getattr(rw, command)
 
@@ -317,7 +319,7 @@ def test_the_command_line_calls_the_same_function(command, monkeypatch, tmp_path
         called.append(scene.title)
         return real(scene, **options)
 
-    monkeypatch.setattr(f"raceway.front.{command}.{command}", watched)
+    monkeypatch.setattr(f"raceway.{module}.{command}", watched)
     words = ["--out", str(tmp_path)] if command == "run" else []
     assert invoke(command, SCENE, "--set", "excitation.speed_rpm=6000 rpm", *words).exit_code == 0
     assert called == [rw.load_scene(SCENE, ["excitation.speed_rpm=6000"]).title]

@@ -8,7 +8,7 @@ import raceway as rw
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.pipeline.gradient import Gradients, SteadyOrbit, derivatives, values
 from raceway.pipeline.static_gradient import NoDerivative, derivative, static_gradient
-from raceway.scene.continuous import continuous_keys, key_of, with_number
+from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
 from validation.command_line import invoke
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from raceway.scene.inner_ring import load_at_edge
+from raceway.scene.growth import load_at_edge
 
 
 @pytest.mark.parametrize("angle", [0.05, 0.2, 0.5])

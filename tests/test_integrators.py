@@ -16,7 +16,7 @@ from raceway.core.ring.system import by_address
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import Newmark
 from raceway.studies.stability.catalogue import BASE
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 from validation import orders

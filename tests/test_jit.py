@@ -22,8 +22,7 @@ from numba.experimental.function_type import _get_wrapper_address
 import raceway
 from raceway import LAW, PluginError, jit
 from raceway.core.jit import clock
-from raceway.storage.cache_folder import current_folder, make, refusal
-from raceway.storage.kernel_files import opened
+from raceway.storage.kernel_cache import current_folder, make, opened, refusal
 from validation.command_line import python
 
 #: The smallest kernels, three in a file, each used once; what was compiled and read, what was warned of, numba's own settings.
@@ -193,7 +192,7 @@ def test_what_lacks_in_a_cache_that_cannot_be_written_is_compiled_after_one_warn
 
 
 def key_of(package: Path) -> str:
-    done = python("-c", "from raceway.storage.cache_folder import source_key; print(source_key())", cwd=package.parent)
+    done = python("-c", "from raceway.storage.kernel_cache import source_key; print(source_key())", cwd=package.parent)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 

@@ -11,8 +11,8 @@ from raceway import ConvergenceError, MeshError, SceneError, build_model, make_p
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
-from raceway.planning.closed_form import highest_frequency
-from raceway.planning.recording import fits, record_bytes, recorded_per_turn
+from raceway.planning.cost import highest_frequency
+from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
 from raceway.plugins.formats import Vtu
 from raceway.plugins.mesh_files import File
 from raceway.studies.fit.signals import recording_of, signals_of

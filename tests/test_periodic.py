@@ -31,7 +31,7 @@ from raceway.core.record import Motion, Schedule
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.system import by_address
 from raceway.core.time.schemes import integrate
-from raceway.integrators.periodic import Periodic
+from raceway.integrators.methods import Periodic
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion

@@ -18,8 +18,8 @@ from raceway.framework.options import nearest
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
 from raceway.pipeline.simulate import _stride
-from raceway.planning.implausible import implausible
-from raceway.planning.recording import damped_limit, samples_per_turn
+from raceway.planning.resolve import damped_limit, samples_per_turn
+from raceway.planning.rules import implausible
 from raceway.testing import b7206c
 from validation.command_line import EXAMPLES
 

@@ -4,7 +4,7 @@ import pytest
 
 from raceway.errors import PluginError
 from raceway.framework.registry import Registry
-from raceway.scene.requires import check_requires
+from raceway.scene.reading import check_requires
 from tests.fake_site import LAW, FakeSite
 
 BROKEN = {

@@ -18,7 +18,7 @@ from raceway.points.engine import measured
 from raceway.points.precision import THRESHOLDS, measure_settings
 from raceway.points.settings import find_reference, make_design
 from raceway.points.store import RowStore, row_key
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.testing import b7206c, default_registry, run
 from validation import error_estimate as evidence
 from validation.command_line import ARTICLE, invoke

@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 import raceway as rw
-from raceway.bodies.equilibrium import tilts_follow
+from raceway.bodies.model import tilts_follow
 from raceway.cli.run_parts import cost_rows, equilibrium_rows
 from raceway.framework.estimate import Estimate, short
 from raceway.out.table import rows_table

@@ -29,7 +29,7 @@ from raceway.points.engine import Work
 from raceway.points.store import facts_digest, open_store, written
 from raceway.points.sweep import Chain, prepare
 from raceway.points.sweep import fill_store as study
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
 from validation.command_line import ARTICLE, EXAMPLES, invoke

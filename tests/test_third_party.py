@@ -44,7 +44,7 @@ RUN = """
 import json
 from raceway import scene_from_dict
 from raceway.pipeline.run import run
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 
 law, force = read_toml("third_party_law/scene.toml"), read_toml("third_party_excitation/scene.toml")
 scenes = {

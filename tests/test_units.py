@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 import raceway as rw
 from raceway import SceneError
-from raceway.scene.given import plain_tables
+from raceway.scene.inputs import plain_tables
 from raceway.scene.schema import scene_schema
 from raceway.scene.units import number_in, unit_of
 from raceway.testing import b7206c, default_registry

@@ -23,8 +23,8 @@ from raceway.plugins.mesh_files import File
 from raceway.points import axes as design
 from raceway.points.axes import point_list
 from raceway.storage import number_table
+from raceway.storage.files import memory_for, told
 from raceway.storage.number_table import read_numbers
-from raceway.storage.user_files import memory_for, told
 from raceway.studies.fit.signals import signals_of
 from raceway.testing import b7206c
 from validation.cubes import block

@@ -11,7 +11,7 @@ import pytest
 from raceway import hookimpl
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import Newmark
 from raceway.points.engine import reference_cases
 from raceway.studies.verify import study as module
 from raceway.studies.verify.study import COMPUTED, Verification, verify

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.storage.tables import Tables
 from raceway.studies.article import elastic
 from raceway.studies.article import study as driver

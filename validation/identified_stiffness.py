@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway import scene_from_dict
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.testing import run
 from validation.reference.ring import Ring
 from validation.reference.shooting import dynamic_stiffness, periodic

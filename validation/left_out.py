@@ -194,7 +194,7 @@ def history() -> Rule:
     from raceway.core.record import Schedule
     from raceway.core.ring.orbit import at_rest
     from raceway.core.time.schemes import integrate
-    from raceway.planning.recording import recorded_per_turn
+    from raceway.planning.resolve import recorded_per_turn
     from raceway.testing import solve_equilibrium
 
     per_turn, many = 2880, 50
@@ -222,7 +222,7 @@ def compliances() -> Rule:
     """Compliances made once for all balls and contacts, and once for each ball, nothing kept in memory or on disk."""
     from raceway import load_scene
     from raceway.bodies.basis import make_basis
-    from raceway.bodies.condensed.compliances import _BODIES, elastic_bodies
+    from raceway.bodies.condensed_bearing import _BODIES, elastic_bodies
     from raceway.core import structural
 
     scene = load_scene(SCENE, ("bodies.kind=condensed",))

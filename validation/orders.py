@@ -15,7 +15,7 @@ from raceway import scene_from_dict
 from raceway.core.record import Motion, Schedule
 from raceway.core.ring.system import System
 from raceway.core.time.schemes import integrate
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.testing import Model, model_of, simulate, solve_equilibrium
 from validation.reference.ring import Ring
 from validation.reference.shooting import rotating as rotating_force

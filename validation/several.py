@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from raceway import Result
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from validation.reference.ring import Ring
 from validation.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 

@@ -24,7 +24,7 @@ from raceway.points.store import open_store
 from raceway.points.sweep import fill_store as study
 from raceway.points.sweep import prepare
 from raceway.scene.changes import with_value
-from raceway.scene.file import load_scene, read_toml
+from raceway.scene.inputs import load_scene, read_toml
 from raceway.scene.reading import scene_from_dict
 from validation.sessions import left
 

@@ -27,11 +27,10 @@ from raceway import load_scene, scene_from_dict
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.planning.closed_form import highest_frequency
-from raceway.planning.implausible import foreseen, implausible
+from raceway.planning.cost import START_S, highest_frequency
 from raceway.planning.plan import Plan, make_plan
-from raceway.planning.recording import predicted_steps_per_turn, record_bytes
-from raceway.planning.wall_time import START_S
+from raceway.planning.resolve import predicted_steps_per_turn, record_bytes
+from raceway.planning.rules import foreseen, implausible
 from raceway.scene.scene import Scene
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.

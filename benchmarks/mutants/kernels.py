@@ -18,8 +18,8 @@ from benchmarks.mutants.faults import ROOT
 _CARRY = """
 import os, sys
 from pathlib import Path
-from raceway.storage.cache_folder import current_folder, make
-from raceway.storage.kernel_files import _DIGEST, _digest
+from raceway.storage.kernel_cache import current_folder, make
+from raceway.storage.kernel_cache import _DIGEST, _digest
 folder = current_folder()
 make(folder)
 for line in sys.stdin.read().splitlines():

@@ -11,7 +11,7 @@ import pytest
 from raceway import load_scene
 from raceway.pipeline.run import run as compute
 from raceway.planning.plan import make_plan
-from raceway.planning.recording import recorded_per_turn
+from raceway.planning.resolve import recorded_per_turn
 from validation import left_out
 from validation.command_line import ARTICLE, python
 
@@ -134,8 +134,8 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
     found = run(*ELASTIC)
     assert found["plan"] == json.loads(json.dumps(make_plan(scene).to_dict()))
     check_modules("elastic bodies", found["loaded"])
-    assert {"raceway.bodies.condensed.compliances", "raceway.core.revolution"} <= set(found["loaded"])
-    assert "raceway.bodies.condensed.build" not in found["loaded"]
+    assert {"raceway.bodies.condensed_bearing", "raceway.core.revolution"} <= set(found["loaded"])
+    assert "raceway.bodies.condensed_bearing" not in found["loaded"]
     assert {"raceway.elastic.resultant", "raceway.core.contact.hertz"} <= set(found["loaded"])
     assert set(found["kernels"].values()) <= {0, 1}
 
@@ -244,13 +244,13 @@ def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
     # By its memory: times of a busy machine may differ by anything.
     monkeypatch.setattr(left_out, "_REPEATS", 1)
     assert left_out.RULES["integration"]().smaller
-    monkeypatch.setattr("raceway.planning.decisions.uses_record", lambda scene: True)
+    monkeypatch.setattr("raceway.planning.resolve.uses_record", lambda scene: True)
     assert not left_out.RULES["integration"]().smaller
 
 
 @pytest.mark.slow
 def test_compliances_that_are_kept_are_made_anew_by_the_rule_that_measures_them(monkeypatch):
-    from raceway.bodies.condensed import compliances
+    from raceway.bodies import condensed_bearing as compliances
 
     made = []
     whole = compliances._elastic_bodies

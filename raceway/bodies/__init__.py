@@ -1,14 +1,16 @@
-"""What rings and balls are made of: a folder a kind, each with its plan, its build and its report.
+"""What rings and balls are made of: the kinds of bodies, and the bearing that each builds.
 
-rigid, condensed, elastic   kinds of plug-in ``bodies``;  patches: contacts of condensed bodies at surface points
-model        a bearing that was built, as the pipeline asks it, and everything else that a run computes with
+model        a bearing that was built, as the pipeline calls it, its static state, and everything else that a run computes with
 basis        what every kind starts from: geometry, contacts, loads, linear parts of the ring
 mounting     preload of a pair, an axial displacement that is held
 running      contact laws at the running speed: entraining speeds, loads, parameters that fit the equilibrium
-equilibrium  the static state;  grooves: angles and edges of contacts;  pressure: of contact resultants
-contact_error   of laws that are not calibrated: against Hertz, or the overlap that they leave
-modules      optional modules that these bodies import
-meshing      the meshes of a scene;  mesh_plan: their size before they are made;  mesh_fit: do they fit the bearing
+contacts     angles, ellipses and pressures of contact resultants, edges of grooves, error of a contact law
+mesh         meshes of a scene, their size before they are made, whether they fit the bearing
+rigid        rigid rings and balls: kind and cost;  rigid_bearing: the ring
+condensed    finite elements reduced to contact compliances: kind and cost;  condensed_bearing: the ring
+patch_bearing   condensed bodies with pressures at surface points
+elastic      finite elements in full: kind and cost;  elastic_bearing: the ring
+elastic_contacts   its contacts in a result;  elastic_stress: shear below them
 """
 
 from __future__ import annotations
@@ -18,8 +20,8 @@ from raceway.framework.hookspecs import hookimpl
 
 @hookimpl
 def raceway_bodies() -> list[type]:
-    from raceway.bodies.condensed.kind import Condensed
-    from raceway.bodies.elastic.kind import Elastic
-    from raceway.bodies.rigid.kind import Rigid
+    from raceway.bodies.condensed import Condensed
+    from raceway.bodies.elastic import Elastic
+    from raceway.bodies.rigid import Rigid
 
     return [Rigid, Condensed, Elastic]

@@ -15,11 +15,10 @@ from raceway.core.ring.system import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import ContactPairs
-from raceway.framework.plugin_kernel import plugin_kernel
-from raceway.planning.closed_form import axial_approach
+from raceway.framework.probe import plugin_kernel
+from raceway.planning.cost import axial_approach
 from raceway.planning.plan import Plan
-from raceway.scene.growth import grooves, speed_growth
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import grooves, ring_inertia, speed_growth
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 

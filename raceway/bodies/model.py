@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis
-from raceway.bodies.grooves import beyond_the_groove, contact_angles, ellipse_ends, groove_edges, refuse_impossible_ellipses
-from raceway.bodies.pressure import contact_ellipse
+from raceway.bodies.contacts import (
+    beyond_the_groove,
+    contact_angles,
+    contact_ellipse,
+    ellipse_ends,
+    groove_edges,
+    refuse_impossible_ellipses,
+)
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Motion, Record
@@ -26,9 +32,6 @@ from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.equilibrium import Equilibrium
 
 #: A number and how it was found, or None and why there is none.
 Told = tuple[float | None, str]
@@ -244,3 +247,50 @@ def build_model(scene: Scene, plan: Plan) -> Model:
             f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
         )
     return Model(scene, plan, bearing, bearing.system)
+
+
+@attrs.frozen(eq=False)
+class Equilibrium:
+    """The static state under the constant loads.
+
+    Attributes
+    ----------
+    displacement : (5,) x, y, z [m], tilts [rad]
+    stiffness : (5, 5) tangent of the contacts, rows on a spring following: how the constant loads change by the displacement
+    damping : (5, 5) of the contacts there, of slow motions, w -> 0 [N s/m, N s/rad, N m s/m, N m s/rad]; 0 for elastic bodies, which
+        know it in motion only
+    stiffness_rows_held, damping_rows_held : the same with rows on a spring held where they stand, as within a motion
+    ball : (Z, 2) positions in the meridian planes [m]
+    gap, contact_force : (2 Z,) inner races first [m, N]
+    angle_inner, angle_outer : (Z,) contact angles [rad], nan where a contact is open
+    warnings : what a user should know
+    """
+
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    stiffness_rows_held: np.ndarray
+    damping_rows_held: np.ndarray
+    ball: np.ndarray
+    gap: np.ndarray
+    contact_force: np.ndarray
+    angle_inner: np.ndarray
+    angle_outer: np.ndarray
+    iterations: int
+    warnings: tuple[str, ...]
+
+
+def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
+    """Static condensation of the tilts: kyy - k_yt (k_tt + k_shaft I)^-1 k_ty [N/m].
+
+    Parameters
+    ----------
+    stiffness : (5, 5) tangent stiffness of the equilibrium
+    tilt : the scene's ``supports.tilt``: "locked" (None is returned), "free", or the tilt stiffness of the shaft [N m/rad]
+    """
+    if tilt == "locked":
+        return None
+    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
+    if not np.linalg.det(tilts):
+        return float(stiffness[1, 1])
+    return float(stiffness[1, 1] - stiffness[1, 3:] @ np.linalg.solve(tilts, stiffness[3:, 1]))

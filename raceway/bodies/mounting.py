@@ -22,13 +22,12 @@ from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
 from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
-from raceway.planning.recording import turns_of
+from raceway.planning.resolve import turns_of
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Equilibrium, Model
 
 R = TypeVar("R", bound=Ring)
 #: The force of a spring is met to this part of the preload.

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, contact_pairs, law_params
-from raceway.bodies.grooves import contact_angles
+from raceway.bodies.contacts import contact_angles
 from raceway.core.contact.film import entraining_speed
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import ChangingSpeed, System
@@ -19,8 +19,7 @@ from raceway.framework.duties import law_report, reach_of, renews
 from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Equilibrium, Model
 
 #: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
 _LEAST = 0.1

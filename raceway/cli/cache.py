@@ -53,7 +53,8 @@ def cache(clear: bool, as_json: bool) -> int:
     """
     import attrs
 
-    from raceway.storage import array_cache, cache_folder
+    from raceway.storage import array_cache
+    from raceway.storage import kernel_cache as cache_folder
 
     with show_progress(waiting="looking through what is kept"):
         if clear:

@@ -22,7 +22,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
     from raceway.out.progress import ProgressBar
-    from raceway.scene.given import Given
+    from raceway.scene.inputs import Given
     from raceway.scene.scene import Scene
 
 
@@ -88,7 +88,7 @@ def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
 def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
     """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
     from raceway.out.progress import ProgressBar
-    from raceway.storage.cache_folder import current_folder
+    from raceway.storage.kernel_cache import current_folder
 
     folder = current_folder()
     warm = folder.is_dir() and any(folder.iterdir())
@@ -197,7 +197,7 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
 
 
 def _changed(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
-    from raceway.scene.given import as_given
+    from raceway.scene.inputs import as_given
 
     given = as_given(scene)
     mistakes: list[Mistake] = []

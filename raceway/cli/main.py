@@ -154,7 +154,7 @@ def run(given: RunOptions) -> int:
         require_matplotlib("leave out --pictures")
     tell_faults(registry)
     with show_progress() as progress:
-        from raceway.front.run import run as compute
+        from raceway.pipeline.front import run as compute
 
         try:
             result = compute(loaded, progress=progress, patience=given.patience)
@@ -193,7 +193,7 @@ def plan(
     """
     from raceway.cli.frame import load, tell_faults
     from raceway.framework.registry import registry_with
-    from raceway.front.plan import plan as planned
+    from raceway.planning.plan import plan as planned
 
     registry = registry_with(plugins)
     loaded = load(scene, changes, registry)
@@ -223,7 +223,7 @@ def check(
     """
     from raceway.cli.frame import load, tell_faults
     from raceway.framework.registry import registry_with
-    from raceway.front.check import check as checked
+    from raceway.planning.plan import check as checked
 
     registry = registry_with(plugins)
     found = checked(load(scene, changes, registry))

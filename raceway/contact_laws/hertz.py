@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.contact_laws.stiffness import point_stiffness
+from raceway.contact_laws.penalty import point_stiffness
 
 if TYPE_CHECKING:
     import numpy as np

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.contact_laws.stiffness import point_stiffness
 from raceway.framework.options import option, optional, positive
 
 if TYPE_CHECKING:
@@ -14,6 +13,25 @@ if TYPE_CHECKING:
 
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
+
+
+#: Times the pressure per penetration at which two rigid paraboloids approach as far as Hertz's: the largest penetration
+#: is then 1.5 / 150 = 1 % of Hertz's approach, because the peak of a Hertz pressure is 1.5 times its mean.
+SHARE = 150.0
+
+
+def point_stiffness(pairs: ContactPairs, load: np.ndarray) -> np.ndarray:
+    """(n,) k_n [N/m3] whose penetration under the peak pressure at ``load`` (n,) [N] is 1 % of Hertz's approach.
+
+    Notes
+    -----
+    Rigid paraboloids A x^2 + B y^2 that overlap by delta carry Q = pi k delta^2 / (2 sqrt(A B)); with Hertz's delta that
+    gives k = 2 sqrt(A B) Q / (pi delta^2), which is 2/3 of the peak pressure over delta for any ellipse near a circle.
+    """
+    import numpy as np
+
+    approach = np.cbrt(load / pairs.hertz_factor) ** 2
+    return SHARE * 2.0 * np.sqrt(pairs.curvature_a * pairs.curvature_b) * load / (np.pi * approach**2)
 
 
 @attrs.frozen
@@ -65,6 +83,35 @@ class Penalty:
         else:
             factor = load / np.cbrt(load / pairs.hertz_factor) ** 4
         return np.asarray(factor)[:, np.newaxis]
+
+    def kernel(self) -> Kernel:
+        from raceway.core.contact.laws import square_or_linear
+
+        return square_or_linear
+
+
+@attrs.frozen
+class Unilateral:
+    """Pressure p >= 0, gap g >= 0, p g = 0 at every surface point: no penalty and no penetration.
+
+    Notes
+    -----
+    Not a function of the gap: bodies that can hold the constraint exactly (condensed ones, by an active set) read
+    ``constraint`` and do not call the kernel.  The kernel is the stiffest of the penalties that stand for it, a hundredth
+    of the penetration that the law ``hertz`` leaves at points.
+    """
+
+    name: ClassVar[str] = "unilateral"
+    discretisations: ClassVar[frozenset[str]] = frozenset({"nodal"})
+    state_size: ClassVar[int] = 0
+    dissipative: ClassVar[bool] = False
+    constraint: ClassVar[bool] = True
+
+    def build(self, pairs: ContactPairs) -> np.ndarray:
+        import numpy as np
+
+        stiffness = 100.0 * point_stiffness(pairs, pairs.reference_load)
+        return np.column_stack([np.zeros_like(stiffness), stiffness])
 
     def kernel(self) -> Kernel:
         from raceway.core.contact.laws import square_or_linear

@@ -31,8 +31,7 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
 from raceway.errors import PluginError, RacewayError
-from raceway.storage.cache_folder import current_folder
-from raceway.storage.kernel_files import FilesOfKernel, OpenFolder, opened
+from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
 
 if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(

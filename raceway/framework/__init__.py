@@ -7,8 +7,7 @@ options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
 duties      calls of the duties of bodies, with their faults put to the plug-in
 sources     entry points and one-off files
-plugin_kernel   compiled kernel of a plug-in, by its declared signature
-probe       trial calls of a plug-in's kernel before a run
+probe       compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
 shown       short texts and tables of results, for terminals and notebooks
 orphans     end of worker processes
 """

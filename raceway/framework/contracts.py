@@ -383,7 +383,7 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     1. ``faults(scene)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.
     2. ``traits(scene)``: ``Traits``.
     3. ``stable_step(scene)``: rough stable limit of explicit steps [s]; None where nothing is known.
-    4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
+    4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.resolve``).
     5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
     7. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.

@@ -7,12 +7,12 @@ from typing import Any, TypeAlias
 
 Bearing: TypeAlias = Any  # raceway.scene.bearing
 Scene: TypeAlias = Any  # raceway.scene.scene
-Balls: TypeAlias = Any  # raceway.planning.decisions
-Motion: TypeAlias = Any  # raceway.planning.decisions
-Decisions: TypeAlias = Any  # raceway.planning.parts
+Balls: TypeAlias = Any  # raceway.planning.resolve
+Motion: TypeAlias = Any  # raceway.planning.resolve
+Decisions: TypeAlias = Any  # raceway.planning.resolve
 Plan: TypeAlias = Any  # raceway.planning.plan
 BuiltBearing: TypeAlias = Any  # raceway.bodies.model, where it is called Bearing
-Equilibrium: TypeAlias = Any  # raceway.bodies.equilibrium
+Equilibrium: TypeAlias = Any  # raceway.bodies.model
 Model: TypeAlias = Any  # raceway.bodies.model
 Simulation: TypeAlias = Any  # raceway.pipeline.simulate
 Result: TypeAlias = Any  # raceway.pipeline.result

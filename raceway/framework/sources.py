@@ -16,7 +16,7 @@ from typing import Any
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.options import nearest
-from raceway.storage.user_files import size_of
+from raceway.storage.files import size_of
 
 #: Bytes of a plug-in file at most.
 _LONGEST = 2**24

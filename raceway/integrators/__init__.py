@@ -1,20 +1,9 @@
-"""Built-in integrators, one a file.
-
-newmark              Newmark's method
-generalized_alpha    generalised-alpha
-central_difference   explicit central differences
-quasi_static         the orbit as a series of equilibria
-periodic             the steady orbit, solved for directly
-"""
+"""Built-in integrators: ``methods`` has Newmark's method, generalised-alpha, central differences, series of equilibria, steady orbits."""
 
 from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.generalized_alpha import GeneralizedAlpha
-from raceway.integrators.newmark import Newmark
-from raceway.integrators.periodic import Periodic
-from raceway.integrators.quasi_static import QuasiStatic
+from raceway.integrators.methods import CentralDifference, GeneralizedAlpha, Newmark, Periodic, QuasiStatic
 
 
 @hookimpl

@@ -1,5 +1,6 @@
 """One run: scene, plan, model, equilibrium, motion, identification, result.
 
+front            ``raceway.run``: one scene in any form, computed
 run              the order of these steps, and the time that they may take
 equilibrium      static equilibrium under the constant loads; pressures, ball-pass frequencies
 simulate         how a motion begins, and the motion

@@ -21,8 +21,7 @@ from math import acos, cos, degrees, pi
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium, tilts_follow
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import held_table, lost_preload, preload_table
 from raceway.bodies.running import report_of
 from raceway.core.record import Record

@@ -30,8 +30,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model
 from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
@@ -39,8 +38,7 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
-from raceway.planning.recording import fits
-from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
+from raceway.planning.resolve import compares_with_steady_motion, fits, remembers_its_start
 from raceway.plugins.identifiers import Fft1x
 from raceway.storage.tables import Tables
 

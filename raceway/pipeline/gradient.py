@@ -20,8 +20,7 @@ from functools import cached_property
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium, tilts_follow
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
 from raceway.core.periodic.intervals import Change, Eliminated, condense, imbalances, spread
 from raceway.core.periodic.search import Found, find, problem_of
@@ -33,8 +32,8 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.shown import race_words, tilt_words
 from raceway.pipeline.equilibrium import race_of
 from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
-from raceway.scene.continuous import Key, key_of
-from raceway.scene.given import leaves
+from raceway.scene.changes import Key, key_of
+from raceway.scene.inputs import leaves
 from raceway.scene.tolerance import tolerances_of
 from raceway.storage.tables import Tables
 

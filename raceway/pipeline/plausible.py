@@ -23,10 +23,9 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import growth_of
-from raceway.bodies.equilibrium import Equilibrium, tilts_follow
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
-from raceway.bodies.rigid.build import add_moments
+from raceway.bodies.rigid_bearing import add_moments
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
 from raceway.core.ring.orbit import Orbit, orbit_near
@@ -37,7 +36,7 @@ from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
-from raceway.planning.combinations import refuse_what_cannot_run
+from raceway.planning.rules import refuse_what_cannot_run
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 

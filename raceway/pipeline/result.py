@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium, tilts_follow
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within

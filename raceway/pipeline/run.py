@@ -17,8 +17,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
 from raceway.core.record import drift, friction_lost, largest_share
 from raceway.core.ring.energy import energy_balance
@@ -40,8 +39,8 @@ from raceway.pipeline.plausible import (
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
-from raceway.planning.implausible import implausible
 from raceway.planning.plan import Plan, make_plan
+from raceway.planning.rules import implausible
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.scene.unused import unused

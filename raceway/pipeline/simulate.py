@@ -9,8 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
@@ -20,8 +19,7 @@ from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
-from raceway.planning.recording import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
-from raceway.planning.steady_orbits import searches_orbits
+from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, searches_orbits, stable_steps_per_turn
 from raceway.storage.tables import Tables
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.

@@ -20,14 +20,13 @@ from collections.abc import Mapping
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Evaluation
 from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.duties import renews, same_bodies
-from raceway.scene.continuous import Key, with_number
+from raceway.scene.changes import Key, with_number
 from raceway.scene.scene import Scene
 
 #: Steps at which a function is looked at, with their weights: (8 (f_1 - f_-1) - (f_2 - f_-2)) / 12 h, its error h^4 f^(5) / 30.

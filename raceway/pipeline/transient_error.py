@@ -40,14 +40,13 @@ from math import pi
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model
+from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
 from raceway.core.signals import Identification, fourier_line, stiffness, without_drift
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
-from raceway.planning.steady_orbits import compares_with_steady_motion, remembers_its_start
+from raceway.planning.resolve import compares_with_steady_motion, remembers_its_start
 from raceway.plugins.identifiers import Tangent, whole_turns
 from raceway.storage.tables import Tables
 

@@ -5,17 +5,20 @@ The model builder obeys the plan; it decides nothing of this by itself.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
+from pathlib import Path
+from typing import Any
 
 import attrs
 
+from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
 from raceway.framework.duties import bodies
-from raceway.planning.combinations import refuse_what_cannot_run
-from raceway.planning.decisions import decide_balls, decide_motion, decide_output, decide_tilts
+from raceway.framework.shown import Fact, Shown, number
 from raceway.planning.machine import slowness
-from raceway.planning.parts import Decisions, Part
-from raceway.planning.recording import refuse_memory
+from raceway.planning.resolve import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts, refuse_memory
+from raceway.planning.rules import foreseen, implausible, refuse_what_cannot_run
+from raceway.scene.inputs import as_scene
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -130,3 +133,138 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
 def _period(scene: Scene) -> float:
     """Of the force [s]."""
     return float(scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz)
+
+
+@attrs.frozen(repr=False)
+class ScenePlan(Shown, Plan):
+    """A plan that says which scene it is of.
+
+    Attributes
+    ----------
+    title : str, of the scene
+    kept, left_out : tuple of Part, each with ``part`` and ``why``
+    dofs : int, unknowns;  time_step_s : float or None [s];  predicted_steps : int
+    predicted_wall_s : float, of a whole run on this machine [s]
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> plan = rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+    >>> plan.predicted_steps, plan.time_step_s
+    (0, None)
+    """
+
+    title: str = attrs.field(default="", kw_only=True)
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
+        time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
+        head: list[Fact] = [
+            ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
+            ("kept", "", ", ".join(one.part for one in self.kept)),
+        ]
+        return self.title, [*head, *(("left out", "", f"{one.part}: {one.why}") for one in self.left_out)]
+
+
+@door
+def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
+    """Decide what a scene needs, and predict size, time step and cost; nothing is built.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    plugins : files of one-off plug-ins that the scene uses
+
+    Returns
+    -------
+    ScenePlan : ``kept``, ``left_out``, ``dofs``, ``time_step_s`` [s], ``predicted_wall_s`` [s] ...
+
+    Raises
+    ------
+    SceneError
+        With every mistake that ``raceway.check`` finds.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}).dofs
+    15
+    """
+    read = as_scene(scene, plugins=plugins)
+    if mistakes := foreseen(read):
+        raise SceneError(mistakes)
+    made = make_plan(read)
+    values = {str(field.alias): getattr(made, field.name) for field in attrs.fields(Plan)}
+    return ScenePlan(**values, title=read.title)
+
+
+@attrs.frozen(repr=False)
+class Check(Shown):
+    """What is wrong with a scene; true where nothing is.
+
+    Attributes
+    ----------
+    mistakes : tuple of Mistake, each with ``path``, ``value`` and ``message``; they keep the scene from running
+    warnings : tuple of str, values that are possible and unlikely
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.check({"bearing": {"preset": "B7206C"}})
+    1 mistake
+      load.axial  0.0  nothing loads the bearing: there is no stiffness to find
+    """
+
+    mistakes: tuple[Mistake, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def ok(self) -> bool:
+        """Whether the scene can run."""
+        return not self.mistakes
+
+    def __bool__(self) -> bool:
+        return self.ok
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        count = len(self.mistakes)
+        title = "no mistakes" if self.ok else f"{count} mistake{'' if count == 1 else 's'}"
+        rows = [(one.path, "" if one.value is None else repr(one.value), one.message) for one in self.mistakes]
+        return title, [*rows, *(("warning", "", text) for text in self.warnings)]
+
+    def to_dict(self) -> Tables:
+        """Mistakes and warnings as plain tables."""
+        return {"errors": [attrs.asdict(one) for one in self.mistakes], "warnings": list(self.warnings)}
+
+
+@door
+def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
+    """Look for every mistake of a scene; compute nothing.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    plugins : files of one-off plug-ins that the scene uses
+
+    Returns
+    -------
+    Check : also of a scene that cannot be read
+
+    Raises
+    ------
+    PluginError
+        A plug-in file that is missing, fails to import or adds nothing.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> found = rw.check({"bearing": {"preset": "B7206C"}, "load": {"axail": 400}})
+    >>> found.ok, found.mistakes[0].path
+    (False, 'load.axail')
+    """
+    try:
+        read = as_scene(scene, plugins=plugins)
+        make_plan(read)
+    except SceneError as error:
+        return Check(tuple(error.mistakes))
+    return Check(tuple(foreseen(read)), implausible(read))

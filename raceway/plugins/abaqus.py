@@ -14,7 +14,7 @@ import numpy as np
 from raceway.errors import MeshError
 from raceway.framework.options import one_of, option
 from raceway.plugins import formats as exchange
-from raceway.storage.user_files import memory_for
+from raceway.storage.files import memory_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

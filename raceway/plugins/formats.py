@@ -15,8 +15,8 @@ import attrs
 import numpy as np
 
 from raceway.errors import MeshError, extra
+from raceway.storage.files import memory_for, size_of, told
 from raceway.storage.tables import ReadTables
-from raceway.storage.user_files import memory_for, size_of, told
 
 if TYPE_CHECKING:
     from meshio import Mesh

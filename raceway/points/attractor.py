@@ -30,7 +30,7 @@ from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import Newmark
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan

@@ -15,14 +15,13 @@ import attrs
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.changes import parse_value, value_at, with_value
-from raceway.scene.file import read_toml
-from raceway.scene.given import tidy
+from raceway.scene.inputs import read_toml, tidy
 from raceway.scene.reading import numbers_only, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.scene.units import is_quantity
 from raceway.scene.unused import without_inherited
+from raceway.storage.files import size_of, why_unreadable
 from raceway.storage.tables import ReadTables, Tables
-from raceway.storage.user_files import size_of, why_unreadable
 
 MOST_POINTS = 10_000
 _FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"

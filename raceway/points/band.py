@@ -24,8 +24,8 @@ from raceway.planning.plan import make_plan
 from raceway.plugins.pictures import new_figure
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key
-from raceway.scene.continuous import with_number
-from raceway.scene.given import as_scene, leaves
+from raceway.scene.changes import with_number
+from raceway.scene.inputs import as_scene, leaves
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import Tolerance, tolerances_of

@@ -25,7 +25,7 @@ from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Quantity, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key, tables_key
-from raceway.scene.given import plain_tables
+from raceway.scene.inputs import plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables

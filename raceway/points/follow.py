@@ -23,7 +23,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
-from raceway.scene.given import Change, plain_tables
+from raceway.scene.inputs import Change, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
 ERROR, _LOST = 1e-6, 1e-3

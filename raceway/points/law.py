@@ -28,7 +28,7 @@ from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.plan import make_plan
-from raceway.scene.given import Change, as_given
+from raceway.scene.inputs import Change, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 

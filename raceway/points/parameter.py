@@ -13,8 +13,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.periodic.collocation import Problem, Symmetry, one_turn
 from raceway.core.periodic.search import problem_of
 from raceway.core.periodic.steady import refuse
@@ -26,8 +25,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.points.axes import numbers_at
-from raceway.scene.changes import parse_value, with_value
-from raceway.scene.continuous import key_of, with_number
+from raceway.scene.changes import key_of, parse_value, with_number, with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in

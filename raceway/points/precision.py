@@ -35,7 +35,7 @@ from raceway.points.settings import (
 )
 from raceway.points.store import RowStore
 from raceway.scene.changes import parse_change
-from raceway.scene.given import plain_tables, tidy
+from raceway.scene.inputs import plain_tables, tidy
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 

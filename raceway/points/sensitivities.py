@@ -25,16 +25,15 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan
 from raceway.plugins.pictures import new_figure
-from raceway.scene.continuous import Key, continuous_keys, key_of
-from raceway.scene.given import as_scene
+from raceway.scene.changes import Key, continuous_keys, key_of
+from raceway.scene.inputs import as_scene
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Equilibrium, Model
     from raceway.out.progress import ShowProgress
 
 

@@ -26,7 +26,7 @@ from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.points.axes import Axis, Design
 from raceway.scene.scene import Scene
-from raceway.storage.cache_folder import source_key
+from raceway.storage.kernel_cache import source_key
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

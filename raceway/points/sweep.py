@@ -18,14 +18,14 @@ from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import telling
 from raceway.pipeline.simulate import OnProgress
+from raceway.planning.cost import START_S
 from raceway.planning.plan import make_plan
-from raceway.planning.wall_time import START_S
 from raceway.points.axes import Design, grid, in_units, listed_points, numbers_at, tables_at
 from raceway.points.dataset import dataset, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.store import Store, exists, open_store, row_key, written
 from raceway.points.survey import Survey, survey
-from raceway.scene.given import plain_tables
+from raceway.scene.inputs import plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables

@@ -22,6 +22,8 @@ from typing import Any
 import attrs
 
 from raceway.errors import SceneError
+from raceway.framework.options import nearest
+from raceway.scene.bearing import Material
 from raceway.storage.tables import ReadTables, Tables
 
 #: Uncertainty of presets with a file of their own and inferred balls: the conformity that the pairs of series 70 give meets what NSK
@@ -222,3 +224,41 @@ def _inferred(name: object, given: ReadTables) -> Tables | None:
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
         **{key: getattr(one, key) for key in _INFERRED},
     }
+
+
+@attrs.frozen
+class NamedMaterial:
+    """young [Pa], poisson, density [kg/m3], thermal_expansion [1/K]; title and source."""
+
+    name: str
+    title: str
+    young: float
+    poisson: float
+    density: float
+    thermal_expansion: float
+    source: str
+
+
+@cache
+def materials() -> dict[str, NamedMaterial]:
+    """All by name."""
+    text = files("raceway").joinpath("data/materials.toml").read_text(encoding="utf-8")
+    return {name: NamedMaterial(name, **row) for name, row in tomllib.loads(text).items()}
+
+
+def with_material(table: Tables, path: str, preset: Tables) -> Tables:
+    """A table [bearing.rings] or [bearing.balls] with the numbers of its ``material``; own keys override them, the preset's do not.
+
+    Raises
+    ------
+    SceneError
+        Unknown name, with the nearest one.
+    """
+    name = table.get("material")
+    if name is None:
+        return {**preset, **table}
+    if not isinstance(name, str) or name not in materials():
+        known = ", ".join(materials())
+        raise SceneError.at(f"{path}.material", name, f"no such material{nearest(str(name), materials())}; known: {known}")
+    one = attrs.asdict(materials()[name])
+    return {**{key: one[key] for key in attrs.fields_dict(Material) if key in one}, **table}

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+import difflib
+import os
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,20 +18,176 @@ from raceway.framework.options import (
     nearest,
 )
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.given import Given
-from raceway.scene.requires import check_requires
-from raceway.scene.rig import Rig
+from raceway.scene.catalogue import preset, with_material
+from raceway.scene.inputs import Given
+from raceway.scene.scene import Scene
+from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
+from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, STUDY_TABLES, SWAPPED_TABLES, TABLES, Rig
 from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
 
-    from raceway.scene.given import Given
-from raceway.scene.presets import _with_preset, with_materials
-from raceway.scene.scene import Scene
-from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, STUDY_TABLES, SWAPPED_TABLES, TABLES
+    from packaging.specifiers import SpecifierSet
+
+
+def check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
+    """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
+
+    Parameters
+    ----------
+    table : name -> version specifier such as ">=1.2, <2"; "" for any version
+    """
+    if not table:
+        return
+    from packaging.specifiers import InvalidSpecifier, SpecifierSet
+
+    if not isinstance(table, Mapping):
+        mistakes.append(Mistake("requires", table, 'must be a table of names and versions: [requires] and NAME = ">=1.2"'))
+        return
+    installed = _installed(registry)
+    for name, specifier in table.items():
+        path = f"requires.{name}"
+        if not isinstance(specifier, str):
+            mistakes.append(Mistake(path, specifier, 'must be a string such as ">=1.2", or "" for any version'))
+            continue
+        try:
+            wanted = SpecifierSet(specifier)
+        except InvalidSpecifier:
+            mistakes.append(
+                Mistake(path, specifier, 'is not a version specifier; write for instance ">=1.2" or ">=1.2, <2"')
+            )
+            continue
+        why = _unmet(name, specifier, wanted, installed, registry)
+        if why:
+            mistakes.append(Mistake(path, specifier, why))
+
+
+def _installed(registry: Registry) -> dict[str, tuple[str, str]]:
+    """Normalised name -> (distribution, version), for distributions, entry points and plug-ins' names."""
+    from packaging.utils import canonicalize_name
+
+    from raceway import __version__
+
+    found: dict[str, tuple[str, str]] = {}
+    for entry in registry.all():
+        sources = () if entry.distribution == "raceway" else (entry.source, entry.distribution)
+        for name in (entry.name, *sources):
+            found.setdefault(canonicalize_name(name), (entry.distribution, entry.version))
+    found["raceway"] = ("raceway", __version__)
+    return found
+
+
+def _like(name: str, installed: Iterable[str]) -> str:
+    """A hint only for what is nearly the same: many distributions begin with the same word."""
+    close = difflib.get_close_matches(name, list(installed), n=1, cutoff=0.85)
+    return f" (did you mean '{close[0]}'?)" if close else ""
+
+
+def _unmet(
+    name: str, specifier: str, wanted: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
+) -> str:
+    """Fault of one requirement, and the way out; empty when it is met."""
+    from packaging.utils import canonicalize_name
+    from packaging.version import InvalidVersion, Version
+
+    key = canonicalize_name(name)
+    full = f"{name}{specifier}"
+    command = f"pip install '{full}'" if specifier else f"pip install {name}"
+    if key not in installed:
+        for fault in registry.faults:
+            if key in {canonicalize_name(word.strip("()")) for word in fault.source.split()}:
+                return f"is installed, but could not be loaded: {fault.reason}"
+        for variable in ("RACEWAY_DISABLE", "RACEWAY_PLUGINS"):
+            words = {canonicalize_name(w.strip()) for w in os.environ.get(variable, "").split(",") if w.strip()}
+            if (variable == "RACEWAY_DISABLE" and key in words) or (
+                variable == "RACEWAY_PLUGINS" and words and key not in words
+            ):
+                return f"is not loaded: the environment variable {variable} leaves it out"
+        return f"is required by this scene and not installed{_like(key, installed)}. Install it: {command}"
+    distribution, version = installed[key]
+    try:
+        met = not specifier or wanted.contains(Version(version), prereleases=True)
+    except InvalidVersion:
+        return f"'{distribution}' has no version that can be compared ('{version}')"
+    if not met:
+        upgrade = f"pip install --upgrade '{distribution}{specifier}'"
+        return f"this scene requires {specifier}, installed is {distribution} {version}. Install a fitting one: {upgrade}"
+    return ""
+
+
+def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
+    table = _with_rows(table, mistakes)
+    name = table.get("preset")
+    if name is None:
+        return with_materials(table, {}, mistakes)
+    try:
+        values = preset(name)
+    except SceneError as error:
+        mistakes += error.mistakes
+        return {**_PLACEHOLDER, **table, "preset": None}
+    merged = {**values, **table}
+    if "radial_clearance" in table and "contact_angle_deg" not in table:
+        merged["contact_angle_deg"] = 0.0
+    if "contact_angle_deg" in table and "radial_clearance" not in table:
+        merged.pop("radial_clearance", None)
+    return with_materials(merged, values, mistakes)
+
+
+def with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
+    """The table [bearing] or [mounting] with the numbers of named materials, and those of the preset below what the user says."""
+    made = dict(table)
+    for part in ("rings", "balls", "shaft_material", "housing_material"):
+        own = table.get(part)
+        own = {"material": own} if isinstance(own, str) and name == "mounting" else own
+        if isinstance(own, dict):
+            try:
+                made[part] = with_material(own, f"{name}.{part}", preset.get(part, {}))
+            except SceneError as error:
+                mistakes += error.mistakes
+                made[part] = {**preset.get(part, {}), **own, "material": None}
+    return made
+
+
+def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
+    """The [bearing] table whose rows have the numbers of their presets; without a bearing of its own it is the first row's."""
+    rows = table.get("row")
+    if not isinstance(rows, list | tuple):
+        return table
+    found = []
+    for k, row in enumerate(rows):
+        name = row.get("preset") if isinstance(row, dict) else None
+        if name is not None:
+            try:
+                values = preset(name)
+            except SceneError as error:
+                mistakes += [Mistake(f"bearing.row[{k}].preset", one.value, one.message) for one in error.mistakes]
+                row = {key: value for key, value in row.items() if key != "preset"}
+            else:
+                row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
+        found.append(row)
+    if (
+        rows
+        and "preset" not in table
+        and "ball_diameter" not in table
+        and isinstance(found[0], dict)
+        and "preset" in found[0]
+    ):
+        table = {**table, "preset": found[0]["preset"]}
+    return {**table, "row": found}
+
+
+#: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
+_PLACEHOLDER = {
+    "ball_diameter": 0.01,
+    "pitch_diameter": 0.05,
+    "width": 0.015,
+    "ball_count": 8,
+    "conformity_inner": 0.52,
+    "conformity_outer": 0.52,
+}
 
 
 @door

@@ -9,15 +9,9 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.framework.shown import Fact, Shown
-from raceway.scene.given import Given
-from raceway.storage.tables import ReadTables, Tables
-
-if TYPE_CHECKING:
-    import os
-
-    from raceway.scene.given import Given
 from raceway.scene.bearing import Bearing
 from raceway.scene.changes import told
+from raceway.scene.inputs import Given
 from raceway.scene.tables import (
     TABLES,
     TIME_CONSTANTS,
@@ -30,6 +24,10 @@ from raceway.scene.tables import (
     Rotor,
     Supports,
 )
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    import os
 
 
 @attrs.frozen(repr=False)
@@ -91,7 +89,7 @@ class Scene(Shown):
         >>> rw.Scene.from_toml('bearing.preset = "B7206C"').bearing.ball_count
         12
         """
-        from raceway.scene.given import as_scene
+        from raceway.scene.inputs import as_scene
 
         return as_scene(source)
 
@@ -110,7 +108,7 @@ class Scene(Shown):
         >>> rw.Scene.from_dict({"bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}}).supports.tilt
         'free'
         """
-        from raceway.scene.given import as_scene
+        from raceway.scene.inputs import as_scene
 
         return as_scene(tables)
 
@@ -133,7 +131,7 @@ class Scene(Shown):
         >>> scene.with_(load={"axial": 400.0}, supports={"tilt": "free"}).load.axial
         400.0
         """
-        from raceway.scene.given import as_scene
+        from raceway.scene.inputs import as_scene
 
         return as_scene(self, tables)
 
@@ -169,7 +167,7 @@ class Scene(Shown):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         """What was said, a table a row; defaults and a preset's numbers are left out."""
-        from raceway.scene.given import as_given, leaves
+        from raceway.scene.inputs import as_given, leaves
 
         rows: list[Fact] = []
         for name, table in as_given(self).merged().items():

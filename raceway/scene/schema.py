@@ -12,8 +12,7 @@ from typing import Any, Union, get_args, get_origin
 import attrs
 
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.catalogue import catalogue
-from raceway.scene.materials import materials
+from raceway.scene.catalogue import catalogue, materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.tables import STUDY_TABLES, TABLES

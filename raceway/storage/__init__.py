@@ -1,9 +1,8 @@
 """Files and caches on disk.
 
-files          files that are whole or absent
+files          files that are whole or absent; refusal of files without end or beyond the memory
 tables         types of what TOML and JSON files hold
-user_files     refusal of files without end or beyond the memory
 number_table   tables of numbers from CSV files
 array_cache    arrays that are expensive to make
-cache_folder   folder of the compiled kernels;  kernel_files: their digests
+kernel_cache   folder of the compiled kernels and their digests
 """

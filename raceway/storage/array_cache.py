@@ -25,8 +25,8 @@ from uuid import uuid4
 
 import attrs
 
-from raceway.storage.cache_folder import cache_root, refusal
-from raceway.storage.cache_folder import make as make_folder
+from raceway.storage.kernel_cache import cache_root, refusal
+from raceway.storage.kernel_cache import make as make_folder
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

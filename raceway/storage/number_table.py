@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TextIO
 
 import attrs
 
-from raceway.storage.user_files import size_of
+from raceway.storage.files import size_of
 
 if TYPE_CHECKING:
     import numpy as np

@@ -33,9 +33,8 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.plugins.excitations import HarmonicLoad, harmonic_load
 from raceway.scene import tables
-from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
-from raceway.scene.tables import Identifying
+from raceway.scene.tables import Identifying, Rig
 
 #: Two points a node less would still integrate the stiffness exactly; mass needs degree 6.
 _POINTS, _WEIGHTS = (

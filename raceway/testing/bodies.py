@@ -15,22 +15,18 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Bearing, Model
+from raceway.bodies.model import Bearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.newmark import Newmark
-from raceway.integrators.quasi_static import QuasiStatic
+from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
-from raceway.planning.decisions import decide_balls, decide_motion, decide_tilts
-from raceway.planning.parts import Decisions
 from raceway.planning.plan import make_plan
+from raceway.planning.resolve import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES

@@ -10,10 +10,7 @@ import pytest
 
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.time.schemes import Drivers
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.generalized_alpha import GeneralizedAlpha
-from raceway.integrators.newmark import Newmark
-from raceway.integrators.periodic import Periodic
+from raceway.integrators.methods import CentralDifference, GeneralizedAlpha, Newmark, Periodic
 from raceway.plugins.excitations import Bidirectional
 from raceway.plugins.identifiers import SineFit
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of

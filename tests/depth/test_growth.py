@@ -9,7 +9,7 @@ from scipy.integrate import solve_bvp
 
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import REST_RADIAL
-from raceway.scene.inner_ring import radial_growth, shoulder_height
+from raceway.scene.growth import radial_growth, shoulder_height
 from validation.reference.rotating_ring import growth_by_elements
 
 

@@ -10,7 +10,7 @@ from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tangential import rigid_tangential
 from raceway.core.ring.system import System
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 
 #: Sizes of displacements [m, rad] over which contact forces change by some percent.

@@ -10,7 +10,7 @@ import pytest
 
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.scene.sets import NAMES
 from raceway.testing import solve_equilibrium
 from validation.command_line import EXAMPLES, invoke

@@ -17,7 +17,7 @@ from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.ring import SteppedBearing
 from raceway.core.time.schemes import integrate
 from raceway.plugins.excitations import Bidirectional, RunUp
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 
 

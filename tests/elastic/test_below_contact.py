@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
+from raceway.bodies.elastic_stress import BelowContact, below_contacts
 from raceway.elastic.stress import cells_near, contact_axes
 from raceway.testing import run
 from tests.test_elastic_scene import TINY

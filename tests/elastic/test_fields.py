@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.studies.view.stress import Fields, contacts_left_out, write_fields
 from raceway.testing import run
 from validation.command_line import EXAMPLES

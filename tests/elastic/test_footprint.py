@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import mesh_scene
 from raceway.core.mesh.hex_mesh import azimuth
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.elastic.resultant import Footprint, ellipse, footprint

@@ -16,15 +16,15 @@ import numpy as np
 import pytest
 
 from raceway import load_scene
-from raceway.bodies.elastic.plan import elastic_cost
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.elastic import elastic_cost
+from raceway.bodies.mesh import mesh_scene
 from raceway.bodies.model import build_model
 from raceway.elastic.assembly import Assembly
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.ring import ElasticRing
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
-from raceway.storage.cache_folder import cache_root
+from raceway.storage.kernel_cache import cache_root
 from validation.command_line import EXAMPLES
 
 # One process for all: the cases share superelements on the disk.

@@ -22,7 +22,7 @@ from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.precision import EXACT, measure_settings
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from validation import fused_loop, left_out, plan_time
 from validation.command_line import ARTICLE, python, raceway
 

@@ -18,7 +18,7 @@ from raceway.pipeline.static_gradient import WEIGHTS, NoDerivative, derivative, 
 from raceway.points.band import band, design, indices
 from raceway.points.sensitivities import sensitivities, sensitivities_of
 from raceway.scene.catalogue import single_presets
-from raceway.scene.continuous import continuous_keys, with_number
+from raceway.scene.changes import continuous_keys, with_number
 
 pytestmark = pytest.mark.night
 

@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 
 from raceway import load_scene
-from raceway.bodies.condensed.kind import Condensed
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.condensed import Condensed
+from raceway.bodies.mesh import mesh_scene
 from raceway.plugins.formats import Vtu
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.scene.reading import scene_from_dict
 from raceway.testing import run, settled
 from validation.below_groove import below

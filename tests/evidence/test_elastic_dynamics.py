@@ -18,8 +18,7 @@ from raceway.elastic.bearing import SteppedElastic
 from raceway.elastic.friction import CoulombFriction
 from raceway.elastic.iterative_solver import sticking
 from raceway.elastic.ring import from_orbit
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
 from validation.block import Block
 from validation.command_line import EXAMPLES

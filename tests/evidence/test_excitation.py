@@ -11,7 +11,7 @@ import pytest
 
 from raceway import sweep
 from raceway.points.compare import compare_points
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.studies.article.study import TRENDS
 
 pytestmark = pytest.mark.night

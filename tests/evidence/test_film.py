@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.contact_laws.film import Film
-from raceway.contact_laws.lubricant import GRADES, Walther
+from raceway.contact_laws.film import GRADES, Film, Walther
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run

@@ -16,12 +16,12 @@ import pytest
 
 from raceway import RacewayError, load_scene
 from raceway.core.jit import working_process_time
-from raceway.front.evolve import evolve
-from raceway.front.run import run
+from raceway.pipeline.front import run
 from raceway.scene.catalogue import catalogue
-from raceway.scene.continuous import with_number
+from raceway.scene.changes import with_number
+from raceway.scene.inputs import evolve
 from raceway.scene.reading import rig_of
-from raceway.scene.rig import Rig
+from raceway.scene.tables import Rig
 from raceway.studies.fit.fit import fit
 from raceway.studies.fit.identify import identify, identify_recording
 from raceway.studies.fit.rig import coefficients

@@ -40,7 +40,7 @@ ELEMENTS = 1_061_016
 BUILD = """
 import json, resource, sys, time
 from raceway import load_scene
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import mesh_scene
 scene = load_scene(sys.argv[1])
 begin = time.process_time()
 meshes = mesh_scene(scene)

@@ -18,9 +18,8 @@ from raceway.core.record import Motion, Schedule
 from raceway.core.ring.system import by_address
 from raceway.core.signals import stiffness
 from raceway.core.time.schemes import integrate
-from raceway.integrators.newmark import Newmark
-from raceway.integrators.periodic import Periodic
-from raceway.scene.inner_ring import ring_inertia
+from raceway.integrators.methods import Newmark, Periodic
+from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
 from raceway.testing.systems import SPEED, linear_system, motion
 from validation import followed, several

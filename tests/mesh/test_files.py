@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.mesh_fit import check_sets
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import check_sets, mesh_scene
 from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.gmsh import Gmsh

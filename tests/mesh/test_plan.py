@@ -9,8 +9,7 @@ import attrs
 import pytest
 
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
-from raceway.bodies.mesh_plan import predicted_mesh
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import mesh_scene, predicted_mesh
 from raceway.cli.plan_screen import plan_screen
 from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.gmsh import Gmsh
@@ -59,7 +58,7 @@ def test_the_plan_refuses_meshes_beside_everything_else(mesh, path, words):
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.plan.allowed_bytes", lambda: float("inf"))
+    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.meshing import mesh_scene, scene_mesher
+from raceway.bodies.mesh import mesh_scene, scene_mesher
 from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.mesh.hex_mesh import EDGES, graded, growing

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import make_plan, scene_from_dict
-from raceway.bodies.patches.plan import patch_cost
+from raceway.bodies.condensed import patch_cost
 from raceway.core.patches.balls import Gyroscopic
 from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.pressure import Contact, SlipState

@@ -12,7 +12,7 @@ from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.revolution.body import Revolution, free_ball
 from raceway.core.revolution.sections import Profile, coarse_profile, dofs, graded_profile
 from raceway.plugins.structured_mesh import Structured
-from raceway.scene.inner_ring import ring_inertia
+from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 from tests.revolution.sections import BEARING, RADIUS, STEEL, ball
 

@@ -7,7 +7,7 @@ from math import pi
 import pytest
 
 from raceway import load_scene
-from raceway.scene.rig import Rig
+from raceway.scene.tables import Rig
 from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from validation.command_line import EXAMPLES

@@ -7,7 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from raceway.scene.rig import Rig
+from raceway.scene.tables import Rig
 from raceway.studies.rig.signals import critical_speed, readings
 from raceway.studies.shaft import beam, shaft
 from tests.rig.conftest import SPEED

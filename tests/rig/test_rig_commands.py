@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, RacewayError, load_scene
-from raceway.scene.rig import Signals
+from raceway.scene.tables import Signals
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.signals import recording_of, signals_of, write_recording
 from raceway.studies.rig.signals import record, response, silent

@@ -17,8 +17,7 @@ from raceway.elastic.assembly import Assembly, Body
 from raceway.elastic.bearing import ElasticSystem, SteppedElastic
 from raceway.elastic.contact import NodalContact, Pair, plane
 from raceway.elastic.surface import Facets, surface_points
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import CentralDifference, Newmark
 from validation.reference import elastic
 
 YOUNG, SIDE = 2e11, 2e-3

@@ -14,7 +14,7 @@ from raceway.core.threads import ThreadPool
 from raceway.core.time.schemes import integrate
 from raceway.elastic.assembly import fitting_threads
 from raceway.elastic.ring import at_rest
-from raceway.integrators.central_difference import CentralDifference
+from raceway.integrators.methods import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
 

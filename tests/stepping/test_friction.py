@@ -9,8 +9,7 @@ from raceway import ConvergenceError
 from raceway.core.record import Schedule, drift
 from raceway.core.time.schemes import integrate
 from raceway.elastic.friction import CoulombFriction
-from raceway.integrators.central_difference import CentralDifference
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import CentralDifference, Newmark
 from validation.block import POISSON, YOUNG, Block
 
 WEIGHT, MU = 2.0, 0.3

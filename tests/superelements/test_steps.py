@@ -10,8 +10,7 @@ from raceway.core.time.schemes import integrate
 from raceway.elastic.iterative_solver import LinearSolver
 from raceway.elastic.ring import at_rest
 from raceway.elastic.superelement import Closed
-from raceway.integrators.generalized_alpha import GeneralizedAlpha
-from raceway.integrators.newmark import Newmark
+from raceway.integrators.methods import GeneralizedAlpha, Newmark
 from raceway.testing import solve_equilibrium
 from tests.superelements.bearings import built
 

@@ -14,14 +14,12 @@ from raceway.bodies.model import Bearing, Told
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.framework.contracts import ContactPairs
-from raceway.framework.plugin_kernel import plugin_kernel
-from raceway.framework.probe import probe_excitation, probe_law
+from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway_cylindrical_rollers.compiled import rollers
 from raceway_cylindrical_rollers.kind import STRIBECK
 
 if TYPE_CHECKING:
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Equilibrium, Model
     from raceway.planning.plan import Plan
     from raceway.scene.scene import Scene
 

@@ -9,13 +9,12 @@ import attrs
 
 from raceway import Mistake, option, positive
 from raceway.framework.contracts import Cost, Traits
-from raceway.planning.wall_time import START_S, Times, compiled_motion
+from raceway.planning.cost import START_S, Times, compiled_motion
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
-    from raceway.planning.decisions import Balls, Motion
-    from raceway.planning.parts import Decisions
     from raceway.planning.plan import Plan
+    from raceway.planning.resolve import Balls, Decisions, Motion
     from raceway.scene.scene import Scene
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.

@@ -15,7 +15,7 @@ from raceway.errors import SceneError, Status
 from raceway.framework.registry import Registry
 from raceway.points.axes import parse_axis, points, tables_at
 from raceway.scene.changes import with_value
-from raceway.scene.file import read_toml
+from raceway.scene.inputs import read_toml
 from raceway.storage.tables import ReadTables, Tables
 
 DIRECTIONS = ("unidirectional", "bidirectional")

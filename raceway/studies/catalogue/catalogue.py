@@ -8,8 +8,7 @@ from raceway.errors import SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import ball_pass
-from raceway.scene.catalogue import Preset, found_by, geometry_of, no_preset
-from raceway.scene.materials import materials
+from raceway.scene.catalogue import Preset, found_by, geometry_of, materials, no_preset
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables

@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.options import nearest
-from raceway.storage.user_files import size_of, why_unreadable
+from raceway.storage.files import size_of, why_unreadable
 
 #: Bytes of the largest table.
 _LARGEST = 2**24

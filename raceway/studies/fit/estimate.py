@@ -26,8 +26,8 @@ import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.scene.catalogue import geometry_of
-from raceway.scene.continuous import continuous_keys, key_of, with_number
-from raceway.scene.given import leaves
+from raceway.scene.changes import continuous_keys, key_of, with_number
+from raceway.scene.inputs import leaves
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import tolerances_of
 

@@ -15,7 +15,7 @@ from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number, number_within, read_in
 from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
-from raceway.scene.given import as_scene
+from raceway.scene.inputs import as_scene
 from raceway.storage.tables import Tables
 from raceway.studies.fit.column_headers import quantity_of
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate

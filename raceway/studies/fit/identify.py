@@ -19,9 +19,9 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
 from raceway.plugins.pictures import given_axes, save_figure
-from raceway.scene.given import as_scene
+from raceway.scene.inputs import as_scene
 from raceway.scene.reading import rig_of
-from raceway.scene.rig import Rig
+from raceway.scene.tables import Rig
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE

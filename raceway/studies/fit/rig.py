@@ -22,10 +22,10 @@ import numpy as np
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
-from raceway.scene.continuous import key_of
+from raceway.scene.changes import key_of
 from raceway.scene.reading import rig_of
-from raceway.scene.rig import Rig
 from raceway.scene.scene import Scene
+from raceway.scene.tables import Rig
 from raceway.studies.fit.estimate import COVERAGE, Free, estimate, free_keys, uncertain, with_free
 from raceway.studies.fit.fit import Derived, Fitted, Series, refuse_few
 from raceway.studies.fit.shaft_angle import rotation_of

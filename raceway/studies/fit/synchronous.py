@@ -21,7 +21,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
-from raceway.scene.rig import Rig
+from raceway.scene.tables import Rig
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
 from raceway.studies.shaft import Bearing, Rotor, rotor

@@ -19,7 +19,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, values
 from raceway.pipeline.static_gradient import NoDerivative, static_gradient
 from raceway.planning.plan import make_plan
-from raceway.scene.continuous import Key, continuous_keys, key_of, with_number
+from raceway.scene.changes import Key, continuous_keys, key_of, with_number
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable

@@ -23,7 +23,7 @@ from math import pi, radians
 import attrs
 import numpy as np
 
-from raceway.scene.rig import Rig, Signals
+from raceway.scene.tables import Rig, Signals
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.rig import changed_rotors, invert, with_moment, with_tilt_of
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of

@@ -23,7 +23,7 @@ from raceway.points.commands import head
 from raceway.points.plot import parse_at, select
 from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
-from raceway.scene.given import tidy
+from raceway.scene.inputs import tidy
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.rotor import files

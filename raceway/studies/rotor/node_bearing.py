@@ -11,8 +11,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.bodies.mounting import evaluate_following
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
@@ -20,7 +19,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.plugins.excitations import harmonic_load
-from raceway.scene.given import as_scene
+from raceway.scene.inputs import as_scene
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
 

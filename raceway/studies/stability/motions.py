@@ -19,7 +19,7 @@ from raceway.core.ring.system import surrogate
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.recording import SAFETY
+from raceway.planning.resolve import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED
 from raceway.studies.stability.study import Rows

@@ -23,15 +23,14 @@ from raceway.core.time.schemes import integrate
 from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.closed_form import series_factor
+from raceway.planning.cost import series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient
 from raceway.studies.stability.study import FAILED, Measured, Rows, short
 from raceway.studies.stability.systems import Bench, axial_displacement, axial_force, stiffer_than_hertz
 
 if TYPE_CHECKING:
-    from raceway.bodies.equilibrium import Equilibrium
-    from raceway.bodies.model import Model
+    from raceway.bodies.model import Equilibrium, Model
     from raceway.pipeline.result import Result
 
 #: Of the balls' loads, which push across the axis, too, and far more than along it where a film has flattened the contact angle.

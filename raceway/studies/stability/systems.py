@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import attrs
 import numpy as np
 
-from raceway.bodies.equilibrium import Equilibrium
-from raceway.bodies.model import Model, build_model
+from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.bodies.running import running_pairs
 from raceway.core.contact.damping import stored_energy
 from raceway.core.excitations.harmonic import no_force

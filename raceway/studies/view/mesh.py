@@ -205,7 +205,7 @@ def mesh(
     if picture and find_spec("pyvista"):
         refuse_pictures(", or leave out --picture")
     with ProgressBar("meshing") as progress:
-        from raceway.bodies.meshing import mesh_scene
+        from raceway.bodies.mesh import mesh_scene
 
         start = time.perf_counter()
         if loaded.mesh is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.elastic.subsurface import BelowContact, below_contacts
+from raceway.bodies.elastic_stress import BelowContact, below_contacts
 from raceway.core.contact.hertz import axis_shear, axis_stresses
 from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
 from raceway.elastic.stress import cells_near
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.bodies.elastic.report import ElasticBodies
+    from raceway.bodies.elastic_contacts import ElasticBodies
     from raceway.core.hexahedron.operator import HexOperator
     from raceway.pipeline.result import Result
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.meshing import mesh_scene
+from raceway.bodies.mesh import mesh_scene
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.doors import door
 from raceway.framework.duties import traits_of
@@ -27,7 +27,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.pictures import given_axes, picture, save_figure
 from raceway.plugins.system_libraries import refuse_pictures
-from raceway.scene.given import as_scene
+from raceway.scene.inputs import as_scene
 from raceway.storage.files import writable, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.view.bodies import Bearing, State

@@ -1,0 +1,347 @@
+"""Elastic rings and balls, reduced to the compliances that the contacts feel; one force for each contact."""
+
+from __future__ import annotations
+
+from math import nan
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+
+from raceway.bodies import rigid_bearing as rigid
+from raceway.bodies.basis import Basis, seat_of
+from raceway.bodies.condensed import BETWEEN_BALLS
+from raceway.bodies.contacts import calibration_error, untold
+from raceway.bodies.model import Bearing, Told
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid_bearing import RigidBearing
+from raceway.core.contact.hertz import ball_compliance
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.patches.patch import RingBody, Solid
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System, surrogate
+from raceway.core.structural import (
+    SURFACE,
+    ElasticBodies,
+    calibrated,
+    elastic_system,
+    first_frequency,
+    reach,
+    ring_compliance,
+    ring_section,
+)
+from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.estimate import Estimate
+from raceway.planning.plan import Plan
+from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable
+
+    from raceway.bodies.model import Equilibrium, Model
+    from raceway.core.mesh.ring_mesh import RingShape
+    from raceway.core.revolution.sections import Profile
+
+
+def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
+    """First elastic frequencies of both rings as supported and free, and of a ball along its grooves [Hz].
+
+    Each with the error (w / w_1)^2 that leaving out its inertia makes in what it contributes; None in a static scene, and for
+    a ball whose inertia the motion has.
+
+    Notes
+    -----
+    A ball pressed by Q between two grooves is held along them by k = Q_i / L_i + Q_o / L_o, where L is the distance from the
+    ball's centre to the groove's.
+    """
+    scene = model.scene
+    b = scene.bearing
+    excitation = scene.excitation
+    frequency = None if excitation is None else float(excitation.frequency_hz)
+    out: Tables = {}
+
+    def tell(name: str, first: float | None) -> None:
+        out[f"{name}_hz"] = first
+        out[f"{name}_error"] = None if frequency is None or first is None else (frequency / first) ** 2
+
+    for inner, word in ((True, "inner"), (False, "outer")):
+        shape = ring_shape(b, inner)
+        for name, seat in (("supported", seat_of(scene, inner)), ("free", "free")):
+            steel = (b.rings.young, b.rings.poisson, b.rings.density)
+            tell(f"{word}_{name}", first_frequency(shape, b.ball_diameter, *steel, seat))
+    z, geometry = model.system.ball_count, model.geometry
+    force = equilibrium.contact_force
+    held = force[:z] / geometry.offset_inner + force[z:] / geometry.offset_outer
+    loaded = held[(force[:z] > 0.0) & (force[z:] > 0.0)]
+    mass = geometry.ball_mass(b.balls.density)
+    slowest = float(np.sqrt(loaded.min() / mass) / (2.0 * np.pi)) if len(loaded) else None
+    tell("ball_along_grooves", slowest)
+    recorded = excitation is not None and "record" in scene.identifier.method.needs
+    moves = recorded and scene.integrator.method.inertial and getattr(model.system, "ball_mass", 0.0) > 0.0
+    out["ball_along_grooves_in_motion"] = moves
+    if moves:
+        out["ball_along_grooves_error"] = None
+    return out
+
+
+#: Peak pressure [Pa] of the contact whose length the line loads on the rings have: independent of the scene's load, so that
+#: one table serves all of them; the compliance changes by less than 0.01 nm/N with it.
+_PRESSURE = 1.5e9
+#: Size of elements far from a contact that is calibrated at its surface points, over ``reach``.
+_CALIBRATED_BULK = 0.4
+#: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
+_KEPT = 8
+_BODIES: dict[Hashable, ElasticBodies] = {}
+
+
+def sections(scene: Scene, basis: Basis) -> Hashable:
+    """All that the compliances of the rings and their calibrations are computed from: loads and masses are not."""
+    b = scene.bearing
+    shape = b.ball_diameter, b.pitch_diameter, b.ball_count, b.conformity_inner, b.conformity_outer, b.contact_angle
+    sizes = b.bore, b.outer_diameter, b.width, b.shoulder_height, b.inner_profile, b.outer_profile
+    elastic = b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson
+    pairs = tuple((float(one.factor), *(float(axis) for axis in one.semi_axes(1.0))) for one in (basis.inner, basis.outer))
+    return shape, sizes, elastic, pairs, scene.supports.inner_seat, scene.supports.outer_seat, scene.mesh
+
+
+def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
+    """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
+
+    Parameters
+    ----------
+    coarser : factor on all sizes of elements
+
+    Raises
+    ------
+    SceneError
+        Bodies so soft that their contacts are as large as a ball.
+    """
+    key = (sections(scene, basis), coarser)
+    found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
+    _BODIES[key] = found  # the last in, and the last to go
+    if len(_BODIES) > _KEPT:
+        del _BODIES[next(iter(_BODIES))]
+    b, (a, across) = scene.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
+    own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
+    if not abs(own) * basis.ball_load < b.ball_diameter:
+        soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda one: one[1].young)
+        why = f"is too soft for {basis.ball_load:.3g} N a ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
+        raise SceneError.at(f"bearing.{soft}.young", steel.young, why)
+    return attrs.evolve(found, ball_own=own, ball_opposite=opposite)
+
+
+def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
+    """Rings and calibrations; the ball's own compliance, which follows the load, is filled in each time."""
+    b = scene.bearing
+    typical = typical_load(basis)
+    rings, calibrations = [], []
+    for inner in (True, False):
+        shape = ring_shape(b, inner)
+        half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
+        bulk, fine = element_sizes(scene, shape, half)
+        rings.append(
+            ring_compliance(
+                shape,
+                b.ball_diameter,
+                b.ball_count,
+                half,
+                b.rings.young,
+                b.rings.poisson,
+                seat_of(scene, inner),
+                coarser * bulk,
+                coarser * min(fine, bulk),
+                coarser * min(2.0 * fine, bulk),
+            )  # fmt: skip
+        )
+        size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
+        steel, balls = (Solid(one.young, one.poisson, bulk=size) for one in (b.rings, b.balls))
+        body = RingBody(shape, steel, seat_of(scene, inner), (0.0, 0.0))
+        both = basis.inner, basis.outer
+        calibrations.append(
+            calibrated(body, balls, both, typical, 0.5 * b.ball_diameter, b.ball_count, abs(b.contact_angle))
+        )
+    return ElasticBodies(rings[0], rings[1], nan, nan, (calibrations[0], calibrations[1]))
+
+
+def typical_load(basis: Basis) -> float:
+    """The load of ``_PRESSURE`` on the inner race [N]: p0 grows with the cube root of the load."""
+    return float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
+
+
+def element_sizes(scene: Scene, shape: RingShape, half: float) -> tuple[float, float]:
+    """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
+    length = reach(shape, scene.bearing.ball_diameter)
+    if scene.mesh is None:
+        return 0.62 * length, SURFACE * length
+    return min(scene.mesh.element_size, 0.62 * length), half / scene.mesh.nodes_per_semi_axis
+
+
+#: How much coarser the mesh is that error.mesh is estimated with.
+_COARSER = 2.0
+#: Entries of the stiffness below this part of sqrt(K_ii K_jj) are coupling that cancels out: no relative difference.
+_NOTHING = 1e-6
+
+
+def build(scene: Scene, plan: Plan) -> CondensedBearing:
+    """The bearing of a scene with condensed bodies and contact resultants."""
+    stiff = rigid.build(scene, plan)
+    bodies = elastic_bodies(scene, stiff.basis)
+    _refuse_stiff_law(scene, stiff, bodies)
+    _refuse_dashpots(scene, plan, stiff, bodies)
+    angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
+    system = elastic_system(surrogate(stiff.system), bodies, angles)
+    guess = place_ring(scene, stiff.basis, system)
+    return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
+
+
+@attrs.frozen(eq=False)
+class CondensedBearing(Bearing):
+    """Condensed rings and balls with contact resultants.
+
+    Attributes
+    ----------
+    rigid : the same bearing with rigid rings and balls
+    compliances : of rings and balls
+    angles : (Z,) at which the compliances between balls were taken [rad]; None where they are left out
+    """
+
+    rigid: RigidBearing
+    compliances: ElasticBodies
+    angles: np.ndarray | None
+
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
+        """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
+        system: System = surrogate(self.rigid.system)
+        q, ball, _ = system.settle(self.rigid.guess)
+        now = system.evaluate(q, ball=ball)
+        stiffness, _ = system.rows_following(q, now, now.stiffness, now.damping)
+        angle = float(np.nanmean(equilibrium.angle_inner))
+        inner, outer = self.compliances.at(angle)
+        mesh_error, how = self.mesh_error(model, equilibrium)
+        names = ("x", "y", "z", "tilt_y", "tilt_z")
+        return {
+            "bodies": "condensed: elastic rings and balls, contacts as resultants calibrated to Hertz",
+            "rigid_rings": {
+                "displacement": dict(zip(names, q.tolist(), strict=True)),
+                "stiffness": stiffness.tolist(),
+            },
+            "elasticity": _differences(equilibrium.stiffness, stiffness),
+            "compliance": {
+                "contact_angle_deg": float(np.degrees(angle)),
+                "inner_m_per_n": inner,
+                "outer_m_per_n": outer,
+                "ball_own_m_per_n": self.compliances.ball_own,
+                "ball_opposite_m_per_n": self.compliances.ball_opposite,
+                "largest_between_balls_m_per_n": self.compliances.largest_across,
+                "between_balls": self.angles is not None,
+            },
+            "mesh": {
+                "elements_inner": self.compliances.inner.elements,
+                "elements_outer": self.compliances.outer.elements,
+                "nodes_per_semi_axis": self._nodes_per_semi_axis(model, equilibrium),
+                "change_from_coarser": mesh_error,
+                "how": how,
+            },
+            "inertia": inertia_table(model, equilibrium),
+        }
+
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
+        scene = model.scene
+        coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
+        system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
+        system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
+        try:
+            q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
+        except ConvergenceError as why:
+            return None, Estimate.COARSER_MESH_FAILED(why=why)
+        chosen = np.flatnonzero(model.system.free > 0.0)
+        fine = np.diag(equilibrium.stiffness_rows_held)[chosen]
+        other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
+        return float(np.abs(other / fine - 1.0).max()), Estimate.COARSER_MESH()
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """Of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
+        if not model.traits.calibrated:
+            return untold(model)
+        return calibration_error(self.compliances, model, equilibrium)
+
+    def ring_section(self, model: Model, inner: bool) -> Profile:
+        """The mesh of a ring's section that its compliance was computed on, for pictures."""
+        basis, shape = self.rigid.basis, ring_shape(model.scene.bearing, inner)
+        half = float((basis.inner if inner else basis.outer).semi_axes(typical_load(basis))[0])
+        bulk, fine = element_sizes(model.scene, shape, half)
+        return ring_section(shape, model.scene.bearing.ball_diameter, bulk, min(fine, bulk))
+
+    def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
+        """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
+        half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
+        return half / self.compliances.inner.surface
+
+
+def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | None]]:
+    """(5, 5) relative differences of stiffness entries; None where the entry is nothing."""
+    scale = np.sqrt(np.abs(np.outer(np.diag(stiff), np.diag(stiff))))
+    return [
+        [float(elastic[i, j] / stiff[i, j] - 1.0) if abs(stiff[i, j]) > _NOTHING * scale[i, j] else None for j in range(5)]
+        for i in range(5)
+    ]
+
+
+def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
+    """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
+    system: System = surrogate(stiff.system)
+    angles = np.full(system.ball_count, scene.bearing.contact_angle)
+    try:
+        q, ball, _ = system.settle(stiff.guess)
+    except ConvergenceError:
+        return angles
+    centre, _ = system.centre_vectors(q)
+    loaded = system.evaluate(q, ball=ball).contact_force[: system.ball_count] > 0.0
+    found = np.arctan2(centre[:, 0], centre[:, 1])
+    if scene.kinematics.orbiting and loaded.any():
+        return np.full(system.ball_count, found[loaded].mean())
+    return np.where(loaded, found, angles)
+
+
+def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) -> None:
+    """A law so stiff that the bodies take off more compliance than its contact has."""
+    taken = min(bodies.at(scene.bearing.contact_angle))
+    if taken >= 0.0:
+        return
+    basis, system = stiff.basis, surrogate(stiff.system)
+    for load in (1.0, 5.0):
+        ellipse = basis.inner
+        gap = -ellipse.approach(load * basis.ball_load) * np.ones(2 * system.ball_count)
+        force, d_gap, d_rate = np.empty_like(gap), np.empty_like(gap), np.empty_like(gap)
+        system.law(
+            gap, np.zeros_like(gap), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, d_gap, d_rate
+        )
+        if (-d_gap * -taken).max() >= 1.0:
+            thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
+            remedy = thin if scene.contact.kind == "hertz" else "Use 'hertz', or a softer law"
+            raise SceneError.at(
+                "contact.kind",
+                scene.contact.kind,
+                f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
+                f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
+            )
+
+
+def _refuse_dashpots(scene: Scene, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
+    """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
+    taken = -min(bodies.at(scene.bearing.contact_angle))
+    if plan.time_step_s is None or scene.integrator.method.steady or taken <= 0.0:
+        return
+    # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
+    bound = 0.5 * plan.time_step_s / (1.5 * taken)
+    told = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * taken:.3g} nm/N off them"
+    if scene.contact.dashpot > bound:
+        why = f"{told}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
+        raise SceneError.at("contact.damping", scene.contact.damping, why)
+    load = float(typical_load(stiff.basis))
+    stiffness = max(1.5 * load / float(one.approach(load)) for one in (stiff.basis.inner, stiff.basis.outer))
+    if scene.time_constant * stiffness > bound:
+        why = f"{told}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
+        raise SceneError.at("contact.time_constant", scene.time_constant, why)

@@ -1,0 +1,220 @@
+"""Contacts of balls in grooves: their angles, ellipses that run over the edge, loads that no ball carries."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from raceway.bodies.basis import Basis
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.ring.ring import Ring
+from raceway.core.ring.system import surrogate
+from raceway.errors import ConvergenceError
+from raceway.framework.duties import renews, traits_of
+from raceway.framework.estimate import Estimate
+from raceway.scene.growth import groove_depth, load_at_edge
+from raceway.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from raceway.bodies.model import Equilibrium, Model, Told
+    from raceway.core.structural import ElasticBodies
+
+
+def contact_angles(
+    system: Ring, placed: bool, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing.  Of several states: (n, Z).
+
+    Parameters
+    ----------
+    placed : whether ``ball[..., :2]`` are the balls' places; else they lie between the groove centres
+    """
+    z = system.ball_count
+    centre = system.centre_vectors(q, t, ball)[0]
+    axial, radial = centre[..., 0], centre[..., 1]
+    if not placed:
+        inner = outer = np.arctan2(axial, radial)
+    else:
+        inner = np.arctan2(axial - ball[..., 0], radial - ball[..., 1])
+        outer = np.arctan2(ball[..., 0], ball[..., 1])
+    return np.where(force[..., :z] > 0, inner, np.nan), np.where(force[..., z:] > 0, outer, np.nan)
+
+
+def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+    """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
+    edges, found = groove_edges(scene, basis), []
+    overs = ellipse_ends(basis, inner, outer, force)
+    for race, (word, angle, over) in enumerate(zip(("inner", "outer"), (inner, outer), overs, strict=True)):
+        beyond = over - edges
+        if np.nanmax(beyond, initial=0.0) > 0.0:
+            ball = int(np.nanargmax(beyond))
+            bearing, edge, reach = scene.bearing.of_rows[basis.row[ball]], edges[ball], over[ball]
+            depth = groove_depth(bearing)
+            begins = load_at_edge(basis.of_ball(ball)[race], 0.5 * bearing.ball_diameter, edge - abs(angle[ball]))
+            assumed = "" if scene.bearing.shoulder_height else ", assumed 0.2 D"
+            found.append(
+                f"the contact ellipse on the {word} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
+                f"contact angle from {begins:.3g} N a ball"
+            )
+    return found
+
+
+def groove_edges(scene: Scene, basis: Basis) -> np.ndarray:
+    """(Z,) angle from the groove's bottom to its edge, seen from the ball's centre, of every ball's row [rad]."""
+    rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in scene.bearing.of_rows]
+    return np.asarray(np.array(rows)[basis.row])
+
+
+def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angle (..., Z) of the far end of each contact ellipse, inner and outer; angles (..., Z), forces (..., 2 Z)."""
+    z, radius = force.shape[-1] // 2, basis.ball_radius
+    return (
+        np.abs(inner) + basis.inner.semi_axes(force[..., :z])[0] / radius,
+        np.abs(outer) + basis.outer.semi_axes(force[..., z:])[0] / radius,
+    )
+
+
+def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
+    """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
+
+    Raises
+    ------
+    ConvergenceError
+        With ``state``, the solution that says so.
+    """
+    z, radius = len(force) // 2, basis.ball_radius
+    for race, ellipse, load in (("inner", basis.inner, force[:z]), ("outer", basis.outer, force[z:])):
+        half = ellipse.semi_axes(load)[0] / radius
+        if half.max(initial=0.0) >= 0.5 * np.pi:
+            raise ConvergenceError(
+                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
+                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
+                "(bearing.rings.young in Pa, lengths in m)",
+                state,
+            )
+
+
+#: Halvings of an interval of approaches: to the last bit.
+_HALVINGS = 80
+
+
+def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
+
+    Parameters
+    ----------
+    approach : (n,) [m]
+    """
+    system, n = surrogate(ring), len(approach)
+    row, z = race * system.ball_count, system.ball_count
+    # A number of contacts that is that of the balls is theirs: rows may differ.
+    chosen = np.arange(row, row + z) if n == z else np.full(n, row)
+    params, state = (np.ascontiguousarray(each[chosen]) for each in (system.law_params, system.law_state))
+    force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
+    system.law(-np.ascontiguousarray(approach), np.zeros(n), params, state, state.copy(), 0.0, force, d_gap, d_rate)
+    return force, -d_gap
+
+
+def approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
+    """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
+    load = np.asarray(load, dtype=float)
+    low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
+    while (short := law_of_pair(ring, race, high)[0] < load).any():
+        high = np.where(short, 2.0 * high, high)
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        below = law_of_pair(ring, race, middle)[0] < load
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.where(load > 0.0, high, 0.0)
+
+
+def contact_ellipse(
+    scene: Scene, basis: Basis, ring: Ring, race: int, load: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Peak pressure (n,) [Pa] and semi-axes a, b (n,) [m] of the contacts of a race at loads (n,) [N].
+
+    Notes
+    -----
+    Of a foundation, whose pressure p(g) follows from the overlap g at each place, the force on the overlap ellipse
+    A x^2 + B y^2 <= delta is F = pi / sqrt(A B) int_0^delta p dg.  So the peak pressure is p(delta) = sqrt(A B) / pi dF/ddelta,
+    and the semi-axes are sqrt(delta / A), sqrt(delta / B).
+    """
+    ellipse: Ellipse = (basis.inner, basis.outer)[race]
+    contact = scene.contact
+    if not scene.bearing.equal_rows and len(load) != len(basis.azimuth):
+        # Loads of no particular balls: of the row in which they press hardest.
+        each = [one.ellipses(basis.modulus)[race] for one in basis.geometries]
+        ellipse = max(each, key=lambda one: float(one.peak_pressure(1.0)))
+    if not traits_of(scene).resultants or not getattr(contact.law, "foundation", False):
+        return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
+    a, b = ellipse.curvatures
+    approach = approach_at(ring, basis.geometry.ball_diameter, race, load)
+    slope = law_of_pair(ring, race, approach)[1]
+    return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)
+
+
+def calibration_error(
+    compliances: ElasticBodies, model: Model, equilibrium: Equilibrium, more: float = 0.0
+) -> tuple[float | None, str]:
+    """Relative error of a ball's stiffness by what its contacts' calibration leaves, the largest of all loaded balls; and how.
+
+    Parameters
+    ----------
+    more : error of the compliance of each contact besides [m/N]
+    """
+    at_inner, at_outer = compliances.calibrations
+    if at_inner is None or at_outer is None:
+        return None, Estimate.NOT_CALIBRATED()
+    z = model.system.ball_count
+    force = equilibrium.contact_force
+    loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
+    if not loaded.any():
+        return None, Estimate.NO_BALL_LOADED()
+    inner, outer = force[:z][loaded], force[z:][loaded]
+    give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
+    give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
+    left = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
+    return float((left / give).max()), Estimate.CALIBRATED()
+
+
+#: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
+_ROUNDING = 1e-8
+
+
+def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
+    """Largest relative difference of a loaded contact's approach or stiffness from Hertz's at the same load."""
+    if renews(model.scene.contact.law):
+        return None, Estimate.BEYOND_HERTZ(kind=model.scene.contact.kind)
+    loaded = equilibrium.contact_force > 0.0
+    split = model.system.ball_count
+    force = equilibrium.contact_force
+    hertz = np.concatenate([model.inner.approach(force[:split]), model.outer.approach(force[split:])])
+    approach = -equilibrium.gap
+    off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
+    slope = np.concatenate([
+        law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
+    ])  # fmt: skip
+    stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
+    if max(off, stiffness) < _ROUNDING:
+        return None, Estimate.HERTZ_ITSELF()
+    return max(off, stiffness), Estimate.AGAINST_HERTZ(stiffness=stiffness, approach=off)
+
+
+def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told:
+    """Largest share of a loaded contact's approach that the surfaces overlap; ``columns`` : those of the balls."""
+    loaded = equilibrium.contact_force > 0.0
+    left, approach = (
+        np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
+        for name in ("approach_penetration", "approach")
+    )
+    share = float((left / np.maximum(approach, 1e-300)).max())
+    return share, Estimate.OVERLAP()
+
+
+def untold(model: Model) -> Told:
+    """Of laws that are calibrated to Hertz and nothing more is known of."""
+    return None, Estimate.LAW_UNKNOWN(kind=model.scene.contact.kind)

@@ -1,0 +1,174 @@
+"""Elastic rings and balls whose every node is a degree of freedom: pressures at points, or a calibrated force a contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, call_plugin, make_basis
+from raceway.bodies.elastic_contacts import ElasticBodies, ElasticPoints, ElasticResultants
+from raceway.bodies.mesh import check_sets, mesh_scene, scene_mesher
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid_bearing import probe, rigid_system
+from raceway.contact_laws.hertz import Hertz
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
+from raceway.core.ring.ring import Ring
+from raceway.core.ring.system import System
+from raceway.core.signatures import LAW
+from raceway.elastic.bearing import ElasticBearing
+from raceway.elastic.bearing_data import BearingData
+from raceway.elastic.ring import ElasticRing
+from raceway.errors import ConvergenceError, PluginError, SceneError
+from raceway.framework.contracts import ContactPairs
+from raceway.framework.probe import plugin_kernel
+from raceway.planning.plan import Plan
+from raceway.scene.growth import radial_growth
+from raceway.scene.scene import Scene
+
+#: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
+_ENOUGH = 5.0
+
+
+def build(scene: Scene, plan: Plan) -> ElasticBodies:
+    """The bearing of a scene with elastic bodies.
+
+    Raises
+    ------
+    MeshError
+        Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
+    """
+    basis, whole = make_basis(scene), scene.contact.discretisation == "resultant"
+    as_rigid = scene
+    if not whole:
+        contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+        as_rigid = attrs.evolve(scene, contact=contact)
+    rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
+    probe(as_rigid, basis, rigid)
+    guess = place_ring(as_rigid, basis, rigid)
+    setup = _setup(scene, basis, rigid)
+    if whole:
+        from raceway.bodies.condensed_bearing import elastic_bodies
+
+        params = rigid.law_params
+        angles = _angles(scene, plan, rigid, guess)
+        # Of the bearing's own rings and balls, whatever mesh stands for them: the calibration is local.
+        compliances = elastic_bodies(attrs.evolve(scene, mesh=None), basis)
+        beyond = np.concatenate([compliances.beyond(race, of) for race, of in enumerate(np.split(angles, 2))])
+        setup = attrs.evolve(setup, angles=angles, beyond=beyond, params=lambda pair, area: params[pair])
+    meshes = mesh_scene(scene)
+    check_sets(scene_mesher(scene), meshes, scene.supports)
+    bodies = ElasticBearing(meshes, setup)
+    if whole:
+        _refuse_stiff_law(scene, basis, bodies)
+    fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
+    held_by = scene.load.axial if scene.supports.axial == "displacement" else None
+    system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
+    if whole:
+        return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
+    return ElasticPoints(basis, system, guess, bodies, rigid)
+
+
+def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:
+    """(2 Z,) contact angles with rigid bodies, inner races first; the free one where a ball carries nothing."""
+    angles = np.full(2 * rigid.ball_count, scene.bearing.contact_angle)
+    try:
+        q, ball, _ = rigid.settle(guess)
+    except ConvergenceError:  # said better where the equilibrium is looked for
+        return angles
+    inner = outer = rigid.centre_vectors(q)[0]
+    if plan.centrifugal:
+        inner, outer = inner - ball[:, :2], ball[:, :2]
+    found = np.concatenate([np.arctan2(way[:, 0], way[:, 1]) for way in (inner, outer)])
+    return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, found, angles)
+
+
+def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> None:
+    """A law that has less compliance than the mesh under its contacts."""
+    contact: Any = bodies.system.contact
+    n, load = len(contact.local), _ENOUGH * basis.ball_load
+    gap = np.full(n, -float(basis.inner.approach(load)))
+    force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
+    contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
+    if (-d_gap * contact.local).max() >= 1.0:
+        remedy = "Take a smaller load" if scene.contact.kind == "hertz" else "Use 'hertz' or a softer law"
+        raise SceneError.at(
+            "contact.kind",
+            scene.contact.kind,
+            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
+            f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. {remedy}, or take "
+            "contact.discretisation = 'nodal'",
+        )
+
+
+def _setup(scene: Scene, basis: Basis, rigid: System) -> BearingData:
+    b, rotor, contact = scene.bearing, scene.rotor, scene.contact
+    inertia = [rotor.mass] * 3 + [rotor.transverse_inertia] * 2  # the ring's own is in its mesh
+    outer = 0.0 if scene.excitation is None else scene.excitation.amplitude_n
+    # A radial load is carried by a few balls: 5 F / Z (Stribeck).
+    most = basis.ball_load + 5.0 * (float(np.hypot(*scene.load.radial)) + outer) / b.ball_count
+    return BearingData(
+        geometry=basis.geometry,
+        azimuth=basis.azimuth,
+        rings=(b.rings.young, b.rings.poisson, b.rings.density),
+        balls=(b.balls.young, b.balls.poisson, b.balls.density),
+        reference_load=0.25 * most if most > 4.0 * basis.ball_load else basis.ball_load,
+        law=plugin_kernel(contact.law, "contact law", LAW, "LAW"),
+        params=_params(scene, basis),
+        state_size=contact.law.state_size,
+        mass=np.diag(inertia),
+        damping=rigid.damping,
+        stiffness=rigid.stiffness,
+        free=rigid.free > 0.0,
+        load=rigid.load,
+        formulation=scene.bodies.formulation,
+        hourglass=scene.bodies.hourglass,
+        seat_inner=scene.supports.inner_seat,
+        seat_outer=scene.supports.outer_seat,
+        contact_damping=contact.dashpot,
+        ball_force=float(rigid.table[0, CENTRIFUGAL]),
+        growth=radial_growth(scene),
+        friction=contact.friction,
+        stick=_stick(scene, basis),
+    )
+
+
+def _stick(scene: Scene, basis: Basis) -> float | None:
+    """Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse; None where nothing is given."""
+    given = scene.contact.stick_stiffness
+    if given is None:
+        return None
+    along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
+    return given / (np.pi * along * across)
+
+
+def _params(scene: Scene, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
+    law, z = scene.contact.law, len(basis.azimuth)
+
+    def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
+        inner = pair < z
+
+        def either(a: float, b: float) -> np.ndarray:
+            return np.where(inner, a, b).astype(float)
+
+        one, other = basis.inner, basis.outer
+        pairs = ContactPairs(
+            curvature_a=either(one.curvatures[0], other.curvatures[0]),
+            curvature_b=either(one.curvatures[1], other.curvatures[1]),
+            contact_modulus=either(basis.modulus, basis.modulus),
+            hertz_factor=either(one.factor, other.factor),
+            reference_load=either(basis.ball_load, basis.ball_load),
+            area=area,
+        )
+        found = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+        if found.ndim != 2 or len(found) != len(pair):
+            raise PluginError(
+                f"contact law '{scene.contact.kind}': build() returned parameters of shape {found.shape}; "
+                f"it must be ({len(pair)}, k): a row for each surface point"
+            )
+        return found
+
+    return params

@@ -1,0 +1,391 @@
+"""Condensed rings and balls whose contacts are pressures at surface points.
+
+The answer of rigid rings on Hertz's contacts says how far the contacts reach and which load the points are laid out for;
+where contacts go further than that, the patches are made wider.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, call_plugin, make_basis
+from raceway.bodies.condensed import nodes_of
+from raceway.bodies.condensed_bearing import inertia_table
+from raceway.bodies.contacts import overlap
+from raceway.bodies.mesh import locking
+from raceway.bodies.model import Bearing, Told
+from raceway.bodies.mounting import place_ring
+from raceway.bodies.rigid_bearing import probe, rigid_system
+from raceway.contact_laws.hertz import Hertz
+from raceway.core.mesh.ring_mesh import ring_shape
+from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
+from raceway.core.patches.pressure import BeyondPatch, ContactState, PointLaw, PressureField, Reach, pressure_field, reach_of
+from raceway.core.patches.system import PatchSystem, Pool
+from raceway.core.record import Record
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
+from raceway.core.ring.orbit import steady_orbit
+from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
+from raceway.core.ring.system import System, surrogate
+from raceway.core.signatures import LAW
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.framework.contracts import ContactPairs
+from raceway.framework.estimate import Estimate
+from raceway.framework.probe import plugin_kernel
+from raceway.planning.plan import Plan
+from raceway.scene.growth import load_at_edge
+from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Equilibrium, Model
+    from raceway.core.contact.hertz import Ellipse
+
+
+#: Entries of the stiffness below this part of sqrt(K_ii K_jj) are ripple or cancel out: no relative difference.
+_NOTHING = 0.02
+#: Points along a semi-axis below which the largest pressure is off by more than 1 %.
+_ENOUGH = 3.0
+
+
+@attrs.frozen(eq=False)
+class NodalBearing(Bearing):
+    """Condensed rings and balls with pressures at surface points.
+
+    Attributes
+    ----------
+    nodes : points along each semi-axis of the inner contact at ``load`` [N]
+    spacing : Spacing
+    pool : patches as they are now
+    rigid : the same scene with rigid bodies;  beside : (5,) where its equilibrium is looked for
+    coarser : builds the same system with half as many points; None where there are no fewer
+    """
+
+    nodes: float
+    load: float
+    spacing: Spacing
+    pool: Pool
+    rigid: System
+    beside: np.ndarray
+    coarser: Callable[[], Ring] | None
+    _errors: dict[bytes, tuple[float | None, str]] = attrs.field(init=False, factory=dict)
+
+    def friction_lost(self, system: Ring, record: Record) -> float:
+        """By the points' memory."""
+        assert isinstance(system, PatchSystem)
+        return system.friction_lost(record)
+
+    def settle(
+        self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
+    ) -> tuple[np.ndarray, np.ndarray, int]:
+        """From a near equilibrium, what is held staying where it is; from the own guess where that fails."""
+        if near is not None:
+            try:
+                return self.system.settle(np.where(self.system.free > 0.0, near, self.guess))
+            except ConvergenceError:
+                pass  # the own guess decides whether there is an equilibrium
+        return super().settle()
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """The overlap that a law leaves."""
+        return overlap(self.ball_columns(model, equilibrium), equilibrium)
+
+    def pressed(self, model: Model, equilibrium: Equilibrium) -> tuple[Evaluation, list[ContactState]]:
+        """The state and the contacts' answers at the equilibrium, inner races first."""
+        system: Any = model.system.without(CAGE)
+        now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)
+        return now, system.pressures()
+
+    def pressure_field(self, model: Model, equilibrium: Equilibrium, ball: int, inner: bool = True) -> PressureField:
+        """Pressures of one contact at the equilibrium."""
+        contacts = self.pressed(model, equilibrium)[1]
+        which = ball if inner else ball + model.system.ball_count
+        return pressure_field(self.pool.patches[0 if inner else 1], contacts[which])
+
+    def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).
+
+        Notes
+        -----
+        The approach of a contact is Hertz's at its load, what a law's penetration adds, and the rest, which finite rings
+        and balls give less or more than half-spaces.
+        """
+        now, contacts = self.pressed(model, equilibrium)
+        z, out = model.system.ball_count, {}
+        for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
+            chosen = contacts[race * z : (race + 1) * z]
+            load = now.contact_force[race * z : (race + 1) * z]
+            approach = np.where(load > 0.0, -now.gap[race * z : (race + 1) * z], 0.0)
+            left = np.array([one.penetration for one in chosen])
+            area = self.pool.patches[race].area
+            out[f"peak_pressure_nodal_{word}_pa"] = np.array([one.load.max(initial=0.0) / area for one in chosen])
+            out[f"points_{word}"] = np.array([float(len(one.nodes)) for one in chosen])
+            across = np.array([float(ellipse.semi_axes(f)[1]) for f in load]) / self.spacing.across
+            along = np.array([float(ellipse.semi_axes(f)[0]) for f in load]) / self.spacing.along
+            out[f"points_per_semi_axis_{word}"] = np.minimum(across, along)
+            out[f"approach_{word}_m"] = approach
+            out[f"approach_hertz_{word}_m"] = np.asarray(ellipse.approach(load))
+            out[f"approach_penetration_{word}_m"] = left
+            out[f"approach_structural_{word}_m"] = approach - np.asarray(ellipse.approach(load)) - left
+        return out
+
+    def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
+        """The table ``model`` of result.json."""
+        q, ball, _ = self.rigid.settle(self.beside)
+        now = self.rigid.evaluate(q, ball=ball)
+        stiffness, _ = self.rigid.rows_following(q, now, now.stiffness, now.damping)
+        columns = self.ball_columns(model, equilibrium)
+        error, how = self._change_from_coarser(model, equilibrium)
+        counts = [columns[f"points_per_semi_axis_{word}"] for word in ("inner", "outer")]
+        loaded = equilibrium.contact_force[: model.system.ball_count] > 0.0
+        approach = columns["approach_inner_m"][loaded]
+        share = columns["approach_penetration_inner_m"][loaded] / approach if loaded.any() else np.zeros(1)
+        scale = np.sqrt(np.abs(np.outer(np.diag(stiffness), np.diag(stiffness))))
+        told = np.abs(stiffness) > _NOTHING * scale
+        return {
+            "bodies": "condensed: finite elements of rings and balls, pressures at surface points",
+            "rigid_rings": {
+                "displacement": dict(zip(COORDINATES, q.tolist(), strict=True)),
+                "stiffness": stiffness.tolist(),
+            },
+            "elasticity": [
+                [float(equilibrium.stiffness[i, j] / stiffness[i, j] - 1.0) if told[i, j] else None for j in range(5)]
+                for i in range(5)
+            ],
+            "mesh": {
+                "nodes_per_semi_axis": self.nodes,
+                "at_ball_load_n": self.load,
+                "least_nodes_per_semi_axis": float(min(np.min(c[loaded], initial=np.inf) for c in counts)),
+                "spacing_along_m": self.spacing.along,
+                "spacing_across_m": self.spacing.across,
+                "change_from_coarser": error,
+                "how": how,
+            },
+            "inertia": inertia_table(model, equilibrium),
+            "penetration_share": float(share.max(initial=0.0)),
+            "tangent": "mean over all places of the points under the ellipses, which takes away its ripple",
+        }
+
+    def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        """Relative error by too few points: of the displacement or, where a motion is identified, by the ripple if larger.
+
+        Notes
+        -----
+        The displacement's is of order 2: a third of what half as many points change.  The ripple is measured at one place
+        of the points, against the mean over all places; a motion of some micrometres meets a few places and averages some of it.
+        """
+        error, how = self._change_from_coarser(model, equilibrium)
+        if model.scene.excitation is None or not {"record", "speeds"} & set(model.scene.identifier.method.needs):
+            return error, how
+        ripple = self._ripple(model, equilibrium)
+        if error is not None and error >= ripple:
+            return error, Estimate.FEWER_POINTS_NOT_RIPPLE(ripple=ripple)
+        return ripple, Estimate.RIPPLE(change="" if error is None else f"; {how} is {error:.2g}")
+
+    def _ripple(self, model: Model, equilibrium: Equilibrium) -> float:
+        """Largest relative difference of a radial tangent at the equilibrium from the mean over all places of the points."""
+        now, _ = self.pressed(model, equilibrium)
+        return float(np.abs(np.diag(now.stiffness)[1:3] / np.diag(equilibrium.stiffness_rows_held)[1:3] - 1.0).max())
+
+    def _change_from_coarser(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        if self.coarser is None:
+            return None, Estimate.FEWEST_POINTS()
+        state = model.system.load.tobytes() + equilibrium.displacement.tobytes()
+        if state not in self._errors:
+            self._errors[state] = self._compared(self.coarser, model, equilibrium)
+        return self._errors[state]
+
+    @staticmethod
+    def _compared(coarser: Callable[[], Ring], model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
+        try:
+            coarse = coarser()
+            q, _, _ = attrs.evolve(coarse, load=model.system.load).settle(equilibrium.displacement)
+        except RacewayError as why:
+            return None, Estimate.FEWER_POINTS_FAILED(why=why)
+        weight = np.array([1.0, 1.0, 1.0, model.system.arm, model.system.arm])
+        change = np.abs((q - equilibrium.displacement) * weight).max() / np.abs(equilibrium.displacement * weight).max()
+        return float(change) / 3.0, Estimate.FEWER_POINTS()
+
+    def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
+        """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few; elements that lock."""
+        _, contacts = self.pressed(model, equilibrium)
+        z, radius, found = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.scene)
+        for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
+            cut = [one for one in contacts[race * z : (race + 1) * z] if one.truncated]
+            if not cut:
+                continue
+            sense = self.pool.patches[race].race.sense
+            worst = max(cut, key=lambda one: float(np.hypot(*one.force)))
+            angle = float(np.arctan2(-sense * worst.force[0], -sense * worst.force[1]))
+            low, high = self.pool.patches[race].race.edges
+            edge, angle = (high, angle) if high - angle < angle - low else (-low, -angle)
+            begins = load_at_edge(ellipse, radius, edge - angle)
+            found.append(
+                f"{len(cut)} contact(s) on the {word} race are cut off by the groove's edge at {np.degrees(edge):.1f} deg: at "
+                f"{np.degrees(angle):.1f} deg that begins at {begins:.3g} N a ball; the pressure at the edge depends on the mesh"
+            )
+        columns = self.ball_columns(model, equilibrium)
+        loaded = equilibrium.contact_force[:z] > 0.05 * equilibrium.contact_force[:z].max(initial=1e-300)
+        least = float(columns["points_per_semi_axis_inner"][loaded].min(initial=np.inf))
+        if least < _ENOUGH:
+            found.insert(
+                0,
+                f"only {least:.1f} points lie along a semi-axis of a loaded contact: take more mesh.nodes_per_semi_axis for its "
+                "pressure, which is off by percents below 3",
+            )
+        return found
+
+
+#: Size of elements far from the contacts [m] where the scene says nothing.
+BULK = 0.8e-3
+#: Contacts that are laid out may carry this much more than rigid bodies say before patches are made anew.
+_ROOM = 1.2
+
+
+def build(scene: Scene, plan: Plan) -> NodalBearing:
+    """The bearing of a scene with condensed bodies and pressures at surface points.
+
+    Raises
+    ------
+    MeshError
+        Rings without dimensions, sections that cannot be meshed.
+    """
+    basis = make_basis(scene)
+    contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+    as_rigid = attrs.evolve(scene, contact=contact)
+    rigid = rigid_system(as_rigid, plan, basis)
+    probe(as_rigid, basis, rigid)
+    guess = place_ring(as_rigid, basis, rigid)
+    reach = _first_reach(scene, basis, rigid, guess)
+    nodes, load = _layout(scene, reach)
+    system, spacing = _system(scene, basis, rigid, reach, nodes, load)
+    beside = guess
+    if scene.bearing.preloaded or scene.supports.axial == "displacement":
+        rigid = attrs.evolve(rigid, table=rigid.table.copy())
+        guess = place_ring(as_rigid, basis, system)
+
+    def coarser() -> Ring:
+        coarse, _ = _system(scene, basis, system, reach, 0.5 * nodes, load)
+        return coarse
+
+    fewer = coarser if nodes >= 2.0 else None
+    return NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
+
+
+def _system(scene: Scene, basis: Basis, like: Ring, reach: Reach, nodes: float, load: float) -> tuple[PatchSystem, Spacing]:
+    """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
+    spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
+    make = _maker(scene, spacing)
+    laws = _point_laws(scene, basis, spacing)
+    pool = Pool(make(reach), laws, _widening(basis, reach, make), scene.contact.friction)
+    mass = basis.geometry.ball_mass(scene.bearing.balls.density) if scene.kinematics.ball_inertia else 0.0
+    fields = {f.name: getattr(like, f.name) for f in attrs.fields(Ring)}
+    return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=surrogate(like), pool=pool, ball_mass=mass), spacing
+
+
+def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
+    a, b = ellipse.semi_axes(load)
+    return float(a), float(b)
+
+
+def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:
+    """Loads and contact angles of rigid bodies at rest and, where the excitation repeats, on its orbit."""
+    q, ball, _ = rigid.settle(guess)
+    states = [(q, ball, 0.0)]
+    excitation = scene.excitation
+    if excitation is not None and excitation.period_s is not None:
+        try:
+            orbit = steady_orbit(rigid.at_standstill(), excitation.period_s, q, samples=33)
+            times = np.arange(33) * orbit.period / 33
+            states += [(q, ball, t) for q, ball, t in zip(orbit.displacement, orbit.ball, times, strict=True)]
+        except ConvergenceError:
+            pass  # patches grow on the way
+    angles: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    loads: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    still = rigid.at_standstill()
+    for q, ball, t in states:
+        now = still.evaluate(q, ball=ball, t=t)
+        centre = still.centre_vectors(q, t)[0]
+        z = still.ball_count
+        place = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
+        for race, vector in enumerate((centre - place, place)):
+            angles[race].append(np.arctan2(vector[:, 0], vector[:, 1]))
+            loads[race].append(now.contact_force[race * z : (race + 1) * z])
+    free = basis.geometry.contact_angle
+    given = [(np.concatenate(a), np.concatenate(f)) for a, f in zip(angles, loads, strict=True)]
+    return reach_of(given[0], given[1], (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
+
+
+def _layout(scene: Scene, reach: Reach) -> tuple[float, float]:
+    """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry.
+
+    Notes
+    -----
+    The mean is rounded to two digits: states near each other then share their compliances.
+    """
+    nodes = float(nodes_of(scene))
+    load = getattr(scene.mesh, "ball_load", None)
+    return nodes, float(load) if load is not None else float(f"{reach.mean_load:.1e}")
+
+
+def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:
+    """Patches for a reach; the ball's grid follows the larger one of the two."""
+    b = scene.bearing
+    bulk = float(getattr(scene.mesh, "element_size", BULK))
+    rings = Solid(b.rings.young, b.rings.poisson, bulk=bulk)
+    steel = Solid(b.balls.young, b.balls.poisson, bulk=bulk)
+    seats = [
+        value if isinstance(value, float) else "clamped" for value in (scene.supports.inner_seat, scene.supports.outer_seat)
+    ]
+
+    def make(reach: Reach) -> tuple[Patch, Patch]:
+        grid = spacing.holding(reach.widest)
+        # Half a row for mean stiffnesses, which slide so far, and half a row since the last one must carry nothing.
+        slide = grid.along / min(ring_shape(b, inner).groove for inner in (True, False))
+        bodies = [
+            RingBody(ring_shape(b, inner), rings, seat, (window[0] - slide, window[1] + slide))
+            for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
+        ]
+        rows = max(int((body.window[1] - body.window[0]) * body.shape.groove / grid.along) + 2 for body in bodies)
+        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows, shear=scene.contact.friction > 0.0)
+        first, second = (make_patch(body, ball, grid, b.ball_count) for body in bodies)
+        return first, second
+
+    return make
+
+
+def _widening(
+    basis: Basis, reach: Reach, make: Callable[[Reach], tuple[Patch, Patch]]
+) -> Callable[[BeyondPatch], tuple[Patch, Patch]]:
+    """What a pool calls when a contact leaves its patch."""
+    now = [reach]
+
+    def wider(left: BeyondPatch) -> tuple[Patch, Patch]:
+        ellipse = basis.inner if left.sense < 0.0 else basis.outer
+        now[0] = now[0].grown(left, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
+        return make(now[0])
+
+    return wider
+
+
+def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
+    """Laws of the inner and the outer race's points; the plan has refused those that remember."""
+    law = scene.contact.law
+    if getattr(law, "constraint", False):
+        return None, None
+    both = [basis.inner, basis.outer]
+    pairs = ContactPairs(
+        curvature_a=np.array([e.curvatures[0] for e in both]),
+        curvature_b=np.array([e.curvatures[1] for e in both]),
+        contact_modulus=np.full(2, basis.modulus),
+        hertz_factor=np.array([e.factor for e in both]),
+        reference_load=np.full(2, basis.ball_load),
+        area=np.full(2, spacing.area),
+    )
+    params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+    kernel = plugin_kernel(law, "contact law", LAW, "LAW")
+    first, second = (PointLaw(kernel, row, spacing.area) for row in params)
+    return first, second

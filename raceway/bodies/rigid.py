@@ -1,0 +1,70 @@
+"""The kind of bodies of which only the contacts deform."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.errors import Mistake
+from raceway.framework.contracts import Cost, Traits
+from raceway.planning.cost import START_S, Times, compiled_motion, highest_frequency
+from raceway.planning.resolve import Balls, Decisions, Motion
+from raceway.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Bearing
+    from raceway.planning.plan import Plan
+
+_TIMES = Times({"weightless": 2.3e-6, "inertial": 3.3e-6, "tangential": 16.0e-6}, sample=8.0e-6, search=1.0)
+_NO_MESH = "bodies.kind is rigid: no body is meshed"
+
+
+@attrs.frozen
+class Rigid:
+    """Rigid rings and balls: only the contacts deform."""
+
+    name: ClassVar[str] = "rigid"
+
+    def faults(self, scene: Scene) -> list[Mistake]:
+        """Seats and meshes, which rigid bodies have none of; surface points."""
+        faults = []
+        if scene.mesh is not None:
+            why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
+            faults.append(Mistake("mesh", None, why))
+        if scene.contact.discretisation == "nodal" and "nodal" in scene.contact.law.discretisations:
+            why = "rigid bodies have no surface points: use 'resultant'"
+            faults.append(Mistake("contact.discretisation", "nodal", why))
+        for key, seat in (("outer_seat", scene.supports.outer_seat), ("inner_seat", scene.supports.inner_seat)):
+            if seat != "rigid":
+                why = "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'"
+                faults.append(Mistake(f"supports.{key}", seat, why))
+        return faults
+
+    def traits(self, scene: Scene) -> Traits:
+        """Contact resultants with compiled forces."""
+        return Traits(renews=True, damps=True)
+
+    def stable_step(self, scene: Scene) -> float:
+        """Of the ring on its contacts [s]."""
+        return 2.0 / highest_frequency(scene)
+
+    def decide(self, scene: Scene, parts: Decisions) -> None:
+        """No part of a body that deforms."""
+        parts.leave_out("elastic rings and balls", "bodies.kind is rigid: only contacts deform")
+        for part in ("a compliance for each ball and contact", "other mirror half", "stress recovery"):
+            parts.leave_out(part, _NO_MESH)
+
+    def unused(self, scene: Scene) -> list[tuple[str, str]]:
+        """Nothing beyond what holds for all bodies."""
+        return []
+
+    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+        """The motion's: an equilibrium takes microseconds."""
+        return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
+
+    def build(self, scene: Scene, plan: Plan) -> Bearing:
+        """See ``raceway.bodies.rigid_bearing``."""
+        from raceway.bodies.rigid_bearing import build
+
+        return build(scene, plan)

@@ -1,0 +1,68 @@
+"""One scene computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from raceway.framework.doors import door
+from raceway.framework.registry import default_registry
+from raceway.out.progress import telling
+from raceway.pipeline.result import Result
+from raceway.pipeline.run import PATIENCE
+from raceway.pipeline.run import run as compute
+from raceway.scene.inputs import as_scene
+from raceway.storage.files import writable
+
+if TYPE_CHECKING:
+    from raceway.out.progress import ShowProgress
+
+
+@door
+def run(
+    scene: Any,
+    *,
+    progress: ShowProgress = None,
+    patience: float = PATIENCE,
+    plugins: Iterable[str | Path] = (),
+    out: str | Path | None = None,
+) -> Result:
+    """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)`` between chunks of steps; an exception
+        stops the run
+    patience : times the planned time, of processor time, after which a run is stopped; ``inf``: never
+    plugins : files of one-off plug-ins that the scene uses
+    out : folder in which result.json is written; None: nothing is written
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    SceneError
+        With every mistake of the scene; a combination that cannot run.
+    ConvergenceError, StabilityError, BeyondPlanError
+        No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
+    RacewayError
+        A folder that cannot be written, before anything is computed.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> result = rw.run({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> round(float(result.displacement[0]) * 1e6, 1)  # of the inner ring along the axis [um]
+    29.9
+    """
+    read = as_scene(scene, plugins=plugins)
+    folder = None if out is None else writable(Path(out))
+    with telling(progress) as told:
+        result = compute(read, default_registry(), told, patience=patience)
+    if folder is not None:
+        result.save(folder)
+    return result

@@ -1,0 +1,232 @@
+"""Folder of the compiled kernels, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``.
+
+Compiled kernels are pickles, and reading one can execute anything: a folder that someone else may write is refused.
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import os
+import shutil
+import stat
+import sys
+import tempfile
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from uuid import uuid4
+
+import attrs
+
+
+def cache_root() -> Path:
+    """The user's cache folder of this package (``RACEWAY_CACHE_DIR`` overrides it)."""
+    if chosen := os.environ.get("RACEWAY_CACHE_DIR"):
+        return Path(chosen)
+    from platformdirs import user_cache_path
+
+    return user_cache_path("raceway", appauthor=False)
+
+
+def refusal(folder: Path) -> str | None:
+    """Why a folder of the cache must not be read or written; None where it may, or does not exist yet.
+
+    Notes
+    -----
+    It and what it lies in, up to the root of the cache, belong to the user, or to root, who can replace the program as well;
+    nobody else may write there.  Below a folder that is closed to others, their rights do not matter.
+    """
+    root = cache_root()
+    inside = [place for place in (*reversed(folder.parents), folder) if place == root or root in place.parents]
+    for place in inside:
+        try:
+            found = place.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as why:
+            return f"`{place}` cannot be looked at ({why.strerror or why})"
+        if found.st_uid not in (os.geteuid(), 0):
+            return f"`{place}` belongs to another user (number {found.st_uid})"
+        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+            return f"others may write in `{place}`: close it by `chmod -R go-w {place}`, after `raceway cache --clear`"
+        if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
+            return None
+    return None
+
+
+def make(folder: Path) -> None:
+    """Make a folder of the cache, closed to others where it is new.
+
+    Raises
+    ------
+    OSError
+        It cannot be made.
+    """
+    root = cache_root()
+    root.parent.mkdir(parents=True, exist_ok=True)
+    for place in (*reversed(folder.parents), folder):
+        if place == root or root in place.parents:
+            place.mkdir(mode=0o700, exist_ok=True)
+
+
+@cache
+def source_key() -> str:
+    """Hash of the sources of core and elastic, where all shared kernels are, and of the versions that produce machine code."""
+    digest = hashlib.sha256()
+    package = Path(__file__).resolve().parents[1]
+    for path in sorted((*package.glob("core/**/*.py"), *package.glob("elastic/*.py"))):
+        digest.update(path.relative_to(package).as_posix().encode())
+        digest.update(path.read_bytes())
+    versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))
+    digest.update(repr(versions).encode())
+    return digest.hexdigest()[:16]
+
+
+def current_folder() -> Path:
+    """The folder of the kernels that belong to these sources and versions; it need not exist."""
+    return cache_root() / "kernels" / source_key()
+
+
+@attrs.frozen
+class KernelFolder:
+    """One folder of compiled kernels: its name, how many there are, bytes, whether this version reads it."""
+
+    name: str
+    kernels: int
+    bytes: int
+    current: bool
+
+
+def kernel_folders() -> list[KernelFolder]:
+    """All of them, the current one first.
+
+    Raises
+    ------
+    OSError
+        A cache folder that cannot be listed.
+    """
+    root = cache_root() / "kernels"
+    found = []
+    for folder in root.iterdir() if root.is_dir() else ():
+        if folder.is_dir():
+            files = [f for f in folder.rglob("*") if f.is_file()]
+            # numba writes one index (.nbi) for each function and one data file (.nbc) for each of its signatures.
+            kernels = sum(f.suffix == ".nbc" for f in files)
+            size = sum(f.stat().st_size for f in files)
+            found.append(KernelFolder(folder.name, kernels, size, folder.name == source_key()))
+    return sorted(found, key=lambda f: (not f.current, f.name))
+
+
+def clear() -> None:
+    """Remove every folder of compiled kernels.
+
+    Raises
+    ------
+    OSError
+        What cannot be removed.
+    """
+    root = cache_root() / "kernels"
+    if root.exists():
+        shutil.rmtree(root)
+
+
+_DIGEST = ".digest"
+
+
+@attrs.frozen
+class OpenFolder:
+    """A folder that numba reads and writes; ``unwritable`` says why it only stands for one that cannot be written, or is ""."""
+
+    path: Path
+    unwritable: str = ""
+
+
+def opened(folder: Path) -> OpenFolder | str:
+    """The folder to use for compiled kernels, or why there is none."""
+    if fault := refusal(folder):
+        return fault
+    try:
+        make(folder)
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(b"raceway" * 1024)
+            probe.flush()
+        return OpenFolder(folder)
+    except OSError as why:
+        reason = why.strerror or str(why)
+    with suppress(OSError):
+        if any(folder.iterdir()):
+            return OpenFolder(_linked(folder), reason)
+    return reason
+
+
+def _linked(folder: Path) -> Path:
+    """A temporary folder with links to all files of another one, for this process: numba reads in no folder that it cannot write."""
+    place = Path(tempfile.mkdtemp(prefix="raceway-kernels-"))
+    atexit.register(shutil.rmtree, place, ignore_errors=True)
+    for path in folder.rglob("*"):
+        beside = place / path.relative_to(folder)
+        if path.is_dir():
+            beside.mkdir(parents=True, exist_ok=True)
+        else:
+            beside.parent.mkdir(parents=True, exist_ok=True)
+            beside.symlink_to(path.resolve())
+    return place
+
+
+@attrs.frozen
+class FilesOfKernel:
+    """The cache files of one kernel.
+
+    Attributes
+    ----------
+    base : how their names begin
+    place : folder of numba's for the function's source file
+    """
+
+    base: str
+    place: Path
+
+    def discard_damaged(self) -> None:
+        """Remove what is not what was written; ``OSError`` for what cannot be removed."""
+        for path in self._files():
+            if not self._sound(path):
+                _remove(path)
+
+    def note_digests(self) -> None:
+        """Write the digest of each file that has none of its own; best effort: without it, the file is not read again."""
+        for path in self._files():
+            if not self._sound(path):
+                beside = path.with_name(path.name + _DIGEST)
+                scratch = path.with_name(f"{beside.name}.tmp.{uuid4().hex[:16]}")
+                with suppress(OSError):
+                    scratch.write_text(_digest(path), encoding="ascii")
+                    scratch.replace(beside)
+
+    def discard(self) -> None:
+        """Remove all of them."""
+        for path in self._files():
+            with suppress(OSError):
+                _remove(path)
+
+    def _files(self) -> list[Path]:
+        return [path for path in (self.place / f"{self.base}{end}" for end in (".nbi", ".1.nbc")) if path.exists()]
+
+    def _sound(self, path: Path) -> bool:
+        try:
+            return path.with_name(path.name + _DIGEST).read_text(encoding="ascii") == _digest(path)
+        except (OSError, UnicodeDecodeError):
+            return False
+
+
+def _remove(path: Path) -> None:
+    path.unlink(missing_ok=True)
+    path.with_name(path.name + _DIGEST).unlink(missing_ok=True)
+
+
+def _digest(path: Path) -> str:
+    """Of the content, the name and the program's version: another kernel's file fails it, too."""
+    digest = hashlib.blake2b(f"{source_key()} {path.name}\n".encode(), digest_size=16)
+    digest.update(path.read_bytes())
+    return digest.hexdigest()
