@@ -57,6 +57,10 @@ def nodal_weights(places: np.ndarray, centre: float, half: float) -> np.ndarray:
     Returns
     -------
     weights : (n,) float, sum 1
+
+    Notes
+    -----
+    The minor axis is left out: at the depths that are looked at it is far smaller than the distance.
     """
     x, w = density(64)
     at = np.clip(centre + half * x, places[0], places[-1])
@@ -277,6 +281,14 @@ def calibrated(
     ----------
     body : the ring, its window is not used;  ellipses : Hertz's contacts of both races, whose points have the same distances
     load : typical one [N];  radius : of the ball [m];  balls : in a row;  angle : free contact angle [rad]
+
+    Notes
+    -----
+    Depth matching (``structural``) compares fields on the normal through the centre of a contact. The compliance of a
+    contact that is long against the wall below it is their mean over its length, which is less; nor is a groove a
+    paraboloid. One ball on one race, solved at its surface points, has both effects: (approach - Hertz's) / load as a
+    function of the load. Its error falls with the square of the distance of points, so that two distances give the limit; a
+    mean over loads removes the scatter of points that come and go.
     """
     profile = coarse_profile(body.shape, body.solid.bulk, body.solid.bulk)
     inputs: Tables = {

@@ -70,6 +70,10 @@ def dissect(points: np.ndarray, cells: np.ndarray, kept: np.ndarray) -> Dissecti
     points : (n, 3) float;  cells : (m, 8) int
     kept : (k,) int
         Nodes that are not eliminated.
+
+    References
+    ----------
+    George, A.: Nested dissection of a regular finite element mesh, SIAM Journal on Numerical Analysis 10 (1973) 345.
     """
     numbers = np.asarray(cells, dtype=np.int64)
     centre = points[numbers].mean(axis=1)

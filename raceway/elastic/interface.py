@@ -354,6 +354,11 @@ class Interface:
     Attributes
     ----------
     numbers : (n,) of the contacts' nodes in the assembly;  place : (nodes,) the way back, -1 elsewhere
+
+    Notes
+    -----
+    A ball answers for itself: its contacts' nodes, and the mean motions that its cage and the springs of its superelement
+    act on. The rings answer for all contacts at once.
     """
 
     def __init__(self, rings: list[Ring], balls: list[tuple[Balls, list[int]]], nodes: int) -> None:

@@ -58,6 +58,10 @@ def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Le
     Notes
     -----
     An aggregate stands at the mean of its nodes, and neighbours those that share a cell with one of its nodes.
+
+    Cells that are long or flat are stiff along their short edges. Smoothing there only works along them, so that coarsening
+    has to follow: an aggregate takes the neighbours that are hardly farther than the nearest one. Distances tell that more
+    surely than entries of the stiffness, whose couplings along and across a long trilinear cell are of one size.
     """
     from pyamg.aggregation.aggregate import standard_aggregation
 

@@ -62,6 +62,13 @@ def footprint(
     ----------
     pole : (3,) [m];  normal : (3,) into the body;  along : (3,) of the first semi-axis, both of length 1
     centre : (3,) of the surface's curvature [m];  semi_axes : of the ellipse, along the groove and across [m]
+
+    Notes
+    -----
+    The normal force is spread over an ellipse far wider than Hertz's, so that the local compliance of the mesh is smaller
+    than the contact's and can be subtracted from it. The tangential displacement of the surface is that of its surroundings,
+    moved as a rigid body to the centre of curvature: a ball that turns, and a groove that tilts about the centre of its own
+    arc, leave the line between the two centres where it is.
     """
     axes = np.stack([along, np.cross(normal, along)])
     places, force = ellipse(semi_axes)
@@ -315,6 +322,16 @@ class LoadedBody:
         Parameters
         ----------
         reach : thickness below the contact [m], as ``raceway.core.structural.reach``
+
+        Notes
+        -----
+        Under the force of a footprint the surface of the mesh deflects by s, which depends on the cells there. Below it, the
+        mesh's displacement u(z) and that of a half-space h(z) differ by a nearly constant amount, the structural compliance
+        c of the body (``raceway.core.structural``). Of s, the part s - c is local: to be replaced by Hertz's.
+
+        The depths lie further down than those of condensed bodies: there the field of the coarsest useful mesh, two cells
+        through a ring's wall, is right. A ball needs no depths: its c is that of the exact sphere
+        (``raceway.core.contact.hertz.ball_compliance``).
         """
         along = self.along(contact, normal)
         depth = reach * np.linspace(*DEPTHS, COUNT)

@@ -407,6 +407,17 @@ class Closed:
     factors : (harmonics, p, p) complex64, lower triangles of what the cut plane's unknowns are in each harmonic
     across : (harmonics, p, 3 k) complex64, between the cut plane and the contacts' nodes
     blocks : (copies, 3 k, 3 k) displacements of sector c, in its frame, under forces on the first sector [m/N]
+
+    Notes
+    -----
+    With l_c the displacements on the first cut plane of sector c, in the frame of that sector, its second cut plane has Q
+    l_(c+1): Q turns by one sector. A discrete Fourier transform over the sectors makes this Q exp(i theta_h) l_h, and the
+    harmonics h are independent.
+
+    References
+    ----------
+    Thomas, D. L.: Dynamics of rotationally periodic structures, International Journal for Numerical Methods in Engineering
+    14 (1979) 81.
     """
 
     def __init__(self, part: Part, factors: np.ndarray, across: np.ndarray, blocks: np.ndarray) -> None:

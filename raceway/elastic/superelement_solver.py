@@ -146,6 +146,12 @@ class Linearised:
     ----------
     face : Interface
     tangents : of each ball;  frame : (m, m) matrix of the frame;  unknown : (m,) bool, motions that are not held
+
+    Notes
+    -----
+    The balls are eliminated one by one; what is left are the rings' nodes in contact and the frame. Small systems are
+    factored. Large ones are solved by GMRES, preconditioned with what each ball's contacts are without the other balls':
+    what couples them, the rings' stiffness from ball to ball and the frame, is smooth and has few modes.
     """
 
     def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:

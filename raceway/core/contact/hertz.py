@@ -188,6 +188,17 @@ def ball_compliance(
     Parameters
     ----------
     radius : of the ball [m];  semi_major, semi_minor : of the contact ellipse [m]; own depends on them as a logarithm
+
+    Notes
+    -----
+    A point force on a sphere is a series of Legendre polynomials, balanced by uniform acceleration, displacements measured
+    from the mean of its masses. Its terms tend to c0 + c1 / n: c0 is the half-space with the chord as distance, c1 a
+    logarithm; both are summed in closed form, the rest falls off as 1 / n^2. A mesh would have to resolve the ellipse to
+    give the same number.
+
+    References
+    ----------
+    Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., sections 172-173 (solutions of degree n in a sphere).
     """
     c0, c1, rest = _series(poisson)
     radial, weight = np.polynomial.legendre.leggauss(_POINTS)
@@ -253,6 +264,25 @@ def axis_stresses(depth: np.ndarray, semi_axes: tuple[float, float], peak_pressu
     ----------
     depth : (n,) float below the surface [m], not negative
     semi_axes : a along x, b along y [m];  peak_pressure : [Pa]
+
+    Notes
+    -----
+    With S(s) = sqrt((a^2 + s^2) (b^2 + s^2)), Boussinesq's potential V of the pressure p0 sqrt(1 - x^2/a^2 - y^2/b^2) has,
+    on the axis at the depth z,
+
+        V_z  = -2 pi p0 a b z int_z^inf ds / (s^2 S),    V_xx = -2 pi p0 a b int_z^inf ds / ((a^2 + s^2) S),    V_yy with b^2,
+        chi_xx = 2 pi p0 a b int_z^inf (s - z) ds / ((a^2 + s^2) S),                          chi its integral along z,
+
+        2 pi sigma_z = V_z - z V_zz,    2 pi sigma_x = 2 nu V_z - z V_xx - (1 - 2 nu) chi_xx,    sigma_y likewise with V_yy, chi_yy.
+
+    The integrals are Carlson's R_D; those with s ds are elementary. x is along the major semi-axis a, y along the minor one
+    b, z into the body; on the axis these are the principal directions.
+
+    References
+    ----------
+    Thomas, Hoersch, Stresses due to the pressure of one elastic solid upon another, Univ. Illinois Eng. Exp. Station Bull.
+    212 (1930). Johnson, Contact Mechanics (1985), equations 3.19, 3.57 to 3.59 and sections 4.1, 4.2. Harris, Kotzalas,
+    Essential Concepts of Bearing Technology, 5th ed., chapter 6.
     """
     z = np.maximum(np.asarray(depth, dtype=float), 1e-9 * min(semi_axes))
     a2, b2, z2 = semi_axes[0] ** 2 + z * z, semi_axes[1] ** 2 + z * z, z * z

@@ -28,6 +28,12 @@ class Outline:
     left, right : race side, from the left side face to the groove, and from the groove to the right side face
     seat : seat side, from face to face
     edges : angles of the groove's left and right edge [rad], from its bottom towards +x
+
+    Notes
+    -----
+    The section is what lies between two lines over x: the seat's side (bore of the inner ring, outer cylinder of the outer
+    one) and the race's side, out of which the groove's circle is cut. Chamfers, steps that lean, unequal shoulders and
+    hollow sides are all such lines; an undercut is not, and is refused.
     """
 
     left: np.ndarray

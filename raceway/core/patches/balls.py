@@ -55,6 +55,11 @@ class Gyroscopic:
     ----------
     scale : J times the speeds of ring and cage [N m];  ratio : D / d_m;  shares : of inner and outer race, 2 in all
     diameter, groove : of the ball, and the inner groove's radius [m]
+
+    Notes
+    -----
+    ``raceway.core.ring.kernels.tangential.add_gyroscopic`` has the equations: T = share M / D at both contacts along the grooves, M a
+    function of both contact angles; the inner race takes no more than its normal force, the outer one the rest.
     """
 
     scale: float

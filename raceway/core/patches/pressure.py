@@ -29,6 +29,13 @@ class Factor:
     ----------
     patch : where the points are
     extra : compliance of the law at every point, on the diagonal [m/N]
+
+    Notes
+    -----
+    Sets of neighbouring iterations differ in a few points.  With the factor of a set B, the solution on another set A comes
+    by bordering: points that joined are unknowns of their own, points that left get a multiplier that keeps them at zero;
+    both together make a small dense system (the Schur complement of the factor).  Beyond ``_BORDER`` of the set it is
+    cheaper to factorise anew.
     """
 
     def __init__(self, patch: Patch, extra: float = 0.0) -> None:
@@ -173,6 +180,12 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     ------
     ConvergenceError
         Newton stalls.
+
+    Notes
+    -----
+    With D = -A dp/dw the loads change by t with (1/D + C) t = w - g - C f over the points with D > 0: symmetric and positive
+    definite for every law that grows with the approach. All gaps then become w = g + C (f + t). The step is halved where the
+    residual grew.
     """
     near = np.flatnonzero(gap < 0.0)
     if not len(near):
@@ -234,6 +247,11 @@ def active_set(gap: np.ndarray, start: np.ndarray, factor: Factor) -> tuple[np.n
     ------
     ConvergenceError
         The sets repeat themselves.
+
+    Notes
+    -----
+    Points that pull leave the set, points that penetrate join it, all at once; near the solution the sets of successive
+    iterations are the same.  Entries of C are positive between points of a patch: only points with g < 0 can touch.
     """
     near = np.flatnonzero(gap < 0.0)
     if not len(near):

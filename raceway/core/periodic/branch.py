@@ -317,7 +317,18 @@ def two_spans(problem: Problem) -> Problem:
 
 
 def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
-    """The branch of two spans, and its first point: ``point``, a period doubling, with the tangent that leaves it."""
+    """The branch of two spans, and its first point: ``point``, a period doubling, with the tangent that leaves it.
+
+    Notes
+    -----
+    At a period doubling a disturbance v comes back as -v after a span: T v = -v. Two spans of the orbit, with v along the
+    first and -v along the second, are the first point of a problem of two spans, at which another branch crosses with the
+    tangent (v, 0).
+
+    References
+    ----------
+    Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), section 7.4.
+    """
     solved = point.solved
     problem, path = solved.problem, solved.path
     turned, order = problem.symmetry.rotation, problem.symmetry.order
@@ -372,7 +383,26 @@ class Special:
 
 
 def special_points(branch: Branch, one: Point, two: Point, size: float) -> list[Special]:
-    """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds."""
+    """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds.
+
+    Notes
+    -----
+    Each has a function along the branch that changes its sign there, with T the transfer over a span that is turned back:
+
+    fold               the parameter's part of the tangent
+    branch point       det of the bordered problem [1 - T, -T_p; tangent]: another branch crosses (a symmetry breaks)
+    period doubling    det(T + 1)
+    Neimark-Sacker     |mu| - 1 of the pair that crosses the unit circle; the multipliers outside change by two at once
+
+    Found between two neighbours and located by Brent's method on the length of the step from the first one. Without damping
+    multipliers lie on the circle: a pair leaves it where two of them meet (a Krein collision), which is told as the last
+    kind.
+
+    References
+    ----------
+    Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), sections 5.3, 7.4; Kuznetsov, Elements of Applied
+    Bifurcation Theory (1998), section 10.2.
+    """
     found = []
     for kind, test in ((FOLD, _fold), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
         if test(one) * test(two) < 0.0:

@@ -54,6 +54,17 @@ class Rule:
     tried : (e,) further points, tried_values : (e, s) values there from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them (columns 0 to s - 1), then weights of
         all s + e points for the velocity and the position at the end, then the points themselves in columns 0 to e - 1
     legendre : (s, s) Legendre coefficients of values at the points
+
+    Notes
+    -----
+    On an interval of length h the acceleration is the polynomial through its values A_j at the Gauss points c_j; v(u) = v0 +
+    h sum_j a_j(u) A_j, q(u) = q0 + u h v0 + h^2 sum_j aa_j(u) A_j with a_j, aa_j the first and second integral of the
+    Lagrange polynomial l_j, u from 0 to 1. For s points the error at the ends of intervals is of order 2 s where the motion
+    is smooth, between them of order s + 2.
+
+    References
+    ----------
+    de Boor, Swartz, SIAM J. Numer. Anal. 10 (1973), 582-606: collocation at Gaussian points.
     """
 
     points: np.ndarray
@@ -144,6 +155,14 @@ def one_pitch(system: System, speed: float, q: np.ndarray) -> Symmetry | None:
     Parameters
     ----------
     speed : of the force [rad/s];  q : (5,) equilibrium; bodies are tried some way off it
+
+    Notes
+    -----
+    A force that turns with w over equal, equally spaced balls meets the same bearing again after it has passed one pitch:
+    q(theta + Theta) = P q(theta), P the rotation by the angle that the force has turned meanwhile, ball k then standing
+    where ball ``order[k]`` stood. With balls at rest Theta = 2 pi / Z; balls that travel with w_c are passed more slowly,
+    Theta = (2 pi / Z) / |1 - w_c / w|, and a turn of the force is then no period at all. Whether forces and bodies are
+    equivariant is tried on the system itself, so that nothing has to be known about laws and bodies.
     """
     table = system.table
     rows: dict[tuple[float, float], list[int]] = {}
@@ -356,6 +375,14 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     Parameters
     ----------
     solved : one step of Newton's iteration instead of plain substitution
+
+    Notes
+    -----
+    A ball has no mass along its groove: its place b follows from the ring's motion and, where contacts have dashpots, from
+    its own rate r. So r = D b(r), D the derivative over one span and round its end. Dashpots are weak as a rule (1e-11 s of
+    lag behind the motion with the default), and putting the last rates in converges at once: the compiled iteration does so
+    after every sweep. Where lag times the largest entry of D is no longer small that diverges, in the finest modes of the
+    mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
     rated = problem.system.rated_columns
     wanted = derivative(problem, path)

@@ -1,4 +1,14 @@
-"""Interval by interval: the state at a Gauss point, the balance of forces there, and the elimination of its unknowns."""
+"""Interval by interval: the state at a Gauss point, the balance of forces there, and the elimination of its unknowns.
+
+Notes
+-----
+The angle theta = w t is the independent variable, so that displacements and their derivatives by the angle are of one
+size: w^2 M q'' + w C q' + K q + f(t, q, w q') = push.  Unknown are q and q' at the start of each interval and the
+accelerations A at its Gauss points.  Linearised, an interval's own unknowns are eliminated,
+dA = S_y (dq, dq') + S_r + S_p dp, which leaves the transfer (dq, dq')_next = T_y (dq, dq') + T_r + T_p dp; p is a parameter.
+
+n unknown coordinates, m intervals, s points an interval, k the number of an interval.
+"""
 
 from typing import Any, NamedTuple
 

@@ -164,6 +164,13 @@ class Neighbour:
     problem : that it solves
     excess : motion less its linear response about the equilibrium; balls and rates as they are
     share : largest derivative of the excess over that of the motion
+
+    Notes
+    -----
+    The linear response of the new problem about its own equilibrium, plus the nonlinear part of its neighbour's motion, is
+    where Newton's iteration begins. Where that part is large, several motions may exist under one force, and a neighbour
+    could lead to another one than the search from rest: it is left alone then, and so is what it led to when that is far
+    from linear; unless the neighbour's own continuation is asked for.
     """
 
     problem: Problem

@@ -227,6 +227,12 @@ def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], 
     ------
     ConvergenceError
         No periodic motion found.
+
+    Notes
+    -----
+    The search of ``raceway.core.periodic.search``, so that a transient and the steady orbit that is solved for directly are
+    of one motion. Where it finds nothing, Fourier collocation (``raceway.core.ring.orbit``) may: its damped iteration ends
+    on any motion.
     """
     system = by_address(system)
     tangent = system.evaluate(q).stiffness

@@ -29,6 +29,13 @@ class Sector:
         Parts A, B, S of the quadrilaterals' matrices, component by component of their four nodes [N/m].
     mass : (N,) float
         Lumped masses of the nodes of one meridian [kg].
+
+    Notes
+    -----
+    With u_k = u exp(i n k a), a = 2 pi / N, the stiffness of a ring of equal sectors becomes
+    K(n) = D + U exp(i n a) + U^T exp(-i n a) in nodal components r, theta, x; D couples nodes of one meridian, U those of
+    neighbouring ones.  The sector is its own mirror image, so that K(n) is real once u_theta is counted in units of i:
+    K(n) = A + B cos(n a) + S sin(n a), where A and B couple r and x among themselves and theta with theta, S the two groups.
     """
 
     def __init__(
@@ -179,6 +186,14 @@ def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> t
     -------
     even, odd : (offsets, s)
         Of the cosine and of the sine part.
+
+    Notes
+    -----
+    A unit force at azimuth 0 is the sum of all harmonics with weight 1/N, N the number of sectors. The compliance C(n) is a
+    smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a spline of
+    degree 5. The spline is linear in its data, so that sum over n of C(n) cos(2 pi n k / N) is a sum over the solved
+    harmonics alone. Harmonics 0 and 1, which differ from the others where a body can move rigidly, take no part in the
+    spline.
     """
     n = np.arange(divisions // 2 + 1)
     share = np.full(len(n), 2.0 / divisions)
@@ -215,6 +230,12 @@ def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarr
     Returns
     -------
     compliance : (k, 3) axial by axial, axial by radial and radial by radial force [m/N]
+
+    Notes
+    -----
+    A groove whose section turns about its centre is the same groove, and the force of a contact goes through that centre: a
+    contact at the angle b feels n(b).M n(a) of a unit force at the angle a, n = (sin, cos). Displacements of a surface point
+    hold that turn and are not what the contact feels.
     """
     pairs = np.outer(weight, weight)
     columns = _columns(angles[:, None], angles) * pairs
@@ -576,6 +597,12 @@ class FreeBall:
     components : of the rows and columns, one after the other: 0 r (outward), 1 theta, 2 x (rolling direction)
     dimensionless : (o, len(components) n, len(components) n) float, u E R / F
     elements : hexahedra that the ball stands for
+
+    Notes
+    -----
+    A displacement u of a ball of radius R and Young's modulus E under a force F is c F / (E R), where c belongs to radius 1
+    and modulus 1. Rigid motions stand apart: c gives displacements relative to the mean motion of the ball's masses ("ball
+    centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.
     """
 
     divisions: int

@@ -37,7 +37,14 @@ class FrictionEnergy:
 
 
 def friction_energy(system: System, record: Record) -> FrictionEnergy:
-    """Energies of friction along a record; zeros where the system has none."""
+    """Energies of friction along a record; zeros where the system has none.
+
+    Notes
+    -----
+    A contact with the elastic tangential displacement u (``raceway.core.ring.kernels.tangential``) stores k u^2 / 2. A
+    step in which its slip grows by d loses k u d with the u at the step's end: the return mapping lets the slip grow only
+    along u, so no step of a record that keeps every step can give energy.
+    """
     n = len(record.time)
     if system.conservative or system.scalars[STICK] == 0.0:
         return FrictionEnergy(np.zeros(n), np.zeros(n))

@@ -99,7 +99,12 @@ def cholesky_solve(matrix, rhs, n):
 
 @jit(void(MATRIX, MATRIX))
 def copy_matrix(source, target):
-    """target[:, :] = source."""
+    """target[:, :] = source.
+
+    Notes
+    -----
+    Where an array is assigned to a slice of another, numba compiles the words of its error message, too: seconds.
+    """
     for i in range(source.shape[0]):
         for j in range(source.shape[1]):
             target[i, j] = source[i, j]

@@ -431,7 +431,14 @@ class ChangingSpeed:
 
 
 class Address(types.WrapperAddressProtocol):
-    """A kernel of one signature, its machine code looked up once; can be called from Python too."""
+    """A kernel of one signature, its machine code looked up once; can be called from Python too.
+
+    Notes
+    -----
+    Handing a dispatcher to a compiled loop as a function pointer costs numba some 35 microseconds a call, in which it looks
+    up the machine code by the signature again; an address whose type is at hand costs 3. For a loop of milliseconds that is
+    nothing; a periodic motion is solved for in a few dozen calls of 50 microseconds each.
+    """
 
     def __init__(self, kernel: Any, pointer: Any) -> None:
         self.pointer = pointer

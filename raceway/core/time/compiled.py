@@ -1,5 +1,18 @@
-"""The compiled loop; equations in ``raceway.core.time``.  ``coefficients``: am, af, beta, gamma, tolerance,
-imbalance that is rounding [N]."""
+"""Compiled time loops; their equations stand in ``raceway.core.time``, the classes with the options in ``raceway.integrators``.
+
+Every loop has the signature ``raceway.core.signatures.LOOP``, whose records stand there::
+
+    loop(forces, linear, outer, coefficients, steps, state, recording) -> steps done
+
+    linear         damping holds the gyroscopic terms
+    coefficients   the method's own numbers.  ``implicit``: am, af, beta, gamma, tolerance, imbalance that is rounding [N];
+                   ``quasi_static``: tolerance
+    state          moved on in place, only by accepted steps
+    recording      rows (n, 16): t, q, v, outer force; probes (n, 3, 4 or 5, 2 Z): gaps, contact forces, ball positions, slips,
+                   structural approaches; counters (8,): see ``COUNTERS``
+
+A loop that returns less than ``steps.total`` failed at the next step; ``state`` is then the last good one.
+"""
 
 from functools import cache
 from typing import NamedTuple
@@ -370,7 +383,7 @@ def reason_of(status):
 
 @cache
 def quasi_static(solver: Kernel) -> Kernel:
-    """The loop around a kernel of signature ``SETTLE``, which finds an equilibrium."""
+    """The loop around a kernel of signature ``SETTLE``, which finds an equilibrium: ``raceway.core.ring.equilibrium``."""
 
     @jit(LOOP, allocates=True)
     def equilibria(forces, linear, outer, coefficients, steps, state, recording):

@@ -212,7 +212,12 @@ NOTHING = Pair(0.0, 0.0)
 
 @jit(TENSOR(TENSOR, TENSOR), inline=True)
 def times_adjugate(a, j):
-    """A adj J."""
+    """A adj J.
+
+    Notes
+    -----
+    Products leave out the determinant that quotients by a matrix share: A J^-1 = (A adj J) / det J.
+    """
     return Tensor(a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar)
 
 
@@ -247,7 +252,16 @@ def less_row(e, g, x):
 
 @jit(void(CONTACTS, VECTOR, MATRIX), inline=True)
 def normal_forces(contacts, scalars, work):
-    """Rows CONTACT_FORCE, FORCE_BY_GAP and FORCE_BY_RATE of ``work`` from rows GAP and GAP_RATE."""
+    """Rows CONTACT_FORCE, FORCE_BY_GAP and FORCE_BY_RATE of ``work`` from rows GAP and GAP_RATE.
+
+    Notes
+    -----
+    A time constant tau makes a contact that answers as its spring does to g + tau dg/dt: for small motions that is a dashpot
+    c = tau k beside the spring, with k the law's own stiffness at every gap. The force stays continuous, never pulls and
+    never gives energy: as the law's force grows with the approach, its excess over the spring's has the sign of the
+    approach's rate. The viscous part of the approach is at most as large as the elastic one, so that a contact which begins
+    to touch carries nothing.
+    """
     law, params, old, new, dt = contacts
     gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
     by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
@@ -286,7 +300,14 @@ def are_condensed(scalars):
 
 @jit(int64(VECTOR))
 def elastic_columns(scalars):
-    """Columns of ``ball`` for the elasticity of the bodies, the last ones."""
+    """Columns of ``ball`` for the elasticity of the bodies, the last ones.
+
+    Notes
+    -----
+    Columns 0 and 1 of a ball are positions; columns 2 and 3 are slips where there is friction; then come, of condensed
+    bodies, two structural approaches and, where balls act on each other through the rings, two displacements of groove
+    centres. All but slips have rates, slips are only committed.
+    """
     if not are_condensed(scalars):
         return 0
     return 4 if scalars[COUPLED] != 0.0 else 2

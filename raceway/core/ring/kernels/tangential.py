@@ -195,7 +195,14 @@ def _newton_step(k, contacts, ra, rr, longest, work):
 
 @jit(boolean(int64, int64, CONTACTS, float64, MATRIX, MATRIX, MATRIX), inline=True)
 def settles(k, attempt, contacts, lo, table, ball, work):
-    """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order."""
+    """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order.
+
+    Notes
+    -----
+    With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the imbalance of a ball at p
+    is R = f_i n_i + h_i t_i - f_o n_o - h_o t_o + F_c. It has no potential: a step that goes beyond the balance is halved,
+    balls that run in circles begin anew, and those that fail again have to come closer at every step.
+    """
     z = table.shape[0]
     inner, outer = contacts
     hi, ho = work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k]
@@ -271,7 +278,18 @@ def gyroscopic_moment(inner, outer, ratio, scale):
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
 def add_gyroscopic(k, contacts, scalars, work):
-    """Add what ball k's moment does to its tangential forces and to the couple on the ring's section."""
+    """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
+
+    Notes
+    -----
+    T = share * M / D with M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m); the ball's spin w_R follows
+    from rolling on both races. M follows the contact angles a, with derivatives. The inner race carries no more than its
+    normal force, the outer one the rest: so it fades continuously where the inner contact opens.
+
+    References
+    ----------
+    Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
+    """
     z = work.shape[1] // 2
     diameter, ratio, scale = scalars[DIAMETER], scalars[BALL_OVER_PITCH], scalars[GYROSCOPIC]
     groove = scalars[OFFSET_INNER] + 0.5 * diameter
@@ -343,7 +361,16 @@ def roll(k, work):
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
 def rub(k, contacts, scalars, ball, ball_known, work):
-    """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``."""
+    """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``.
+
+    Notes
+    -----
+    A contact that sticks stores k_t u^2 / 2 with u = L a - slip outside, L a - r turn - slip inside: L is the distance of
+    ball and groove centre at the first touch, a the contact's angle, r the groove's radius, turn that of the ring's section
+    by its tilts, the slip is memory. So tau = k_t u L / s, at most mu f (return mapping), and work is stored or lost, never
+    gained. A ball does not roll in this plane, so sticking contacts add a tangential stiffness that rolling balls do not
+    have. The couple on the section is -r k_t u.
+    """
     z, mu, stick = work.shape[1] // 2, scalars[FRICTION], scalars[STICK]
     li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
     inner, outer = contacts
@@ -380,6 +407,11 @@ class Balance(NamedTuple):
     """A settled ball, linearised: E, P, X and J, M the damping by the velocity of e.
 
     by_turn : derivative of the ball's force by the turn of its section [N]
+
+    Notes
+    -----
+    At the balance R(p; e, w, turn) = 0 of ball place p, groove centre e, shifts w and turn of the section, dp = -J^-1 dR
+    with J = dR/dp. With P the derivative of the ring's force by p, that force follows e by E - T X, T = P J^-1, X = dR/de.
     """
 
     e: Tensor
