@@ -2,7 +2,7 @@
 
 numba keys a cached function by its own source file alone: a kernel that calls a core function would keep calling
 the old one after an edit.  So the cache lives in a folder named by a hash of the core's sources and of the versions
-that produce machine code.  numba reads what it finds there as it is, and a damaged file ends the process: ``kernel_files``
+that produce machine code.  numba reads what it finds there as it is, and a damaged file ends the process: ``kernel_cache``
 keeps a digest beside each.  A folder that cannot be written is read through links in a temporary one; where there is
 nothing to read, or others may write, kernels are compiled in memory, after one warning.  numba's global settings are left
 as they were found.
