@@ -145,7 +145,7 @@ def test_exported_coefficients_are_called_by_how_the_tilts_are():
     swept = rw.sweep(scene, {"kinematics.spin_speed_rpm": "0:12000:5"})
     table = rw.export_ross(swept)
     assert set(table.to_xarray().data_vars) >= {"kyy_tilts_follow", "kxx_tilts_follow"} and "kyy" not in table.to_xarray()
-    assert table.names["kyy_tilts_follow"] == "kxx" and len(table.file.content["kxx"]) == 5
+    assert table.names["kyy_tilts_follow"] == "kxx" and len(table.content["kxx"]) == 5
     text = rw.export_coefficients(swept, kind="csv").text
     assert "kyy_tilts_follow [N/m]" in text and ",kyy [N/m]" not in text and "K y y [N/m]" in text
     assert any("kyy_tilts_follow, with them free" in note for note in table.notes)

@@ -426,7 +426,7 @@ def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
     for point in np.ndindex(shape):
         if len(shape) == 1 or all(k in (0, size - 1) for k, size in zip(point, shape, strict=True)):
             row = {title: f"{values[k]:.6g}" for (title, values), k in zip(axes.items(), point, strict=True)}
-            rows.append(row | {title: _text(name, columns[name][point]) for title, name in varying.items()})
+            rows.append(row | {title: _text(name, float(columns[name][point])) for title, name in varying.items()})
     return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
 
 
