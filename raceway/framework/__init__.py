@@ -9,5 +9,6 @@ duties      calls of the duties of bodies, with their faults put to the plug-in
 sources     entry points and one-off files
 probe       compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
 shown       short texts and tables of results, for terminals and notebooks
+estimate    sentences of how an error was estimated, an enumeration
 orphans     end of worker processes
 """

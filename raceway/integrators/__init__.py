@@ -1,4 +1,7 @@
-"""Built-in integrators: ``methods`` has Newmark's method, generalised-alpha, central differences, series of equilibria, steady orbits."""
+"""Built-in integrators.
+
+methods  Newmark's method, generalised-alpha, central differences, series of equilibria, steady orbits
+"""
 
 from __future__ import annotations
 

@@ -297,8 +297,11 @@ def _finer_value(run: Identified, count: int) -> complex:
     if compiled(run.model.system) is not None:
         return identified([(motion.model, motion.equilibrium) for motion in run.motions], count)
     models = [attrs.evolve(motion.model, system=surrogate(motion.model.system)) for motion in run.motions]
-    states = [(model, solve_equilibrium(model)) for model in models]
-    return run.value + identified(states, count) - identified(states, run.motion.steps_per_turn)
+
+    def change(steps: int) -> complex:
+        return identified([(model, solve_equilibrium(model)) for model in models], steps)
+
+    return run.value + change(count) - change(run.motion.steps_per_turn)
 
 
 def _transient(run: Identified, step: Part) -> Part:

@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from raceway.pipeline.simulate import OnProgress
-    from raceway.points.precision import Precision
 
 
 THRESHOLDS = (0.01, 0.001, 0.0001)
