@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import attrs
 import numpy as np
 
 from raceway.errors import SceneError
@@ -61,24 +62,24 @@ def infer(
     >>> round(float(result.stiffness[0, 0]) * 1e-6, 1)  # axial [N/um]
     142.8
     """
-    one = Printed(
-        bore=quantity("bore", "m", bore),
-        outer_diameter=quantity("outer diameter", "m", outer_diameter),
-        width=None if width is None else quantity("width", "m", width),
+    size = Printed(
+        bore=_number("bore", "m", bore),
+        outer_diameter=_number("outer diameter", "m", outer_diameter),
+        width=None if width is None else _number("width", "m", width),
         ratings=tuple(
-            Rating(angle, quantity("dynamic rating", "N", c), quantity("static rating", "N", c0))
+            Rating(angle, _number("dynamic rating", "N", c), _number("static rating", "N", c0))
             for angle, (c, c0) in ratings.items()
         ),
         pairs=tuple(
-            PairStiffness(angle, quantity("preload", "N", load), quantity("stiffness", "N/m", stiffness))
+            PairStiffness(angle, _number("preload", "N", load), _number("stiffness", "N/m", stiffness))
             for angle, load, stiffness in pairs
         ),
         names=(name,) if name else (),
     )
-    return infer_printed(one, maker, conformity)
+    return infer_printed(size, maker, conformity)
 
 
-def quantity(what: str, unit: str, given: Quantity) -> float:
+def _number(name: str, unit: str, value: Quantity) -> float:
     """A number in the unit, from text with any of its dimension.
 
     Raises
@@ -86,20 +87,20 @@ def quantity(what: str, unit: str, given: Quantity) -> float:
     SceneError
         No number, or another dimension.
     """
-    if isinstance(given, bool) or not isinstance(given, int | float | str):
-        raise SceneError.at(what, None, f"must be a number [{unit}] or text with a unit, not {type(given).__name__}")
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise SceneError.at(name, None, f"must be a number [{unit}] or text with a unit, not {type(value).__name__}")
     try:
-        return float(given)  # text without a unit is in the SI unit
+        return float(value)  # text without a unit is in the SI unit
     except ValueError:
         pass
     try:
-        return float(number_in(unit, str(given)))
+        return float(number_in(unit, str(value)))
     except ValueError as why:
-        raise SceneError.at(what, given, str(why)) from None
+        raise SceneError.at(name, value, str(why)) from None
 
 
 #: Tables that come with the package, and whose they are.
-TABLES = {"nsk": "NSK", "gmn": "GMN"}
+_TABLES = {"nsk": "NSK", "gmn": "GMN"}
 _QUANTITIES = ("dynamic rating", "static rating", "pair stiffness")
 
 
@@ -116,68 +117,59 @@ def infer_table(table: str, maker: str | None = None, conformity: float | None =
     SceneError
         A table that cannot be read, or of which no size can be inferred.
     """
-    own = table.lower() in TABLES and not Path(table).exists()
-    read = Table(printed_by(table.lower()), ()) if own else read_table(Path(table))
+    packaged = table.lower() in _TABLES and not Path(table).exists()
+    read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))
     sizes = sizes_of(read.lines)
-    maker = maker or (TABLES[table.lower()] if own else None)
+    maker = maker or (_TABLES[table.lower()] if packaged else None)
     rows: list[Tables] = [{"name": fault.path, "refused": str(fault)} for fault in read.faults]
-    answers: list[tuple[Printed, Inferred]] = []
+    answers: list[Inferred] = []
     faults: list[SceneError] = []
-    for one in sizes:
+    for size in sizes:
         try:
-            found = infer_printed(one, maker, conformity)
+            answers.append(infer_printed(size, maker, conformity))
+            rows.append(_row(answers[-1]))
         except SceneError as error:
             faults.append(error)
-            rows.append({"name": one.title, "refused": str(error)})
-        else:
-            answers.append((one, found))
-            rows.append(_row(one, found))
+            rows.append({"name": size.title, "refused": str(error)})
     if not answers:
         raise SceneError([mistake for error in faults for mistake in error.mistakes][:5])
     return {"table": table, "maker": maker, "rows": rows, "summary": _summary(answers, sizes)}
 
 
-def _row(one: Printed, found: Inferred) -> Tables:
-    worst = {word.replace(" ", "_") + "_error": found.worst(word) for word in _QUANTITIES}
-    numbers = {key: number.value for key, number in found.numbers.items()}
-    scatter = {f"{key}_scatter": number.scatter for key, number in found.numbers.items()}
-    inside = one.internals
-    told = (
-        {}
-        if inside is None
-        else {"printed_" + key: getattr(inside, key) for key in ("ball_count", "ball_diameter", "pitch_diameter")}
-    )
-    return {"name": one.title, "practice": found.practice, **numbers, **worst, **scatter, **told}
+def _row(answer: Inferred) -> Tables:
+    worst = {word.replace(" ", "_") + "_error": answer.worst(word) for word in _QUANTITIES}
+    numbers = {key: number.value for key, number in answer.numbers.items()}
+    scatter = {f"{key}_scatter": number.scatter for key, number in answer.numbers.items()}
+    internals = answer.printed.internals
+    printed = {} if internals is None else {f"printed_{key}": value for key, value in attrs.asdict(internals).items()}
+    return {"name": answer.printed.title, "practice": answer.practice, **numbers, **worst, **scatter, **printed}
 
 
-def _summary(answers: list[tuple[Printed, Inferred]], sizes: list[Printed]) -> Tables:
+def _summary(answers: list[Inferred], sizes: list[Printed]) -> Tables:
     """Largest errors of ratings, median and 90 % of stiffnesses, and how many printed internals are met; what is refused is not."""
     errors = {
-        word: [abs(c.error) for _, found in answers for c in found.checks if c.quantity == word] for word in _QUANTITIES
+        word: [abs(check.error) for answer in answers for check in answer.checks if check.quantity == word]
+        for word in _QUANTITIES
     }
     stiff = errors["pair stiffness"]
-    told = [(one.internals, found) for one, found in answers if one.internals is not None]
+    printed = [(answer.printed.internals, answer) for answer in answers if answer.printed.internals is not None]
+    count = sum(size.internals is not None for size in sizes)
 
-    every = sum(one.internals is not None for one in sizes)
-
-    def share(met: list[bool]) -> float | None:
-        return sum(met) / every if every else None
+    def share(key: str, within: float) -> float | None:
+        met = [abs(answer.numbers[key].value / getattr(balls, key) - 1.0) <= within for balls, answer in printed]
+        return sum(met) / count if count else None
 
     return {
         "sizes": len(sizes),
         "inferred": len(answers),
-        "designations": sum(len(one.ratings) for one, _ in answers),
+        "designations": sum(len(answer.printed.ratings) for answer in answers),
         "dynamic_rating_error_max": max(errors["dynamic rating"]),
         "static_rating_error_max": max(errors["static rating"]),
         "pair_stiffnesses": len(stiff),
         "pair_stiffness_error_median": float(np.median(stiff)) if stiff else None,
         "pair_stiffness_error_90": float(np.quantile(stiff, 0.9)) if stiff else None,
-        "internals_printed": every,
-        "ball_count_right": share([inside.ball_count == found.ball_count.value for inside, found in told]),
-        "ball_diameter_within_1_percent": share(
-            [abs(found.ball_diameter.value / inside.ball_diameter - 1.0) <= 0.01 for inside, found in told]
-        ),
-        "pitch_diameter_within_1_percent": share(
-            [abs(found.pitch_diameter.value / inside.pitch_diameter - 1.0) <= 0.01 for inside, found in told]
-        ),
+        "internals_printed": count,
+        "ball_count_right": share("ball_count", 0.0),
+        "ball_diameter_within_1_percent": share("ball_diameter", 0.01),
+        "pitch_diameter_within_1_percent": share("pitch_diameter", 0.01),
     }

@@ -90,7 +90,7 @@ class Inferred(Shown):
 
     def worst(self, quantity: str) -> float | None:
         """Largest relative error of "dynamic rating", "static rating" or "pair stiffness"; None where none is printed."""
-        return max((abs(one.error) for one in self.checks if one.quantity == quantity), default=None)
+        return max((abs(check.error) for check in self.checks if check.quantity == quantity), default=None)
 
     def bearing(self, contact_angle_deg: float | None = None) -> Tables:
         """The table [bearing] of a scene.
@@ -99,11 +99,11 @@ class Inferred(Shown):
         ----------
         contact_angle_deg : None: that of the first rating
         """
-        one, steel = self.printed, {"young": YOUNG, "poisson": POISSON}
-        table: Tables = {"bore": one.bore, "outer_diameter": one.outer_diameter}
-        table |= {} if one.width is None else {"width": one.width}
-        table |= {key: found.value for key, found in self.numbers.items()}
-        table["contact_angle_deg"] = contact_angle_deg or one.ratings[0].contact_angle_deg
+        size, steel = self.printed, {"young": YOUNG, "poisson": POISSON}
+        table: Tables = {"bore": size.bore, "outer_diameter": size.outer_diameter}
+        table |= {} if size.width is None else {"width": size.width}
+        table |= {key: number.value for key, number in self.numbers.items()}
+        table["contact_angle_deg"] = contact_angle_deg or size.ratings[0].contact_angle_deg
         return {**table, "rings": dict(steel), "balls": dict(steel)}
 
     def to_dict(self) -> Tables:
@@ -113,19 +113,19 @@ class Inferred(Shown):
             "practice": self.practice,
             "share": self.share,
             "other": self.other,
-            "numbers": {key: attrs.asdict(found) for key, found in self.numbers.items()},
-            "checks": [{**attrs.asdict(one), "error": one.error} for one in self.checks],
+            "numbers": {key: attrs.asdict(number) for key, number in self.numbers.items()},
+            "checks": [{**attrs.asdict(check), "error": check.error} for check in self.checks],
             "stiffness_error": self.stiffness_error,
             "bearing": self.bearing(),
         }
 
     def _shown(self) -> tuple[str, list[Fact]]:
         facts: list[Fact] = []
-        for key, found in self.numbers.items():
+        for key, inferred in self.numbers.items():
             length = key.endswith("diameter")
-            value = number(1e3 * found.value, "mm") if length else f"{found.value:g}"
-            scatter = "" if key == "ball_count" else f"+- {100.0 * found.scatter:.2g} %; "
-            facts.append((key.replace("_", " "), value, scatter + found.reason))
+            value = number(1e3 * inferred.value, "mm") if length else f"{inferred.value:g}"
+            scatter = "" if key == "ball_count" else f"+- {100.0 * inferred.scatter:.2g} %; "
+            facts.append((key.replace("_", " "), value, scatter + inferred.reason))
         for quantity in ("dynamic rating", "static rating", "pair stiffness"):
             off = self.worst(quantity)
             if off is not None:
@@ -135,7 +135,7 @@ class Inferred(Shown):
 
 
 #: Practices of rating by maker, in small letters.
-MAKERS = {"nsk": "tables", "gmn": "grooves"}
+_PRACTICES = {"nsk": "tables", "gmn": "grooves"}
 #: 90 % of the printed axial stiffnesses of pairs lie within this of those of the inferred bearings, by practice (report catalogue).
 STIFFNESS_90 = {"tables": 0.036, "grooves": 0.062}
 #: Scatter of the pitch diameter: of 103 bearings whose maker prints it, 101 have the mean of bore and outer diameter.
@@ -150,7 +150,7 @@ _ALIKE = 1e-3
 _TRIED = np.linspace(0.505, 0.56, 56)
 
 
-def infer_printed(one: Printed, maker: str | None = None, conformity: float | None = None) -> Inferred:
+def infer_printed(size: Printed, maker: str | None = None, conformity: float | None = None) -> Inferred:
     """Balls and grooves of one size.
 
     Parameters
@@ -163,74 +163,80 @@ def infer_printed(one: Printed, maker: str | None = None, conformity: float | No
     SceneError
         Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker.
     """
-    _refuse_contradiction(one)
-    found = _candidates(one, maker)
-    if not found or not found[0].explains:
-        raise SceneError.at(one.title, None, _unexplained(one, found))
-    best = found[0]
-    odds = np.exp([min(x.weight - best.weight, 0.0) for x in found])
+    _refuse_contradiction(size)
+    candidates = _candidates(size, maker)
+    if not candidates or not candidates[0].explains:
+        raise SceneError.at(size.title, None, _unexplained(candidates))
+    best = candidates[0]
+    odds = np.exp([min(x.weight - best.weight, 0.0) for x in candidates])
     odds /= odds.sum()
-    share = float(sum(p for x, p in zip(found, odds, strict=True) if x.ball_count == best.ball_count))
-    other = next(((x, float(p)) for x, p in zip(found, odds, strict=True) if x.ball_count != best.ball_count), None)
-    inner, outer = _grooves(one, best, conformity)
-    made = Inferred(
-        printed=one,
+    shares = list(zip(candidates, map(float, odds), strict=True))
+    share = float(sum(p for x, p in shares if x.ball_count == best.ball_count))
+    next_likely = (
+        {"ball_count": x.ball_count, "ball_diameter": x.ball_diameter, "share": p}
+        for x, p in shares
+        if x.ball_count != best.ball_count
+    )
+    inner, outer = _grooves(size, best, conformity)
+    return Inferred(
+        printed=size,
         practice=best.practice,
         ball_count=Number(best.ball_count, 1.0 - share, _why_count(best, share)),
-        ball_diameter=Number(best.ball_diameter, max(map(abs, best.dynamic_errors)) / 1.8, _why_diameter(best)),
-        pitch_diameter=Number(one.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
+        ball_diameter=Number(
+            best.ball_diameter,
+            max(map(abs, best.dynamic_errors)) / 1.8,
+            f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter",
+        ),
+        pitch_diameter=Number(size.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
         conformity_inner=inner,
         conformity_outer=outer,
         share=share,
-        other=None
-        if other is None
-        else {"ball_count": other[0].ball_count, "ball_diameter": other[0].ball_diameter, "share": other[1]},
-        checks=(),
+        other=next(next_likely, None),
+        checks=_checks(size, best, inner.value, outer.value),
         stiffness_error=STIFFNESS_90[best.practice],
     )
-    return attrs.evolve(made, checks=_checks(one, best, inner.value, outer.value))
 
 
-def _candidates(one: Printed, maker: str | None) -> list[Candidate]:
-    if maker is not None and maker.lower() not in MAKERS:
-        known = ", ".join(name.upper() for name in MAKERS)
-        raise SceneError.at("maker", maker, f"must be one of {known}, whose practice of rating is known, or left out")
-    practice = None if maker is None else MAKERS[maker.lower()]
-    found = [] if practice == "grooves" else by_tables(one)
+def _candidates(size: Printed, maker: str | None) -> list[Candidate]:
+    """Those that explain the ratings, then the likeliest first."""
+    if maker is not None and maker.lower() not in _PRACTICES:
+        makers = ", ".join(name.upper() for name in _PRACTICES)
+        raise SceneError.at("maker", maker, f"must be one of {makers}, whose practice of rating is known, or left out")
+    practice = None if maker is None else _PRACTICES[maker.lower()]
+    candidates = [] if practice == "grooves" else by_tables(size)
     # A known bearing is inferred from the others.  Ratings at several angles are one bearing by the tables, or none of both practices.
-    if practice == "grooves" or (practice is None and len(one.ratings) == 1):
-        found += by_grooves(one, without=one.names[0] if one.names else "")
-    if practice != "grooves" and not any(x.explains for x in found):
-        found += by_tables(one, metric=True)
-    return sorted(found, key=lambda x: (not x.explains, -x.weight))
+    if practice == "grooves" or (practice is None and len(size.ratings) == 1):
+        candidates += by_grooves(size, without=size.names[0] if size.names else "")
+    if practice != "grooves" and not any(x.explains for x in candidates):
+        candidates += by_tables(size, metric=True)
+    return sorted(candidates, key=lambda x: (not x.explains, -x.weight))
 
 
-def _refuse_contradiction(one: Printed) -> None:
+def _refuse_contradiction(size: Printed) -> None:
     """Ratings fall as the contact angle grows: C with cos(a)^0.7, C0 with cos(a), but for a few percent."""
-    angles = [rating.contact_angle_deg for rating in one.ratings]
+    angles = [rating.contact_angle_deg for rating in size.ratings]
     if len(set(angles)) < len(angles):
         raise SceneError.at(
-            one.title, angles, "each contact angle can have one pair of ratings: these dimensions are listed twice"
+            size.title, angles, "each contact angle can have one pair of ratings: these dimensions are listed twice"
         )
-    first = min(one.ratings, key=lambda x: x.contact_angle_deg)
-    for rating in one.ratings:
+    first = min(size.ratings, key=lambda x: x.contact_angle_deg)
+    for rating in size.ratings:
         lean = math.cos(math.radians(rating.contact_angle_deg)) / math.cos(math.radians(first.contact_angle_deg))
-        for word, here, there, power in (
+        for word, value, base, power in (
             ("dynamic", rating.dynamic, first.dynamic, 0.7),
             ("static", rating.static, first.static, 1.0),
         ):
-            off = here / there / lean**power - 1.0
-            if abs(off) > 0.06:
+            if abs(value / base / lean**power - 1.0) > 0.06:
                 rule = (
-                    f"contradicts {there:g} N at {first.contact_angle_deg:g} deg: the same balls have {there * lean**power:.4g} N, "
+                    f"contradicts {base:g} N at {first.contact_angle_deg:g} deg: the same balls have {base * lean**power:.4g} N, "
                     "but for some percent. Are both of one size and one maker?"
                 )
-                raise SceneError.at(f"{one.title}: {word} rating at {rating.contact_angle_deg:g} deg", here, rule)
+                raise SceneError.at(f"{size.title}: {word} rating at {rating.contact_angle_deg:g} deg", value, rule)
 
 
-def _unexplained(one: Printed, found: list[Candidate]) -> str:
+def _unexplained(candidates: list[Candidate]) -> str:
     say = "no whole number of balls of a usual size explains these ratings"
-    tables = [x for x in found if x.practice == "tables"]
+    tables = [x for x in candidates if x.practice == "tables"]
     if not tables:
         return f"{say}: are dimensions and ratings of one bearing, in mm and N?"
     near = max(tables, key=lambda x: x.weight)
@@ -250,57 +256,52 @@ def _why_count(best: Candidate, share: float) -> str:
     return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
 
 
-def _why_diameter(best: Candidate) -> str:
-    return f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter"
-
-
-def _grooves(one: Printed, best: Candidate, given: float | None) -> tuple[Number, Number]:
-    if given is not None:
-        both = Number(given, _CONFORMITY, "given")
+def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[Number, Number]:
+    if conformity is not None:
+        both = Number(conformity, _CONFORMITY, "given")
         return both, both
     if best.practice == "grooves":
         why = "gives C0 as Hertz contact at 4200 MPa"
         outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"
-        scatter = 0.002
-        return Number(best.conformity_inner, scatter, why), Number(best.conformity_outer, scatter, outer)
-    fitted = _fitted_conformity(one, best)
+        return Number(best.conformity_inner, _CONFORMITY, why), Number(best.conformity_outer, _CONFORMITY, outer)
+    fitted = _fitted_conformity(size, best)
     if fitted is None:
         both = Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
     else:
         several = (
-            f"{len(one.pairs)} printed stiffnesses of pairs" if len(one.pairs) > 1 else "the printed stiffness of a pair"
+            f"{len(size.pairs)} printed stiffnesses of pairs" if len(size.pairs) > 1 else "the printed stiffness of a pair"
         )
         both = Number(fitted[0], fitted[1], f"meets {several}")
     return both, both
 
 
-def _fitted_conformity(one: Printed, best: Candidate) -> tuple[float, float] | None:
+def _fitted_conformity(size: Printed, best: Candidate) -> tuple[float, float] | None:
     """Median of the conformities that give each printed stiffness, and its relative scatter: theirs, or what one stiffness leaves."""
-    if not one.pairs:
+    if not size.pairs:
         return None
-    curves = stiffnesses(one, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
-    wanted = np.array([pair.stiffness for pair in one.pairs])
+    curves = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
+    printed = np.array([pair.stiffness for pair in size.pairs])
     # Stiffness falls as grooves widen.
-    each = [float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(wanted, curves.T, strict=True)]
+    each = [float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(printed, curves.T, strict=True)]
     middle = float(np.median(each))
     if not _TRIED[0] < middle < _TRIED[-1]:
-        usual = stiffnesses(one, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
+        usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
         rule = (
-            f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {one.pairs[0].preload:g} N in grooves of "
+            f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {size.pairs[0].preload:g} N in grooves of "
             f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
         )
-        raise SceneError.at(f"{one.title}: stiffness of a pair", f"{1e-6 * wanted[0]:.3g} N/µm", rule)
+        raise SceneError.at(f"{size.title}: stiffness of a pair", f"{1e-6 * printed[0]:.3g} N/µm", rule)
     falls = np.abs(np.gradient(np.log(curves), np.log(_TRIED), axis=0))
     by_one = _STIFFNESS / float(np.median([np.interp(middle, _TRIED, slope) for slope in falls.T]))
     return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
 
 
-def _checks(one: Printed, best: Candidate, inner: float, outer: float) -> tuple[Check, ...]:
-    found = []
-    for rating, c, c0 in zip(one.ratings, best.dynamic_errors, best.static_errors, strict=True):
+def _checks(size: Printed, best: Candidate, inner: float, outer: float) -> tuple[Check, ...]:
+    checks = []
+    for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
         for word, printed, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
-            found.append(Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
-    computed: Iterable[float] = stiffnesses(one, best.ball_count, best.ball_diameter, inner, outer) if one.pairs else []
-    for pair, k in zip(one.pairs, computed, strict=True):
-        found.append(Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
-    return tuple(found)
+            checks.append(Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
+    computed: Iterable[float] = stiffnesses(size, best.ball_count, best.ball_diameter, inner, outer) if size.pairs else []
+    for pair, k in zip(size.pairs, computed, strict=True):
+        checks.append(Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
+    return tuple(checks)

@@ -80,14 +80,14 @@ class Printed:
     internals: Internals | None = None
 
     def __attrs_post_init__(self) -> None:
-        where, found = self.title, []
         numbers = {"bore": self.bore, "outer diameter": self.outer_diameter, "width": self.width or 1.0}
-        for one in self.ratings:
-            at = f"{one.contact_angle_deg:g} deg"
+        mistakes = []
+        for rating in self.ratings:
+            at = f"{rating.contact_angle_deg:g} deg"
             numbers |= {
-                "contact angle": one.contact_angle_deg,
-                f"dynamic rating, {at}": one.dynamic,
-                f"static rating, {at}": one.static,
+                "contact angle": rating.contact_angle_deg,
+                f"dynamic rating, {at}": rating.dynamic,
+                f"static rating, {at}": rating.static,
             }
         for pair in self.pairs:
             numbers |= {
@@ -95,23 +95,24 @@ class Printed:
                 "preload of a pair": pair.preload,
                 "stiffness of a pair": pair.stiffness,
             }
-            found += _not_positive(where, numbers)
-        found += _not_positive(where, numbers)
-        if found:
-            raise SceneError(list(dict.fromkeys(found)))
+            mistakes += _not_positive(self.title, numbers)
+        mistakes += _not_positive(self.title, numbers)
+        if mistakes:
+            raise SceneError(list(dict.fromkeys(mistakes)))
         if not self.bore < self.outer_diameter < 10.0:
             rule = 'must exceed the bore and be below 10 m: write a unit, "110 mm"'
-            found.append(Mistake(f"{where}: outer diameter", self.outer_diameter, rule))
+            mistakes.append(Mistake(f"{self.title}: outer diameter", self.outer_diameter, rule))
         if not self.ratings:
-            found.append(Mistake(where, None, "needs the load ratings at one contact angle or more"))
-        for one in self.ratings:
-            if not 0.0 < one.contact_angle_deg <= 45.0:
-                found.append(Mistake(f"{where}: contact angle", one.contact_angle_deg, "must be above 0 and at most 45 deg"))
-            if not _RATIO[0] < one.static / one.dynamic < _RATIO[1]:
-                rule = f"contradicts the dynamic rating {one.dynamic:g} N: C0 is {_RATIO[0]:g} to {_RATIO[1]:g} of C in ball bearings"
-                found.append(Mistake(f"{where}: static rating", one.static, rule))
-        if found:
-            raise SceneError(found)
+            mistakes.append(Mistake(self.title, None, "needs the load ratings at one contact angle or more"))
+        for rating in self.ratings:
+            if not 0.0 < rating.contact_angle_deg <= 45.0:
+                rule = "must be above 0 and at most 45 deg"
+                mistakes.append(Mistake(f"{self.title}: contact angle", rating.contact_angle_deg, rule))
+            if not _RATIO[0] < rating.static / rating.dynamic < _RATIO[1]:
+                rule = f"contradicts the dynamic rating {rating.dynamic:g} N: C0 is {_RATIO[0]:g} to {_RATIO[1]:g} of C in ball bearings"
+                mistakes.append(Mistake(f"{self.title}: static rating", rating.static, rule))
+        if mistakes:
+            raise SceneError(mistakes)
 
     @property
     def title(self) -> str:
@@ -128,21 +129,20 @@ class Printed:
         """Outer diameter less bore [m]."""
         return self.outer_diameter - self.bore
 
-    def column(self, key: str) -> np.ndarray:
-        """``angle`` [rad], ``dynamic`` or ``static`` [N] of the ratings, (n,)."""
-        if key == "angle":
-            return np.radians([one.contact_angle_deg for one in self.ratings])
-        return np.array([getattr(one, key) for one in self.ratings])
+    @property
+    def angles(self) -> np.ndarray:
+        """(n,) contact angles of the ratings [rad]."""
+        return np.radians([rating.contact_angle_deg for rating in self.ratings])
 
-    def scaled(self, others: Iterable[Printed]) -> Printed:
-        """This size with the ratings, pairs and names of others of the same dimensions."""
-        every = (self, *others)
-        return attrs.evolve(
-            self,
-            ratings=tuple(x for one in every for x in one.ratings),
-            pairs=tuple(x for one in every for x in one.pairs),
-            names=tuple(x for one in every for x in one.names),
-        )
+    @property
+    def dynamic(self) -> np.ndarray:
+        """(n,) dynamic ratings [N]."""
+        return np.array([rating.dynamic for rating in self.ratings])
+
+    @property
+    def static(self) -> np.ndarray:
+        """(n,) static ratings [N]."""
+        return np.array([rating.static for rating in self.ratings])
 
 
 def _not_positive(where: str, numbers: dict[str, float]) -> list[Mistake]:
@@ -195,22 +195,22 @@ def parse_table(text: str, name: str) -> Table:
     rows = list(csv.reader(line for _, line in lines))
     head = [word.strip() for word in rows[0]] if rows else []
     pairs = [{key: word.format(k) for key, word in _PAIR.items()} for k in range(1, 10)]
-    known = [*_NEEDED, *_OPTIONAL, *(word for pair in pairs for word in pair.values())]
-    faults = [Mistake(name, word, f"unknown column{nearest(word, known)}") for word in head if word not in known]
+    columns = [*_NEEDED, *_OPTIONAL, *(word for pair in pairs for word in pair.values())]
+    faults = [Mistake(name, word, f"unknown column{nearest(word, columns)}") for word in head if word not in columns]
     faults += [Mistake(name, None, f"column `{word}` is missing") for word in _NEEDED if word not in head]
     if faults or len(rows) < 2:
         raise SceneError(faults or [Mistake(name, None, "has no line below its head")])
-    found = []
+    designations = []
     for (number, _), cells in zip(lines[1:], rows[1:], strict=True):
         try:
-            found.append(_line(dict(zip(head, cells, strict=True)), pairs))
+            designations.append(_line(dict(zip(head, cells, strict=True)), pairs))
         except SceneError as error:
             faults += [Mistake(f"{name}, line {number}: {m.path}", m.value, m.message) for m in error.mistakes]
         except ValueError as why:
             faults.append(Mistake(f"{name}, line {number}", None, f"is no line of this table: {why}"))
-    if not found:
+    if not designations:
         raise SceneError(faults)
-    return Table(tuple(found), tuple(faults))
+    return Table(tuple(designations), tuple(faults))
 
 
 def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
@@ -240,7 +240,15 @@ def sizes_of(lines: Iterable[Printed]) -> list[Printed]:
     """Lines that differ in the contact angle alone, together: the same designation but for its suffix, or the same dimensions
     where they say no internals of their own."""
     groups: dict[object, list[Printed]] = {}
-    for one in lines:
-        key = one.names if one.internals is not None else (one.bore, one.outer_diameter, one.width)
-        groups.setdefault(key, []).append(one)
-    return [group[0].scaled(group[1:]) for group in groups.values()]
+    for line in lines:
+        key = line.names if line.internals is not None else (line.bore, line.outer_diameter, line.width)
+        groups.setdefault(key, []).append(line)
+    return [
+        attrs.evolve(
+            group[0],
+            ratings=tuple(rating for line in group for rating in line.ratings),
+            pairs=tuple(pair for line in group for pair in line.pairs),
+            names=tuple(name for line in group for name in line.names),
+        )
+        for group in groups.values()
+    ]

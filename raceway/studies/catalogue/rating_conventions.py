@@ -10,6 +10,7 @@ Both give each candidate a log-density of what is printed, so that they can be c
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 
 import attrs
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raceway.studies.catalogue.printed import Printed, printed_by
-from raceway.studies.catalogue.ratings import dynamic_rating, pair_stiffness, static_rating, static_rating_of_grooves
+from raceway.studies.catalogue.ratings import BallRow
 
 _INCH = 25.4e-3
 #: First and last size, and the step: in inches, and in m.
@@ -27,11 +28,11 @@ _BY_MILLIMETRE = ((1e-3, 12.5e-3, 0.5e-3), (13e-3, 100e-3, 1e-3))
 _SAME = 1e-6
 
 
-def ball_sizes(smallest: float, largest: float, metric: bool = False) -> np.ndarray:
+def _ball_sizes(smallest: float, largest: float, metric: bool = False) -> np.ndarray:
     """Sizes (n,) [m] from ``smallest`` to ``largest`` [m], by inches or by mm."""
     unit, steps = (1.0, _BY_MILLIMETRE) if metric else (_INCH, _BY_INCH)
-    every = np.concatenate([np.arange(first, last + 0.5 * step, step) for first, last, step in steps]) * unit
-    return every[(every >= smallest) & (every <= largest)]
+    sizes = np.concatenate([np.arange(first, last + 0.5 * step, step) for first, last, step in steps]) * unit
+    return sizes[(sizes >= smallest) & (sizes <= largest)]
 
 
 def size_words(diameter: float) -> str:
@@ -48,7 +49,7 @@ def size_words(diameter: float) -> str:
 #: Limits within which the tables meet printed ratings, C and C0.
 LIMITS = 0.006, 0.008
 #: Times these limits beyond which a candidate explains nothing, and the least share of known bearings that resemble one.
-BEYOND, LIKE = 1.6, 1e-6
+_BEYOND, _LIKE = 1.6, 1e-6
 #: Conformity that meets the printed stiffnesses of makers that rate by the tables, and the steel that it was fitted with [Pa].
 CONFORMITY, YOUNG, POISSON = 0.522, 208e9, 0.3
 #: Ball diameter over the section (outer diameter less bore), and the share of the pitch circle that balls fill, both generously.
@@ -90,7 +91,7 @@ class Candidate:
     @property
     def explains(self) -> bool:
         """Whether it is an answer at all: ratings met, or such a bearing known."""
-        return self.misfit <= BEYOND if self.alike is None else self.alike >= LIKE
+        return self.misfit <= _BEYOND if self.alike is None else self.alike >= _LIKE
 
     @property
     def misfit(self) -> float:
@@ -99,154 +100,118 @@ class Candidate:
         return max(error / limit for error, limit in zip(worst, LIMITS, strict=True))
 
 
-def stiffnesses(one: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
+def stiffnesses(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
     """Axial stiffness [N/m] of each printed pair, (..., n), of counts and conformities (...)."""
-    angle = np.radians([pair.contact_angle_deg for pair in one.pairs])
-    preload = np.array([pair.preload for pair in one.pairs])
+    angle = np.radians([pair.contact_angle_deg for pair in size.pairs])
     count, inner, outer = (np.asarray(x)[..., None] for x in (count, inner, outer))
-    return pair_stiffness(count, diameter, one.mean_diameter, angle, inner, outer, preload, YOUNG, POISSON)
+    row = BallRow(count, diameter, size.mean_diameter, angle, inner, outer)
+    return row.pair_stiffness([pair.preload for pair in size.pairs], YOUNG, POISSON)
 
 
-def _misfits(one: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
-    return stiffnesses(one, count, diameter, inner, outer) / [pair.stiffness for pair in one.pairs] - 1.0
+def _misfits(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
+    return stiffnesses(size, count, diameter, inner, outer) / [pair.stiffness for pair in size.pairs] - 1.0
 
 
-def _trials(one: Printed, metric: bool = False) -> list[tuple[float, np.ndarray]]:
+def _trials(size: Printed, metric: bool = False) -> Iterator[tuple[float, np.ndarray]]:
     """Ball diameters [m] with the counts that fill the pitch circle as bearings do."""
-    found = []
-    for d in ball_sizes(_BALL[0] * one.section, _BALL[1] * one.section, metric):
-        most = np.pi / np.arcsin(d / one.mean_diameter)
+    for d in _ball_sizes(_BALL[0] * size.section, _BALL[1] * size.section, metric):
+        most = np.pi / np.arcsin(d / size.mean_diameter)
         counts = np.arange(max(int(_FILL[0] * most), 4), int(_FILL[1] * most) + 2)
-        found.append((float(d), counts[counts <= most]))
-    return found
+        yield float(d), counts[counts <= most]
 
 
-def by_tables(one: Printed, metric: bool = False) -> list[Candidate]:
-    """Candidates by the tables of ISO 281 and ISO 76, the likeliest first; balls of inch sizes, or of whole and half mm."""
-    angle, pitch, found = one.column("angle"), one.mean_diameter, []
-    for d, counts in _trials(one, metric):
-        dynamic = dynamic_rating(counts[:, None], d, pitch, angle) / one.column("dynamic") - 1.0
-        static = static_rating(counts[:, None], d, pitch, angle) / one.column("static") - 1.0
-        there = np.maximum(np.abs(dynamic), np.abs(static)).max(axis=1) <= _NONE
-        stiffness = _misfits(one, counts[there], d, CONFORMITY, CONFORMITY)
-        for z, c, c0, stiff in zip(counts[there], dynamic[there], static[there], stiffness, strict=True):
+def by_tables(size: Printed, metric: bool = False) -> list[Candidate]:
+    """Candidates by the tables of ISO 281 and ISO 76; balls of inch sizes, or of whole and half mm."""
+    candidates = []
+    for d, counts in _trials(size, metric):
+        row = BallRow(counts[:, None], d, size.mean_diameter, size.angles)
+        dynamic, static = row.dynamic_rating() / size.dynamic - 1.0, row.static_rating() / size.static - 1.0
+        met = np.maximum(np.abs(dynamic), np.abs(static)).max(axis=1) <= _NONE
+        stiffness = _misfits(size, counts[met], d, CONFORMITY, CONFORMITY)
+        for z, c, c0, stiff in zip(counts[met], dynamic[met], static[met], stiffness, strict=True):
             off = np.array([*(np.abs(x).max() for x in (c, c0)), stiff.mean() if stiff.size else 0.0]) / _BY_TABLES
-            shape = (np.array(_shape(one, int(z), d)[:2]) - _TABLES_SHAPE) / _TABLES_SCATTER
+            shape = (np.array(_shape(size, int(z), d)[:2]) - _TABLES_SHAPE) / _TABLES_SCATTER
             weight = -0.5 * (off @ off + shape @ shape) - np.log([*_BY_TABLES, *_TABLES_SCATTER]).sum()
-            found.append(
+            candidates.append(
                 Candidate("tables", int(z), d, CONFORMITY, CONFORMITY, tuple(c), tuple(c0), tuple(stiff), float(weight))
             )
-    return sorted(found, key=lambda x: -x.weight)
+    return candidates
 
 
-@attrs.frozen
-class _Fitted:
-    """Grooves that explain a static rating, for one ball diameter and all counts (n,)."""
-
-    wide: bool
-    conformity: np.ndarray
-    dynamic: np.ndarray
-
-
-def _fitted(one: Printed, d: float, counts: np.ndarray, wide: bool) -> _Fitted:
-    """Inner conformity from C0 (of the first angle), error of C with it; NaN where no groove gives C0."""
-    angle, pitch, f = one.column("angle")[0], one.mean_diameter, _CONFORMITIES
-    outer = np.full_like(f, _USUAL_OUTER) if wide else f
-    rating = static_rating_of_grooves(1.0, d, pitch, angle, f, outer)
-    wanted = one.column("static")[0] / counts
+def _fitted(size: Printed, d: float, counts: np.ndarray, wide: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Inner conformity (n,) by C0 of the first angle, NaN where no groove gives it, and log-error of C with it, of counts (n,)."""
+    angle, pitch, f = size.angles[0], size.mean_diameter, _CONFORMITIES
+    rating = BallRow(1.0, d, pitch, angle, f, np.full_like(f, _USUAL_OUTER) if wide else f).static_rating_of_grooves()
     order = np.argsort(rating)
-    inner = np.interp(wanted, rating[order], f[order], left=np.nan, right=np.nan)
+    inner = np.interp(size.static[0] / counts, rating[order], f[order], left=np.nan, right=np.nan)
     if wide:
         inner = np.where(inner < _WIDE_INNER, np.nan, inner)
-    own = np.full_like(inner, _USUAL_OUTER) if wide else inner
-    return _Fitted(wide, inner, np.log(dynamic_rating(counts, d, pitch, angle, inner, own) / one.column("dynamic")[0]))
-
-
-@attrs.frozen(eq=False)
-class _Known:
-    """Columns (n,) of the bearings whose maker prints balls and pitch diameter."""
-
-    name: np.ndarray
-    wide: np.ndarray
-    diameter: np.ndarray
-    angle: np.ndarray
-    conformity: np.ndarray
-    dynamic: np.ndarray
-    stiffness: np.ndarray
-    fill: np.ndarray
-    ball: np.ndarray
-    bore: np.ndarray
-    size: np.ndarray
+    row = BallRow(counts, d, pitch, angle, inner, np.full_like(inner, _USUAL_OUTER) if wide else inner)
+    return inner, np.log(row.dynamic_rating() / size.dynamic[0])
 
 
 @cache
-def _known() -> _Known:
-    rows = []
-    for one in printed_by("gmn"):
-        inside = one.internals
-        if inside is None:
+def _printed_bearings() -> np.ndarray:
+    """Records (n,) of the bearings whose maker prints balls and pitch diameter."""
+    records = []
+    for size in printed_by("gmn"):
+        if size.internals is None:
             continue
-        z, d = inside.ball_count, inside.ball_diameter
+        z, d = size.internals.ball_count, size.internals.ball_diameter
         # Narrow grooves give C and C0 by one conformity; a wide inner groove is seen by C0, which it alone limits.
-        narrow, wide = (_fitted(one, d, np.array([z]), each) for each in (False, True))
-        is_wide = bool(np.isfinite(wide.conformity[0])) and abs(wide.dynamic[0]) < abs(narrow.dynamic[0])
-        kind = wide if is_wide else narrow
-        f = float(kind.conformity[0])
-        stiff = np.log1p(_misfits(one, z, d, f, _USUAL_OUTER if is_wide else f)).mean()
-        rows.append(
-            (one.names[0], is_wide, d, one.ratings[0].contact_angle_deg, f, kind.dynamic[0], stiff, *_shape(one, z, d))
-        )
-    return _Known(*(np.array(column) for column in zip(*rows, strict=True)))
+        (narrow, narrow_error), (inner, wide_error) = (_fitted(size, d, np.array([z]), each) for each in (False, True))
+        wide = bool(np.isfinite(inner[0])) and abs(wide_error[0]) < abs(narrow_error[0])
+        f, dynamic = (float(inner[0]), wide_error[0]) if wide else (float(narrow[0]), narrow_error[0])
+        stiff = np.log1p(_misfits(size, z, d, f, _USUAL_OUTER if wide else f)).mean()
+        angle = size.ratings[0].contact_angle_deg
+        records.append((size.names[0], wide, d, angle, f, dynamic, stiff, *_shape(size, z, d)))
+    numbers = "diameter", "angle", "conformity", "dynamic", "stiffness", "fill", "ball", "bore", "size"
+    return np.array(records, dtype=[("name", object), ("wide", bool), *((name, float) for name in numbers)])
 
 
-def _shape(one: Printed, z: int, d: float) -> tuple[float, float, float, float]:
+def _shape(size: Printed, z: int, d: float) -> tuple[float, float, float, float]:
     """Filling of the pitch circle, D over the section, bore over outer diameter, log of the outer diameter."""
-    return (
-        z * d / (np.pi * one.mean_diameter),
-        d / one.section,
-        one.bore / one.outer_diameter,
-        float(np.log(one.outer_diameter)),
-    )
+    ratio, log_size = size.bore / size.outer_diameter, float(np.log(size.outer_diameter))
+    return z * d / (np.pi * size.mean_diameter), d / size.section, ratio, log_size
 
 
 def _bell(*offs: np.ndarray) -> np.ndarray:
     return np.exp(-0.5 * sum(off**2 for off in offs))
 
 
-def by_grooves(one: Printed, without: str = "") -> list[Candidate]:
-    """Candidates by the maker's own grooves, the likeliest first.
+def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
+    """Candidates by the maker's own grooves.
 
     Parameters
     ----------
-    without : designation of a known bearing that is left out, to test the method on it
+    without : designation of a printed bearing that is left out, to test the method on it
     """
-    known, found = _known(), []
-    here = known.name != without
-    family = here * _bell(
-        *((x - y) / s for x, y, s in zip((known.bore, known.size), _shape(one, 1, 1.0)[2:], _FAMILY, strict=True))
-    )
-    for d, counts in _trials(one):
-        near = np.log(known.diameter / d)
-        ball = here * (_bell(near / _SAME_BALL) + 0.02 * _bell(near / 0.3))
-        for fit in (_fitted(one, d, counts, wide) for wide in (False, True)):
-            alike = known.wide == fit.wide
-            angles = _bell((known.angle - one.ratings[0].contact_angle_deg) / 6.0) if fit.wide else 1.0
-            width = _GROOVE * (4.0 if fit.wide else 1.0)
-            there = np.isfinite(fit.conformity) & (np.abs(fit.dynamic) <= _NONE)
-            inner, dynamic = fit.conformity[there], fit.dynamic[there]
-            stiffness = _misfits(one, counts[there], d, inner, _USUAL_OUTER if fit.wide else inner)
-            for z, f, c, stiff in zip(counts[there], inner, dynamic, stiffness, strict=True):
-                outer = _USUAL_OUTER if fit.wide else float(f)
-                offs = [(f - known.conformity) / width, (c - known.dynamic) / _BY_GROOVES[0]]
-                offs += [(np.log1p(stiff).mean() - known.stiffness) / _BY_GROOVES[1]] if one.pairs else []
+    bearings, candidates = _printed_bearings(), []
+    others = bearings["name"] != without
+    same = zip((bearings["bore"], bearings["size"]), _shape(size, 1, 1.0)[2:], _FAMILY, strict=True)
+    family = others * _bell(*((x - y) / s for x, y, s in same))
+    for d, counts in _trials(size):
+        near = np.log(bearings["diameter"] / d)
+        ball = others * (_bell(near / _SAME_BALL) + 0.02 * _bell(near / 0.3))
+        for wide in (False, True):
+            alike = bearings["wide"] == wide
+            angles = _bell((bearings["angle"] - size.ratings[0].contact_angle_deg) / 6.0) if wide else 1.0
+            width = _GROOVE * (4.0 if wide else 1.0)
+            inner, dynamic = _fitted(size, d, counts, wide)
+            met = np.isfinite(inner) & (np.abs(dynamic) <= _NONE)
+            stiffness = _misfits(size, counts[met], d, inner[met], _USUAL_OUTER if wide else inner[met])
+            for z, f, c, stiff in zip(counts[met], inner[met], dynamic[met], stiffness, strict=True):
+                outer = _USUAL_OUTER if wide else float(f)
+                offs = [(f - bearings["conformity"]) / width, (c - bearings["dynamic"]) / _BY_GROOVES[0]]
+                offs += [(np.log1p(stiff).mean() - bearings["stiffness"]) / _BY_GROOVES[1]] if size.pairs else []
                 grooves = (ball * alike * angles * _bell(*offs)).sum() / ((ball * alike * angles).sum() + 1e-9)
-                fill, share, *_ = _shape(one, int(z), d)
-                shape = _bell((fill - known.fill) / _SHAPE[0], (share - known.ball) / _SHAPE[1])
+                fill, share, *_ = _shape(size, int(z), d)
+                shape = _bell((fill - bearings["fill"]) / _SHAPE[0], (share - bearings["ball"]) / _SHAPE[1])
                 likely = (family * alike * shape).sum() / (family.sum() + 1e-9)
                 # A width of the conformity is one of C0: C0 falls with (2 f - 1)^0.64.
                 spread = 0.64 * 2.0 * width / (2.0 * f - 1.0)
                 weight = np.log(grooves + 1e-7) + np.log(likely + 1e-5) - np.log([spread, *_BY_GROOVES, *_SHAPE]).sum()
                 errors = (float(np.expm1(c)),), (0.0,), tuple(stiff)
                 alike_share = float(grooves * likely)
-                found.append(Candidate("grooves", int(z), d, float(f), outer, *errors, float(weight), alike_share))
-    return sorted(found, key=lambda x: -x.weight)
+                candidates.append(Candidate("grooves", int(z), d, float(f), outer, *errors, float(weight), alike_share))
+    return candidates

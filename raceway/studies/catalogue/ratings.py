@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -25,6 +26,28 @@ from numpy.typing import ArrayLike
 _NEWTON = 8
 #: Points of the table, and the smallest (b/a)^2 in it.
 _POINTS, _FLATTEST = 4000, 1e-6
+
+#: b_m of single-row radial and angular-contact ball bearings of contemporary steel.
+_MATERIAL_FACTOR = 1.3
+#: Ball diameter [m] above which the exponent of D changes, and the pressure of the static rating [Pa].
+_LARGE, _PERMITTED = 25.4e-3, 4200e6
+#: Conformity of the standards' tables; modulus and Poisson's ratio of ISO/TR 10657.
+_STANDARD, _YOUNG, _POISSON = 0.52, 207e9, 0.3
+_MODULUS = 0.5 * _YOUNG / (1.0 - _POISSON**2)
+#: f_c and f_0 over g = 0, 0.01 ... 0.40.
+_F_C = np.array([
+    0.0, 29.1, 35.8, 40.3, 43.8, 46.7, 49.1, 51.1, 52.8, 54.3, 55.5, 56.6, 57.5, 58.2,
+    58.8, 59.3, 59.6, 59.8, 59.9, 60.0, 59.9, 59.8, 59.6, 59.3, 59.0, 58.6, 58.2, 57.7,
+    57.1, 56.6, 56.0, 55.3, 54.6, 53.9, 53.2, 52.4, 51.7, 50.9, 50.0, 49.2, 48.4,
+])  # fmt: skip
+_F_0 = np.array([
+    14.7, 14.9, 15.1, 15.3, 15.5, 15.7, 15.9, 16.1, 16.3, 16.5, 16.4, 16.1, 15.9, 15.6,
+    15.4, 15.2, 14.9, 14.7, 14.4, 14.2, 14.0, 13.7, 13.5, 13.2, 13.0, 12.8, 12.5, 12.3,
+    12.1, 11.8, 11.6, 11.4, 11.2, 10.9, 10.7, 10.5, 10.3, 10.0, 9.8, 9.6, 9.4,
+])  # fmt: skip
+_G = np.arange(_F_C.size) / 100.0
+#: From here on the inner race limits the static rating.
+_INNER_LIMITS = 10
 
 
 @cache
@@ -55,170 +78,86 @@ def load_at_pressure(curvature: np.ndarray, difference: np.ndarray, modulus: flo
 
 def load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
     """K [N/m^1.5] of Q = K delta^1.5."""
-    known, _, delta = _table()
-    unit = 2.0 / (curvature * np.interp(difference, known, delta))
+    differences, _, delta = _table()
+    unit = 2.0 / (curvature * np.interp(difference, differences, delta))
     return 2.0 / 3.0 * curvature * modulus * unit**1.5
 
 
-def pair_stiffness(
-    count: ArrayLike,
-    diameter: ArrayLike,
-    pitch: ArrayLike,
-    angle: ArrayLike,
-    inner: ArrayLike,
-    outer: ArrayLike,
-    preload: ArrayLike,
-    young: float,
-    poisson: float,
-) -> np.ndarray:
-    """Axial stiffness [N/m] of two equal rows back to back or face to face under a rigid preload.
+@attrs.frozen(eq=False)
+class BallRow:
+    """One row of balls between its grooves; arrays that broadcast.
 
-    Parameters
+    Attributes
     ----------
-    count, diameter, pitch, angle, inner, outer, preload : arrays that broadcast: Z, D [m], d_m [m], free contact angle [rad],
-        r / D of both grooves, preload [N]
-    young, poisson : of balls and rings [Pa]
+    count : Z;  diameter, pitch : D, d_m [m];  angle : free contact angle [rad]
+    inner, outer : conformity r / D of the grooves, by default that of the standards' tables
     """
-    d, free = np.asarray(diameter), np.asarray(angle)
-    g, modulus = d * np.cos(free) / np.asarray(pitch), 0.5 * young / (1.0 - poisson**2)
-    compliance = sum(
-        load_factor(*groove(d, g, f, race), modulus) ** (-2.0 / 3.0) for f, race in ((inner, True), (outer, False))
-    )
-    factor = np.asarray(compliance) ** -1.5
-    distance = (np.asarray(inner) + np.asarray(outer) - 1.0) * d
-    wanted = np.asarray(preload) / (np.asarray(count) * factor * distance**1.5)
-    stretch = _stretch(wanted, np.cos(free))
-    cosine = np.cos(free) / (1.0 + stretch)
-    approach, length = stretch * distance, (1.0 + stretch) * distance
-    along = 1.5 * factor * np.sqrt(approach) * (1.0 - cosine**2) + factor * approach**1.5 / length * cosine**2
-    return 2.0 * np.asarray(count) * along
+
+    count: np.ndarray = attrs.field(converter=np.asarray)
+    diameter: np.ndarray = attrs.field(converter=np.asarray)
+    pitch: np.ndarray = attrs.field(converter=np.asarray)
+    angle: np.ndarray = attrs.field(converter=np.asarray)
+    inner: np.ndarray = attrs.field(converter=np.asarray, default=_STANDARD)
+    outer: np.ndarray = attrs.field(converter=np.asarray, default=_STANDARD)
+
+    @property
+    def gamma(self) -> np.ndarray:
+        """g = D cos(a) / d_m."""
+        return np.asarray(self.diameter * np.cos(self.angle) / self.pitch)
+
+    @property
+    def _grooves(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Curvature sum and difference at the inner and at the outer race."""
+        races = ((self.inner, True), (self.outer, False))
+        return [groove(self.diameter, self.gamma, conformity, inner) for conformity, inner in races]
+
+    def dynamic_rating(self) -> np.ndarray:
+        """C of ISO 281 [N]; conformities other than the tables' change f_c as the closed form of ISO/TR 1281-1 does."""
+        d, g = self.diameter, self.gamma
+        size = np.where(d <= _LARGE, (1e3 * d) ** 1.8, 3.647 * (1e3 * d) ** 1.4)
+        standard = np.asarray(_STANDARD)
+        factor = np.interp(g, _G, _F_C) * _closed(g, self.inner, self.outer) / _closed(g, standard, standard)
+        return np.asarray(_MATERIAL_FACTOR * factor * np.cos(self.angle) ** 0.7 * self.count ** (2.0 / 3.0) * size)
+
+    def static_rating(self) -> np.ndarray:
+        """C0 of ISO 76 [N], by its table, whatever the conformities."""
+        return np.asarray(static_factor(self.gamma) * self.count * (1e3 * self.diameter) ** 2 * np.cos(self.angle))
+
+    def static_rating_of_grooves(self) -> np.ndarray:
+        """C0 [N] of the grooves: Z Q cos(a) / 5 with Q the ball load at 4200 MPa on the race that reaches it first."""
+        loads = [load_at_pressure(*shape, _MODULUS, _PERMITTED) for shape in self._grooves]
+        return np.asarray(self.count * np.minimum(*loads) * np.cos(self.angle) / 5.0)
+
+    def pair_stiffness(self, preload: ArrayLike, young: float, poisson: float) -> np.ndarray:
+        """Axial stiffness [N/m] of two such rows back to back or face to face under a rigid preload.
+
+        Parameters
+        ----------
+        preload : [N];  young, poisson : of balls and rings, [Pa] and 1
+        """
+        modulus = 0.5 * young / (1.0 - poisson**2)
+        compliance = sum(load_factor(*shape, modulus) ** (-2.0 / 3.0) for shape in self._grooves)
+        factor = np.asarray(compliance) ** -1.5
+        distance = (self.inner + self.outer - 1.0) * self.diameter
+        stretch = _stretch(np.asarray(preload) / (self.count * factor * distance**1.5), np.cos(self.angle))
+        cosine = np.cos(self.angle) / (1.0 + stretch)
+        approach, length = stretch * distance, (1.0 + stretch) * distance
+        along = 1.5 * factor * np.sqrt(approach) * (1.0 - cosine**2) + factor * approach**1.5 / length * cosine**2
+        return np.asarray(2.0 * self.count * along)
 
 
-def _stretch(wanted: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    """t = cos(a) / cos(b) - 1 of sin(b) t^1.5 = ``wanted``, by Newton's method from above: sin(b) is at least sin(a)."""
-    t = (wanted / np.sqrt(1.0 - cosine**2)) ** (2.0 / 3.0)
+def _stretch(load: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """t = cos(a) / cos(b) - 1 of sin(b) t^1.5 = ``load``, by Newton's method from above: sin(b) is at least sin(a)."""
+    t = (load / np.sqrt(1.0 - cosine**2)) ** (2.0 / 3.0)
     for _ in range(_NEWTON):
         sine = np.sqrt(1.0 - (cosine / (1.0 + t)) ** 2)
         slope = 1.5 * np.sqrt(t) * sine + t**1.5 * cosine**2 / ((1.0 + t) ** 3 * sine)
-        t = t - (sine * t**1.5 - wanted) / slope
+        t = t - (sine * t**1.5 - load) / slope
     return np.asarray(t)
 
 
-#: b_m of single-row radial and angular-contact ball bearings of contemporary steel.
-MATERIAL_FACTOR = 1.3
-#: Ball diameter [m] above which the exponent of D changes, and the pressure of the static rating [Pa].
-_LARGE, _PERMITTED = 25.4e-3, 4200e6
-#: Conformity of the standards' tables; modulus and Poisson's ratio of ISO/TR 10657.
-_STANDARD, _YOUNG, _POISSON = 0.52, 207e9, 0.3
-_MODULUS = 0.5 * _YOUNG / (1.0 - _POISSON**2)
-#: Tables over g = 0, 0.01 ... 0.40.
-_F_C = np.array(
-    [
-        0.0,
-        29.1,
-        35.8,
-        40.3,
-        43.8,
-        46.7,
-        49.1,
-        51.1,
-        52.8,
-        54.3,
-        55.5,
-        56.6,
-        57.5,
-        58.2,
-        58.8,
-        59.3,
-        59.6,
-        59.8,
-        59.9,
-        60.0,
-        59.9,
-    ]
-    + [
-        59.8,
-        59.6,
-        59.3,
-        59.0,
-        58.6,
-        58.2,
-        57.7,
-        57.1,
-        56.6,
-        56.0,
-        55.3,
-        54.6,
-        53.9,
-        53.2,
-        52.4,
-        51.7,
-        50.9,
-        50.0,
-        49.2,
-        48.4,
-    ]
-)
-_F_0 = np.array(
-    [
-        14.7,
-        14.9,
-        15.1,
-        15.3,
-        15.5,
-        15.7,
-        15.9,
-        16.1,
-        16.3,
-        16.5,
-        16.4,
-        16.1,
-        15.9,
-        15.6,
-        15.4,
-        15.2,
-        14.9,
-        14.7,
-        14.4,
-        14.2,
-        14.0,
-    ]
-    + [13.7, 13.5, 13.2, 13.0, 12.8, 12.5, 12.3, 12.1, 11.8, 11.6, 11.4, 11.2, 10.9, 10.7, 10.5, 10.3, 10.0, 9.8, 9.6, 9.4]
-)
-_G = np.arange(_F_C.size) / 100.0
-#: From here on the inner race limits the static rating.
-_INNER_LIMITS = 10
-
-
-def gamma(diameter: ArrayLike, pitch: ArrayLike, angle: ArrayLike) -> np.ndarray:
-    """g = D cos(a) / d_m; lengths [m], angle [rad]."""
-    return np.asarray(diameter) * np.cos(angle) / np.asarray(pitch)
-
-
-def dynamic_rating(
-    count: ArrayLike,
-    diameter: ArrayLike,
-    pitch: ArrayLike,
-    angle: ArrayLike,
-    inner: ArrayLike = _STANDARD,
-    outer: ArrayLike = _STANDARD,
-) -> np.ndarray:
-    """C of ISO 281 [N]; conformities other than the tables' change f_c as the closed form of ISO/TR 1281-1 does.
-
-    Parameters
-    ----------
-    count, diameter, pitch, angle, inner, outer : arrays that broadcast: Z, D [m], d_m [m], contact angle [rad], r / D
-    """
-    d = np.asarray(diameter)
-    g = gamma(d, pitch, angle)
-    size = np.where(d <= _LARGE, (1e3 * d) ** 1.8, 3.647 * (1e3 * d) ** 1.4)
-    factor = np.interp(g, _G, _F_C) * _closed(g, inner, outer) / _closed(g, _STANDARD, _STANDARD)
-    return MATERIAL_FACTOR * factor * np.cos(angle) ** 0.7 * np.asarray(count) ** (2.0 / 3.0) * size
-
-
-def _closed(g: np.ndarray, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
+def _closed(g: np.ndarray, fi: np.ndarray, fo: np.ndarray) -> np.ndarray:
     """The part of f_c that depends on g and on the conformities."""
-    fi, fo = np.asarray(inner), np.asarray(outer)
     wide = (2.0 * fi / (2.0 * fi - 1.0)) ** 0.41
     both = 1.04 * ((1.0 - g) / (1.0 + g)) ** 1.72 * (fi / fo * (2.0 * fo - 1.0) / (2.0 * fi - 1.0)) ** 0.41
     return (1.0 + both ** (10.0 / 3.0)) ** -0.3 * wide
@@ -231,21 +170,3 @@ def static_factor(g: ArrayLike) -> np.ndarray:
     inner = load_at_pressure(*groove(1.0, low, _STANDARD, True), _MODULUS, _PERMITTED)
     edge = load_at_pressure(*groove(1.0, np.array(0.1), _STANDARD, True), _MODULUS, _PERMITTED)
     return np.where(g < 0.1, _F_0[_INNER_LIMITS] * inner / edge, np.interp(g, _G, _F_0))
-
-
-def static_rating(count: ArrayLike, diameter: ArrayLike, pitch: ArrayLike, angle: ArrayLike) -> np.ndarray:
-    """C0 of ISO 76 [N], by its table."""
-    d = np.asarray(diameter)
-    return static_factor(gamma(d, pitch, angle)) * np.asarray(count) * (1e3 * d) ** 2 * np.cos(angle)
-
-
-def static_rating_of_grooves(
-    count: ArrayLike, diameter: ArrayLike, pitch: ArrayLike, angle: ArrayLike, inner: ArrayLike, outer: ArrayLike
-) -> np.ndarray:
-    """C0 [N] of grooves of any conformity: Z Q cos(a) / 5 with Q the ball load at 4200 MPa on the race that reaches it first."""
-    d, g = np.asarray(diameter), gamma(diameter, pitch, angle)
-    loads = [
-        load_at_pressure(*groove(d, g, np.asarray(f), race), _MODULUS, _PERMITTED)
-        for f, race in ((inner, True), (outer, False))
-    ]
-    return np.asarray(count) * np.minimum(*loads) * np.cos(angle) / 5.0
