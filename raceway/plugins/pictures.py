@@ -158,12 +158,17 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     RacewayError
         A folder or disk that cannot be written.
     """
+    return write_whole(figure_png(figure, dots_per_inch), path)
+
+
+def figure_png(figure: Figure, dots_per_inch: int) -> bytes:
+    """A figure as the content of a PNG file."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     figure.set_dpi(dots_per_inch)
     memory = io.BytesIO()
     FigureCanvasAgg(figure).print_png(memory)
-    return write_whole(memory.getvalue(), path)
+    return memory.getvalue()
 
 
 def _draw_orbit(axes: Axes, result: Result) -> None:

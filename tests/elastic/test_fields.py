@@ -5,7 +5,8 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.scene.inputs import read_toml
-from raceway.studies.view.stress import Fields, contacts_left_out, write_fields
+from raceway.storage.files import write_whole
+from raceway.studies.view.stress import Fields, contacts_left_out, field_files
 from raceway.testing import run
 from validation.command_line import EXAMPLES
 
@@ -51,9 +52,9 @@ def test_the_files_hold_the_fields(result, tmp_path):
     import pyvista
 
     fields = Fields.of(result)
-    vtu, png = write_fields(result, tmp_path)
-    grid = pyvista.read(vtu)
+    files = field_files(result)
+    assert list(files) == ["fields.vtu", "stress.png"] and files["stress.png"].startswith(b"\x89PNG")
+    grid = pyvista.read(write_whole(files["fields.vtu"], tmp_path / "fields.vtu"))
     assert grid.n_cells == len(fields.cells) and set(np.unique(grid.cell_data["body"])) == set(range(14))
     assert np.array_equal(grid.cell_data["von Mises stress [Pa]"], fields.von_mises)
     assert np.array_equal(grid.point_data["displacement [m]"], fields.displacement)
-    assert png.read_bytes().startswith(b"\x89PNG")

@@ -28,6 +28,7 @@ from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
+from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import CLAIMED, excitation_of, friction_of
 from raceway.studies.article.study import failure
@@ -274,10 +275,11 @@ def _numbers(result: ReadTables) -> Tables:
 
 def _section(result: Result, folder: Path) -> Tables:
     """The section below the most loaded contact of each race, where a picture can be made; why not, elsewhere."""
-    from raceway.studies.view.stress import write_contact_stress
+    from raceway.studies.view.stress import contact_stress_files
 
     try:
-        return {"pictures": [file.name for file in write_contact_stress(result, folder)]}
+        files = contact_stress_files(result)
+        return {"pictures": [write_whole(content, folder / name).name for name, content in files.items()]}
     except RacewayError as why:
         return {"pictures": [], "no_picture": failure(why)["reason"]}
 

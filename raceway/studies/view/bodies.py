@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -206,7 +206,7 @@ class Bearing:
     """
 
     result: Result
-    shape: Any
+    shape: Dimensions
     assumed: tuple[str, ...]
 
     @classmethod
@@ -235,11 +235,16 @@ class Bearing:
         """Of a ball [mm]."""
         return _MM * float(self.shape.ball_diameter)
 
+    @property
+    def outer_diameter(self) -> float:
+        """Of the outer ring [mm], as it is drawn."""
+        return _MM * float(self.shape.outer_diameter or 0.0)
+
     def centres(self, state: State) -> np.ndarray:
         """(Z, 3) places of the balls [mm]: each follows the inner ring by half, as contacts of nearly equal stiffness do."""
         radial = _radial(state.azimuth)
         follow = 0.5 * (self.moved(_groove(self.shape) * radial, state) - _groove(self.shape) * radial)
-        places = np.repeat([place for _, place in self.shape.rows], self.shape.ball_count)
+        places = np.repeat([axial for _, axial in self.shape.rows], self.shape.ball_count)
         axial = places[:, None] * [1.0, 0.0, 0.0]
         return np.asarray(_MM * (0.5 * self.shape.pitch_diameter * radial + axial + follow))
 
@@ -255,8 +260,8 @@ class Bearing:
         low, high = (0.0, 0.0) if cut is None else cut
         azimuths = np.linspace(high, low + 2.0 * pi, 121)
         for inner, colour in ((True, INNER), (False, OUTER)):
-            for side, place in self.shape.rows:
-                race, seat = self.lines(inner, side, place)
+            for side, axial in self.shape.rows:
+                race, seat = self.lines(inner, side, axial)
                 outline = np.concatenate([seat, race[::-1]] if inner else [race, seat[::-1]])
                 name = "inner ring" if inner else "outer ring"
                 opacity = 0.32 if glass and not inner else 1.0
@@ -266,7 +271,7 @@ class Bearing:
                     parts.append(Part(f"{name}, cut face", joined(faces), FACE if glass else colour))
         return parts
 
-    def lines(self, inner: bool, side: float, place: float) -> tuple[np.ndarray, np.ndarray]:
+    def lines(self, inner: bool, side: float, axial: float) -> tuple[np.ndarray, np.ndarray]:
         """Race side and seat side (k, 2) of a ring's section over the same x, ascending [mm]."""
         from raceway.core.mesh.ring_mesh import ring_shape
 
@@ -275,7 +280,7 @@ class Bearing:
         arc = shape.surface(np.linspace(*outline.edges, 25))
         race = np.concatenate([outline.left[:-1], arc, outline.right[1:]])
         seat = np.column_stack([race[:, 0], np.interp(race[:, 0], *outline.seat.T)])
-        lines = [_MM * (line * [side, 1.0] + [place, 0.0]) for line in (race, seat)]
+        lines = [_MM * (line * [side, 1.0] + [axial, 0.0]) for line in (race, seat)]
         return (lines[0][::-1], lines[1][::-1]) if side < 0.0 else (lines[0], lines[1])
 
     def balls(self, state: State) -> list[Part]:
@@ -302,7 +307,7 @@ class Bearing:
         """(Z, 3) starts and tips of the arrows along the lines of contact, begun where these leave the outer ring [mm]."""
         z, centres = len(state.azimuth), self.centres(state)
         towards = self.towards(state)[z:]
-        reach = 0.5 * _MM * self.shape.outer_diameter + 0.12 * self.diameter
+        reach = 0.5 * self.outer_diameter + 0.12 * self.diameter
         outward = np.maximum(np.hypot(*towards[:, 1:].T), 0.3)
         start = centres + towards * ((reach - np.hypot(*centres[:, 1:].T)) / outward)[:, None]
         length = _LONGEST * self.diameter * state.load[z:] / max(top, 1e-12)
@@ -315,7 +320,7 @@ class Bearing:
         angle = np.where(np.isfinite(state.angle[z:]), state.angle[z:], self.shape.contact_angle)
         sides = np.repeat([side for side, _ in self.shape.rows], self.shape.ball_count)
         axial = self.centres(state)[:, 0] + sides * np.sin(angle) * length
-        reach = 0.5 * _MM * self.shape.outer_diameter + length
+        reach = 0.5 * self.outer_diameter + length
         return np.asarray(reach[:, None] * _radial(state.azimuth) + axial[:, None] * [1.0, 0.0, 0.0])
 
     def patches(self, state: State, races: tuple[str, ...] = ("inner", "outer")) -> list[Part]:

@@ -35,12 +35,10 @@ from raceway.out.wrapping import Words
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.files import writable, write_whole
 from raceway.storage.tables import ReadTables, Tables
-from raceway.studies.view.pictures import png
+from raceway.studies.view.pictures import INK, Plotter, look_from, rendered
 
 if TYPE_CHECKING:
     from types import ModuleType
-
-    from rich.console import RenderableType
 
     from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry, Registry
@@ -51,67 +49,41 @@ _COLOURS = {"inner": "#4f8fc0", "outer": "#c9a24d"}
 _OTHER = "#b8bfc6"
 #: What is cut away: azimuths [rad] from +y towards +z.
 _CUT = (0.0, 0.5 * np.pi)
-_SIZE = (1600, 1200)
+#: How to do without the picture, for messages.
+_OTHERWISE = ", or leave out --picture"
 
 
-def draw(meshes: Mapping[str, HexMesh], title: str, path: Path) -> Path:
-    """Draw all bodies with their edges, one colour a kind of body.
+def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
+    """PNG of all bodies with their edges, one colour a kind of body.
 
     Raises
     ------
     RacewayError
-        pyvista is missing or cannot draw here, or the file cannot be written.
+        pyvista is missing or cannot draw here.
     """
-    try:
-        import pyvista
-    except ImportError:
-        message = f"the picture needs pyvista: {extra('view')}, or leave out --picture"
-        raise RacewayError(message) from None
-    refuse_pictures(", or leave out --picture")
-    try:
-        # Without a display VTK says so on standard error, and then draws in memory as it was asked to.
-        with pyvista.vtk_verbosity("off"):
-            image = _image(pyvista, meshes, title)
-    except (RuntimeError, OSError) as error:
-        raise RacewayError(f"the picture cannot be drawn: {error}. Leave out --picture") from None
-    return write_whole(png(image), path)
+
+    def draw(pyvista: ModuleType, plotter: Plotter) -> None:
+        outside: dict[int, np.ndarray] = {}  # balls share one array of cells
+        for name, mesh in meshes.items():
+            quads = _shared(outside, mesh) if name.startswith("ball") else _cut(mesh)
+            if len(quads):
+                surface = pyvista.PolyData.from_regular_faces(mesh.points, quads)
+                colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
+                edges: Tables = {"show_edges": True, "edge_color": INK, "line_width": 0.6, "edge_opacity": 0.45}
+                plotter.add_mesh(surface, color=colour, ambient=0.3, **edges)
+        plotter.add_text(title, position="upper_edge", font_size=13, color=INK)
+        plotter.enable_anti_aliasing("ssaa")
+        # Seen from the side where the sector is missing, a little from the front.
+        look_from(plotter, [(1.35, 1.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.25)
+
+    return rendered(draw, otherwise=_OTHERWISE)
 
 
-def _image(pyvista: ModuleType, meshes: Mapping[str, HexMesh], title: str) -> np.ndarray:
-    """(rows, columns, 3) bytes."""
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(_SIZE))
-    plotter.background_color = "white"
-    outside: dict[int, np.ndarray] = {}  # balls share one array of cells
-    for name, mesh in meshes.items():
-        quads = _shared(outside, mesh) if name.startswith("ball") else _cut(mesh)
-        if len(quads):
-            surface = pyvista.PolyData.from_regular_faces(mesh.points, quads)
-            colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
-            plotter.add_mesh(
-                surface,
-                color=colour,
-                show_edges=True,
-                edge_color="#20262c",
-                line_width=0.6,
-                edge_opacity=0.45,
-                ambient=0.3,
-            )
-    plotter.add_text(title, position="upper_edge", font_size=13, color="#20262c")
-    plotter.enable_anti_aliasing("ssaa")
-    # Seen from the side where the sector is missing, a little from the front.
-    plotter.camera_position = [(1.35, 1.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
-    plotter.reset_camera()
-    plotter.camera.zoom(1.25)
-    image = np.asarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
-
-
-def _shared(known: dict[int, np.ndarray], mesh: HexMesh) -> np.ndarray:
-    """(k, 4) outer faces, found once for each array of cells."""
-    if id(mesh.cells) not in known:
-        known[id(mesh.cells)] = _outside(mesh.cells)
-    return known[id(mesh.cells)]
+def _shared(outside: dict[int, np.ndarray], mesh: HexMesh) -> np.ndarray:
+    """(k, 4) outer faces, computed once for each array of cells."""
+    if id(mesh.cells) not in outside:
+        outside[id(mesh.cells)] = _outside(mesh.cells)
+    return outside[id(mesh.cells)]
 
 
 def _cut(mesh: HexMesh) -> np.ndarray:
@@ -128,42 +100,42 @@ def _outside(cells: np.ndarray) -> np.ndarray:
     return np.asarray(cells[facets[:, :1], FACES[facets[:, 1]]])
 
 
-def mesh_screen(found: ReadTables) -> RenderableType:
+def mesh_screen(content: ReadTables) -> RenderableType:
     """Numbers of the whole, then a line a body.
 
     Parameters
     ----------
-    found : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds and files
+    content : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds and files
     """
-    count = len(found["bodies"])
-    size, jacobian = found["element_size_m"], found["scaled_jacobian"]
+    count = len(content["bodies"])
+    size, jacobian = content["element_size_m"], content["scaled_jacobian"]
     rows: list[Row] = [
-        (f"Mesh by '{found['mesher']}'", "", ""),
-        ("hexahedra", str(found["elements"]), "1 body" if count == 1 else f"{count} bodies"),
-        ("nodes", str(found["nodes"]), f"{3 * found['nodes']} degrees of freedom"),
+        (f"Mesh by '{content['mesher']}'", "", ""),
+        ("hexahedra", str(content["elements"]), "1 body" if count == 1 else f"{count} bodies"),
+        ("nodes", str(content["nodes"]), f"{3 * content['nodes']} degrees of freedom"),
         ("element edges", f"{1e3 * size['mean']:.3g} mm", f"mean; {1e3 * size['min']:.3g} to {1e3 * size['max']:.3g} mm"),
     ]
-    patch = found["patch_size_m"]
+    patch = content["patch_size_m"]
     if patch is not None:
         for name, sizes in patch.items():
             low, high = (f"{1e3 * sizes[word]:.3g}" for word in ("min", "max"))
             rows.append((f"contact patch, {name}", f"{low} mm", f"to {high} mm, element edges"))
     rows += [
         ("scaled Jacobian", f"{jacobian['min']:.3g}", f"smallest; mean {jacobian['mean']:.3g}, 1 is a cube, 0 is flat"),
-        ("aspect", f"{found['aspect']['max']:.3g}", f"largest; mean {found['aspect']['mean']:.3g}"),
-        ("skew", f"{found['skew']['max']:.3g}", f"largest; mean {found['skew']['mean']:.3g}"),
-        ("memory", f"{found['memory_bytes'] / 2**20:.1f} MiB", "points, cells and sets"),
-        ("time", number(found["seconds"], "s", 3), "building the meshes; judging and writing them is apart"),
+        ("aspect", f"{content['aspect']['max']:.3g}", f"largest; mean {content['aspect']['mean']:.3g}"),
+        ("skew", f"{content['skew']['max']:.3g}", f"largest; mean {content['skew']['mean']:.3g}"),
+        ("memory", f"{content['memory_bytes'] / 2**20:.1f} MiB", "points, cells and sets"),
+        ("time", number(content["seconds"], "s", 3), "building the meshes; judging and writing them is apart"),
         ("Bodies", "", ""),
     ]
     bodies = {}
-    for name, body in found["bodies"].items():
+    for name, body in content["bodies"].items():
         words = f"hexahedra, {body['nodes']} nodes, scaled Jacobian {body['scaled_jacobian']['min']:.3g} and more"
         bodies[name] = str(body["elements"]), words
     rows += [
         (name, cells, f"each: {words}" if name.startswith("balls") else words) for name, (cells, words) in grouped(bodies)
     ]
-    return Group(Words(found["title"], "bold"), sections(rows), *written(found["files"]))
+    return Group(Words(content["title"], "bold"), sections(rows), *written(content["files"]))
 
 
 @click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
@@ -203,7 +175,7 @@ def mesh(
     tell_faults(registry)
     written = _format(registry, form)
     if picture and find_spec("pyvista"):
-        refuse_pictures(", or leave out --picture")
+        refuse_pictures(_OTHERWISE)
     with ProgressBar("meshing") as progress:
         from raceway.bodies.mesh import mesh_scene
 
@@ -238,12 +210,12 @@ def _format(registry: Registry, word: str) -> Entry:
     """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
     names = [name for name in registry.names("format") if hasattr(registry.find("format", name).plugin, "write")]
     of_ending = [name for name in names if f".{word}" in registry.find("format", name).plugin.suffixes]
-    found = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
-    if found.name not in names:
-        raise RacewayError(f"`--format {word}`: '{found.name}' only reads; files are written as {', '.join(names)}")
-    if found.plugin.__module__ == "raceway.plugins.formats" and find_spec("meshio") is None:
-        raise RacewayError(f"files of meshes in the format '{found.name}' need the package meshio: {extra('mesh')}")
-    return found
+    form = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
+    if form.name not in names:
+        raise RacewayError(f"`--format {word}`: '{form.name}' only reads; files are written as {', '.join(names)}")
+    if form.plugin.__module__ == "raceway.plugins.formats" and find_spec("meshio") is None:
+        raise RacewayError(f"files of meshes in the format '{form.name}' need the package meshio: {extra('mesh')}")
+    return form
 
 
 def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> list[Path]:
@@ -253,8 +225,8 @@ def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> 
         raise RacewayError(f"`{folder}` cannot be made: {error.strerror}. Choose another with --out.") from None
     paths = []
     parts = _together(meshes)
-    for done, (name, body) in enumerate(parts.items()):
-        progress(f"writing {name}", done, len(parts))
+    for count, (name, body) in enumerate(parts.items()):
+        progress(f"writing {name}", count, len(parts))
         with blamed(str(form), "write()"):
             writer: Format = form.plugin()
             path = folder / f"{slug(name)}{writer.suffixes[0]}"
@@ -274,7 +246,5 @@ def _together(meshes: Tables) -> Tables:
 
 
 def _draw(meshes: Tables, content: Tables, folder: Path) -> Path:
-    from raceway.studies.view.mesh import draw
-
     size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"
-    return draw(meshes, f"{content['title']}\n{size}", folder / "mesh.png")
+    return write_whole(mesh_picture(meshes, f"{content['title']}\n{size}"), folder / "mesh.png")

@@ -55,18 +55,18 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
             caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
         )
     page.section("Pictures")
-    for content, seen, caption in pictures:
-        page.markup(_picture(content, seen, caption))
+    for picture in pictures:
+        page.markup(_picture(*picture))
     return page
 
 
-def _picture(content: bytes, seen: str, caption: str) -> str:
+def _picture(content: bytes, alternative: str, caption: str) -> str:
     """A picture that a narrow screen shows large enough to be read, and swipes over."""
-    image = f'<img alt="{escape(seen, quote=True)}" src="{data_uri(content)}">'
+    image = f'<img alt="{escape(alternative, quote=True)}" src="{data_uri(content)}">'
     wide = " wide" if content.startswith(b"\x89PNG") and int.from_bytes(content[16:20], "big") > _WIDE else ""
     words = escape(caption, quote=False)
     return (
-        f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{escape(seen, quote=True)}">'
+        f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{escape(alternative, quote=True)}">'
         f"{image}</div><figcaption>{words}</figcaption></figure>"
     )
 
@@ -86,7 +86,7 @@ def _stage(bearing: Bearing, state: State) -> str:
 
 def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
     """Content that the script draws."""
-    z, centres = len(state.azimuth), bearing.centres(state)
+    centres = bearing.centres(state)
     shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
     parts: list[Tables] = []
 
@@ -105,20 +105,17 @@ def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
         add(part, f"arrow {k}", np.zeros(3), _tone(LOADS, (part.load or 0.0) / top))
     patches = bearing.patches(state)
     for k in range(0, len(patches), _TOGETHER):
-        some = joined([part.surface for part in patches[k : k + _TOGETHER]])
-        shapes[f"patches {k}"] = _packed(some, _tone(PRESSURES, np.asarray(some.values) / peak))
-        add(Part("contacts", some), f"patches {k}", np.zeros(3), np.ones(3))
-    told = [
-        {
-            "at": _short(centres[k]),
-            "text": f"Ball {k} at {np.degrees(state.azimuth[k]) % 360.0:.4g}°: {_ball_words(state, k)}",
-        }
-        for k in range(z)
+        together = joined([part.surface for part in patches[k : k + _TOGETHER]])
+        shapes[f"patches {k}"] = _packed(together, _tone(PRESSURES, np.asarray(together.values) / peak))
+        add(Part("contacts", together), f"patches {k}", np.zeros(3), np.ones(3))
+    balls = [
+        {"at": _short(centre), "text": f"Ball {k} at {np.degrees(state.azimuth[k]) % 360.0:.4g}°: {_ball_words(state, k)}"}
+        for k, centre in enumerate(centres)
     ]
     labels = [{"at": _short(tip), "text": f"{k}: {state.load[k]:.3g} N"} for k, tip in enumerate(bearing.tips(state, top))]
-    reach = 1.03 * max(float(np.abs(bearing.tips(state, top)).max()), 500.0 * bearing.shape.outer_diameter)
+    reach = 1.03 * max(float(np.abs(bearing.tips(state, top)).max()), 0.5 * bearing.outer_diameter)
     return {
-        "shapes": shapes, "parts": parts, "balls": told, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter
+        "shapes": shapes, "parts": parts, "balls": balls, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter
     }  # fmt: skip
 
 
@@ -174,14 +171,14 @@ def _tone(colours: str, share: np.ndarray | float) -> np.ndarray:
     return np.asarray(matplotlib.colormaps[colours](np.asarray(share, dtype=float)))[..., :3]
 
 
-def _bar(what: str, unit: str, colours: str, top: float) -> str:
+def _bar(quantity: str, unit: str, colours: str, top: float) -> str:
     """A colour bar with its numbers."""
     stops = ", ".join(
         f"rgb({', '.join(str(round(255 * float(part))) for part in _tone(colours, share))})"
         for share in np.linspace(0.0, 1.0, 11)
     )
     numbers = "".join(f"<span>{share * top:.4g}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
-    return f'<div class="bar">{escape(what)} [{unit}]<i style="background: linear-gradient(90deg, {stops})"></i><div>{numbers}</div></div>'
+    return f'<div class="bar">{escape(quantity)} [{unit}]<i style="background: linear-gradient(90deg, {stops})"></i><div>{numbers}</div></div>'
 
 
 def _hex(colour: str | None) -> list[float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+T = TypeVar("T")
+#: pyvista's: its stubs refuse calls that it takes.
+Plotter: TypeAlias = Any
+Grid: TypeAlias = Any
+
 #: Height of the letters, and the mean width of one [pixels].
 LETTERS, _LETTER = 26, 14.5
 #: Between a label and what it must not touch [pixels].
@@ -28,18 +33,18 @@ _GAP = 9.0
 
 
 def ball_labels(
-    bearing: Bearing, state: State, top: float, seen: Callable[[np.ndarray], np.ndarray]
+    bearing: Bearing, state: State, top: float, project: Callable[[np.ndarray], np.ndarray]
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
 
     Parameters
     ----------
     top : the load whose arrow is longest [N]
-    seen : points (n, 3) [mm] -> (n, 2) [pixels]
+    project : points (n, 3) [mm] -> (n, 2) [pixels]
     """
     texts = [f"{k}: {load:.3g} N" for k, load in enumerate(state.load[: len(state.azimuth)])]
     half = np.array([[0.5 * _LETTER * len(text), 0.5 * LETTERS] for text in texts])
-    tails, heads = (seen(points) for points in bearing.arrow_ends(state, top))
+    tails, heads = (project(points) for points in bearing.arrow_ends(state, top))
     along = heads - tails
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
     # As far beyond the tip as the arrow would go on through the label.
@@ -48,10 +53,10 @@ def ball_labels(
     share = np.linspace(0.0, 1.0, 25)[:, None, None]
     arrows = ((1.0 - share) * tails + share * heads).reshape(-1, 2)
     return [(texts[k], (float(middle[k, 0] - half[k, 0]), float(middle[k, 1] - half[k, 1])))
-            for k in _chosen(middle, half, arrows, bearing.shape.ball_count)]  # fmt: skip
+            for k in _labelled(middle, half, arrows, bearing.shape.ball_count)]  # fmt: skip
 
 
-def _chosen(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: int) -> list[int]:
+def _labelled(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: int) -> list[int]:
     """Every nth ball of each row, n as small as leaves room; those that have room where no n does."""
     touching = (np.abs(middle[:, None] - middle) < half[:, None] + half + _GAP).all(axis=2)
     np.fill_diagonal(touching, False)
@@ -64,27 +69,18 @@ def _chosen(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: i
         balls = [k for k in range(len(middle)) if k % per_row % every == 0]
         if clear(balls):
             return balls
-    kept: list[int] = []
+    labelled: list[int] = []
     for k in range(len(middle)):
-        if clear([*kept, k]):
-            kept.append(k)
-    return kept
+        if clear([*labelled, k]):
+            labelled.append(k)
+    return labelled
 
 
-T = TypeVar("T")
-LOADS, PRESSURES = "viridis", "inferno"
-_INK = "#20262c"
-_BAR: Tables = {
-    "color": _INK,
-    "title_font_size": 28,
-    "label_font_size": 26,
-    "n_labels": 5,
-    "fmt": "%.0f",
-    "vertical": True,
-}
+LOADS, PRESSURES, INK = "viridis", "inferno", "#20262c"
+_BAR: Tables = {"color": INK, "n_labels": 5, "fmt": "%.0f", "vertical": True}
 
 
-def pyvista_of(otherwise: str) -> ModuleType:
+def pyvista_of(otherwise: str = "") -> ModuleType:
     """The package.
 
     Raises
@@ -100,7 +96,7 @@ def pyvista_of(otherwise: str) -> ModuleType:
     return pyvista
 
 
-def quietly(pyvista: ModuleType, draw: Callable[..., T], *given: object) -> T:
+def quietly(pyvista: ModuleType, draw: Callable[[], T], otherwise: str = "") -> T:
     """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
 
     Raises
@@ -110,18 +106,46 @@ def quietly(pyvista: ModuleType, draw: Callable[..., T], *given: object) -> T:
     """
     try:
         with pyvista.vtk_verbosity("off"):
-            return draw(*given)
+            return draw()
     except (RuntimeError, OSError) as error:
-        raise RacewayError(f"the picture cannot be drawn: {error}") from None
+        raise RacewayError(f"the picture cannot be drawn: {error}{otherwise}") from None
 
 
-def new_plotter(pyvista: ModuleType, size: tuple[int, int]) -> Any:
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
-    plotter.background_color = "white"
-    return plotter
+def rendered(
+    draw: Callable[[ModuleType, Plotter], None], size: tuple[int, int] = (1600, 1200), otherwise: str = ""
+) -> bytes:
+    """PNG of what ``draw(pyvista, plotter)`` puts into a scene.
+
+    Parameters
+    ----------
+    otherwise : what a message adds about how to do without the picture
+
+    Raises
+    ------
+    RacewayError
+        pyvista or its system libraries are missing, or VTK cannot draw here.
+    """
+    pyvista = pyvista_of(otherwise)
+
+    def image() -> np.ndarray:
+        plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
+        plotter.background_color = "white"
+        draw(pyvista, plotter)
+        pixels = np.asarray(plotter.screenshot(return_img=True))
+        plotter.close()
+        return pixels
+
+    return _png(quietly(pyvista, image, otherwise))
 
 
-def add_parts(pyvista: ModuleType, plotter: Any, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
+def look_from(plotter: Plotter, camera: Sequence[Sequence[float]], zoom: float) -> None:
+    """All that is in the scene, from a camera: its place, the point that it looks at, the direction upwards."""
+    plotter.camera_position = camera
+    plotter.reset_camera()
+    plotter.camera.zoom(zoom)
+
+
+def _add_parts(pyvista: ModuleType, plotter: Plotter, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
     """Put parts into a scene; colours of loads and pressures reach from 0 to the given ends [N, MPa]."""
     for part in parts:
         mesh = pyvista.PolyData.from_regular_faces(part.surface.points, part.surface.triangles)
@@ -145,59 +169,53 @@ def add_parts(pyvista: ModuleType, plotter: Any, parts: Sequence[Part], top_load
             plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top_load), ambient=0.3, **look)
 
 
-def screen_points(plotter: Any) -> Callable[[np.ndarray], np.ndarray]:
+def _screen_points(plotter: Plotter) -> Callable[[np.ndarray], np.ndarray]:
     """Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner."""
     width, height = plotter.window_size
     matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
     project = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
 
-    def seen(points: np.ndarray) -> np.ndarray:
+    def pixels(points: np.ndarray) -> np.ndarray:
         at = np.column_stack([points, np.ones(len(points))]) @ project.T
         return np.asarray(0.5 * (at[:, :2] / at[:, 3:] + 1.0) * [width, height])
 
-    return seen
+    return pixels
 
 
-def colour_bar(pyvista: ModuleType, plotter: Any, title: str, colours: str, top: float, place: tuple[float, float]) -> None:
+def _colour_bar(
+    pyvista: ModuleType, plotter: Plotter, title: str, colours: str, top: float, corner: tuple[float, float]
+) -> None:
     """A colour bar of its own, from 0 to ``top``."""
     table = pyvista.LookupTable(colours, scalar_range=(0.0, top))
     hidden = pyvista.PolyData(np.zeros((1, 3)))
     hidden.point_data["bar"] = np.zeros(1)
     actor = plotter.add_mesh(hidden, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
     small = plotter.window_size[0] / 1600.0  # letters are given in pixels
-    sizes = {name: max(int(_BAR[name] * small), 12) for name in ("title_font_size", "label_font_size")}
-    bar = {**_BAR, **sizes, "position_x": place[0], "position_y": place[1], "height": 0.34, "width": 0.05}
+    sizes = {name: max(int(size * small), 12) for name, size in (("title_font_size", 28), ("label_font_size", 26))}
+    bar = {**_BAR, **sizes, "position_x": corner[0], "position_y": corner[1], "height": 0.34, "width": 0.05}
     plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
 
 
-def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int] = (1600, 1200)) -> np.ndarray:
-    """The bearing cut open, seen from the gap: (rows, columns, 3) bytes."""
-    pyvista = pyvista_of("")
-    z = len(state.azimuth)
-    top = max(float(state.load[:z].max()), 1e-12)
+def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int] = (1600, 1200)) -> bytes:
+    """The bearing cut open, seen from the gap, as PNG."""
+    top = max(float(state.load[: len(state.azimuth)].max()), 1e-12)
 
-    def draw() -> np.ndarray:
-        plotter = new_plotter(pyvista, size)
+    def draw(pyvista: ModuleType, plotter: Plotter) -> None:
         patches = bearing.patches(state)
         peak = max((float(part.surface.values.max()) for part in patches if part.surface.values is not None), default=1.0)
         parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
-        add_parts(pyvista, plotter, parts, top, peak)
+        _add_parts(pyvista, plotter, parts, top, peak)
         # VTK draws square brackets as round ones.
-        colour_bar(pyvista, plotter, "ball load, N", LOADS, top, (0.045, 0.54))
-        colour_bar(pyvista, plotter, "pressure, MPa", PRESSURES, peak, (0.045, 0.06))
-        plotter.add_text(heading, position="upper_edge", font_size=13, color=_INK)
-        plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=_INK, viewport=(0.85, 0.0, 1.0, 0.2))
+        _colour_bar(pyvista, plotter, "ball load, N", LOADS, top, (0.045, 0.54))
+        _colour_bar(pyvista, plotter, "pressure, MPa", PRESSURES, peak, (0.045, 0.06))
+        plotter.add_text(heading, position="upper_edge", font_size=13, color=INK)
+        plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
-        plotter.camera_position = [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
-        plotter.reset_camera()
-        plotter.camera.zoom(1.08)
-        for text, place in ball_labels(bearing, state, top, screen_points(plotter)):
-            plotter.add_text(text, position=place, font_size=LETTERS // 2, color=_INK)
-        image = np.asarray(plotter.screenshot(return_img=True))
-        plotter.close()
-        return image
+        look_from(plotter, [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.08)
+        for text, corner in ball_labels(bearing, state, top, _screen_points(plotter)):
+            plotter.add_text(text, position=corner, font_size=LETTERS // 2, color=INK)
 
-    return np.asarray(quietly(pyvista, draw))
+    return rendered(draw, size)
 
 
 _MM = 1e3
@@ -222,27 +240,21 @@ def contacts(bearing: Bearing, state: State, heading: str) -> Figure:
 
 def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
     z = len(state.azimuth)
-    side, place = bearing.shape.rows[ball // bearing.shape.ball_count]
+    side, axial = bearing.shape.rows[ball // bearing.shape.ball_count]
     for inner, colour in ((True, INNER), (False, OUTER)):
-        race, seat = bearing.lines(inner, side, place)
-        axes.fill(*np.concatenate([race, seat[::-1]]).T, facecolor=colour, edgecolor=_INK, linewidth=0.8, alpha=0.75)
-        _mesh(axes, bearing, inner, side, place)
-    radius, middle = 0.5 * bearing.diameter, np.array([_MM * place, 0.5 * _MM * bearing.shape.pitch_diameter])
+        race, seat = bearing.lines(inner, side, axial)
+        axes.fill(*np.concatenate([race, seat[::-1]]).T, facecolor=colour, edgecolor=INK, linewidth=0.8, alpha=0.75)
+        _mesh(axes, bearing, inner, side, axial)
+    radius, middle = 0.5 * bearing.diameter, np.array([_MM * axial, 0.5 * _MM * bearing.shape.pitch_diameter])
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    axes.fill(
-        middle[0] + radius * np.cos(turn),
-        middle[1] + radius * np.sin(turn),
-        facecolor="#e8ebee",
-        edgecolor=_INK,
-        linewidth=0.8,
-    )
+    circle = middle[0] + radius * np.cos(turn), middle[1] + radius * np.sin(turn)
+    axes.fill(*circle, facecolor="#e8ebee", edgecolor=INK, linewidth=0.8)
     arrow = {"arrowstyle": "-|>", "color": "#c8501e", "linewidth": 1.8}
     for i, sign, word in ((ball, -1.0, "inner"), (z + ball, 1.0, "outer")):
         angle, load = state.angle[i], state.load[i]
         if not load > 0.0:
-            axes.text(
-                middle[0], middle[1] + sign * 0.6 * radius, f"{word}: no contact", ha="center", va="center", fontsize=10
-            )
+            x, y = middle + [0.0, 0.6 * sign * radius]
+            axes.text(x, y, f"{word}: no contact", ha="center", va="center", fontsize=10)
             continue
         towards = middle + sign * radius * np.array([side * np.sin(angle), np.cos(angle)])
         axes.annotate("", (towards[0], towards[1]), (middle[0], middle[1]), arrowprops=arrow)
@@ -258,7 +270,7 @@ def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) -> None:
+def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, axial: float) -> None:
     """The mesh that a condensed ring was computed on."""
     compute = getattr(bearing.result.model.bearing, "ring_section", None)
     if compute is None:
@@ -266,8 +278,8 @@ def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, place: float) 
     from matplotlib.collections import PolyCollection
 
     profile = compute(bearing.result.model, inner)
-    corners = _MM * (profile.points[:, ::-1] * [side, 1.0] + [place, 0.0])
-    axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=_INK, linewidth=0.25, alpha=0.7))
+    corners = _MM * (profile.points[:, ::-1] * [side, 1.0] + [axial, 0.0])
+    axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=INK, linewidth=0.25, alpha=0.7))
 
 
 def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> ScalarMappable:
@@ -282,8 +294,8 @@ def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: flo
     if state.load[i] > 0.0:
         part, turn = np.meshgrid(np.sin(np.linspace(0.0, 0.5 * np.pi, 61)), np.linspace(0.0, 2.0 * np.pi, 241))
         pressure = 1e-6 * state.peak[i] * np.sqrt(1.0 - part**2)
-        place = a * part * np.cos(turn), b * part * np.sin(turn)
-        axes.pcolormesh(*place, pressure, cmap=scale.cmap, norm=norm, shading="gouraud", rasterized=True)
+        across, along = a * part * np.cos(turn), b * part * np.sin(turn)
+        axes.pcolormesh(across, along, pressure, cmap=scale.cmap, norm=norm, shading="gouraud", rasterized=True)
         words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
     axes.set_aspect("equal")
     axes.set_xlim(-reach, reach)
@@ -295,7 +307,7 @@ def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: flo
     return scale
 
 
-def png(image: np.ndarray) -> bytes:
+def _png(image: np.ndarray) -> bytes:
     """An image (rows, columns, 3) of bytes as a PNG file: zlib's stream of unfiltered rows."""
     import struct
     import zlib

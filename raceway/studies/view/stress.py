@@ -15,9 +15,8 @@ from raceway.core.contact.hertz import axis_shear, axis_stresses
 from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
 from raceway.elastic.stress import cells_near
 from raceway.pipeline.equilibrium import pressures
-from raceway.plugins.pictures import new_figure, save_figure
-from raceway.storage.files import write_whole
-from raceway.studies.view.pictures import new_plotter, png, pyvista_of, quietly
+from raceway.plugins.pictures import figure_png, new_figure
+from raceway.studies.view.pictures import INK, Grid, Plotter, look_from, pyvista_of, quietly, rendered
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -30,8 +29,9 @@ if TYPE_CHECKING:
     from raceway.pipeline.result import Result
 
 
-_SIZE = (1600, 1200)
 _HEXAHEDRON = 12  # VTK's number of the cell
+#: Names of the fields of both scalar stresses in grids.
+_STRESSES = ("von Mises stress [Pa]", "largest shear stress [Pa]")
 #: Colours end at what so much of the section's area stays below: a contact, a thousandth of it, has ten times the stress.
 _SHOWN = 0.95
 
@@ -93,9 +93,9 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
     points, cells = body.points, body.cells
     if near is not None:
         places, reach = near
-        cells = cells[np.unique(np.concatenate([cells_near(points, cells, place, reach) for place in places]))]
-        used, kept = np.unique(cells, return_inverse=True)
-        points, u, cells = points[used], u[used], kept.reshape(-1, 8).astype(np.uint32)
+        cells = cells[np.unique(np.concatenate([cells_near(points, cells, centre, reach) for centre in places]))]
+        used, numbers = np.unique(cells, return_inverse=True)
+        points, u, cells = points[used], u[used], numbers.reshape(-1, 8).astype(np.uint32)
     stress = centre_stress(points, cells, u, body.moduli, body.formulation)
     return Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
@@ -111,36 +111,35 @@ def contacts_left_out(result: Result) -> str:
     return f"{words} (Hertz's pressure up to {1e-6 * peak:.4g} MPa)"
 
 
-def write_fields(result: Result, folder: Path) -> list[Path]:
-    """Write fields.vtu and stress.png.
+def field_files(result: Result) -> dict[str, bytes]:
+    """fields.vtu and stress.png.
 
     Raises
     ------
     RacewayError
-        pyvista or its system libraries are missing, or the folder cannot be written.
+        pyvista or its system libraries are missing.
     """
-    pyvista = pyvista_of("")
-    grid = new_grid(pyvista, Fields.of(result))
+    pyvista = pyvista_of()
+    grid = _new_grid(pyvista, Fields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
     title += f"\n{contacts_left_out(result)}".rstrip()
-    image = quietly(pyvista, _section_image, pyvista, grid, float(result.model.azimuth[most]), title)
-    return [write_whole(vtu(grid), folder / "fields.vtu"), write_whole(png(image), folder / "stress.png")]
+    return {"fields.vtu": _vtu(grid), "stress.png": _section_image(grid, float(result.model.azimuth[most]), title)}
 
 
-def new_grid(pyvista: ModuleType, fields: Fields) -> Any:
+def _new_grid(pyvista: ModuleType, fields: Fields) -> Grid:
     """pyvista's grid with the fields in SI units, units in their names."""
     grid = pyvista.UnstructuredGrid({_HEXAHEDRON: fields.cells}, fields.points)
     grid.point_data["displacement [m]"] = fields.displacement
     grid.cell_data["body"] = fields.body
     grid.cell_data["stress xx yy zz xy yz zx [Pa]"] = fields.stress
-    grid.cell_data["von Mises stress [Pa]"] = fields.von_mises
-    grid.cell_data["largest shear stress [Pa]"] = fields.largest_shear
+    for name, stress in zip(_STRESSES, (fields.von_mises, fields.largest_shear), strict=True):
+        grid.cell_data[name] = stress
     return grid
 
 
-def vtu(grid: Any) -> bytes:
+def _vtu(grid: Grid) -> bytes:
     """The content of a file for ParaView."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fields.vtu"
@@ -155,105 +154,102 @@ def _below(values: np.ndarray, areas: np.ndarray, share: float) -> float:
     return float(values[order][np.searchsorted(summed, share * summed[-1])])
 
 
-def _section_image(pyvista: ModuleType, grid: Any, azimuth: float, title: str) -> np.ndarray:
-    """(rows, columns, 3) bytes: the plane of the axis and a ball, seen along the orbit."""
+def _section_image(grid: Grid, azimuth: float, title: str) -> bytes:
+    """PNG of the plane of the axis and a ball, seen along the orbit."""
     across = np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
     outward = np.array([0.0, np.cos(azimuth), np.sin(azimuth)])
-    half = grid.extract_cells(np.flatnonzero(grid.cell_centers().points @ outward > 0.0))
-    section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
-    stress = section.cell_data["stress"] = 1e-6 * section.cell_data["von Mises stress [Pa]"]
-    top = _below(np.asarray(stress), section.compute_cell_sizes(length=False, volume=False).cell_data["Area"], _SHOWN)
-    title += f"\ncolours end at {top:.3g} MPa; the largest of an element here is {stress.max():.4g} MPa"
-    plotter = new_plotter(pyvista, _SIZE)
-    bar = {
-        "title": "MPa", "color": "#20262c", "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,
-        "position_x": 0.9, "position_y": 0.15, "height": 0.7, "width": 0.06,
-    }  # fmt: skip
-    plotter.add_mesh(
-        section, scalars="stress", cmap="inferno", clim=(0.0, top), show_edges=True, edge_opacity=0.25, line_width=0.5, lighting=False,
-        scalar_bar_args=bar,
-    )  # fmt: skip
-    plotter.add_text(title, position="upper_left", font_size=13, color="#20262c")
-    centre = np.asarray(section.center)
-    plotter.camera_position = [tuple(centre + across), tuple(centre), tuple(outward)]
-    plotter.enable_parallel_projection()
-    plotter.reset_camera()
-    plotter.camera.zoom(1.1)
-    image = np.asarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
+
+    def draw(_pyvista: ModuleType, plotter: Plotter) -> None:
+        half = grid.extract_cells(np.flatnonzero(grid.cell_centers().points @ outward > 0.0))
+        section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
+        stress = section.cell_data["stress"] = 1e-6 * section.cell_data[_STRESSES[0]]
+        top = _below(np.asarray(stress), section.compute_cell_sizes(length=False, volume=False).cell_data["Area"], _SHOWN)
+        bar = {
+            "title": "MPa", "color": INK, "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,
+            "position_x": 0.9, "position_y": 0.15, "height": 0.7, "width": 0.06,
+        }  # fmt: skip
+        plotter.add_mesh(
+            section, scalars="stress", cmap="inferno", clim=(0.0, top), show_edges=True, edge_opacity=0.25, line_width=0.5, lighting=False,
+            scalar_bar_args=bar,
+        )  # fmt: skip
+        words = f"{title}\ncolours end at {top:.3g} MPa; the largest of an element here is {stress.max():.4g} MPa"
+        plotter.add_text(words, position="upper_left", font_size=13, color=INK)
+        centre = np.asarray(section.center)
+        plotter.enable_parallel_projection()
+        look_from(plotter, [tuple(centre + across), tuple(centre), tuple(outward)], 1.1)
+
+    return rendered(draw)
 
 
 #: Half the picture's width and height in minor semi-axes; elements within so many major semi-axes of a contact are kept.
 _WIDE, _NEAR = 3.0, 1.5
 #: The section's distance from the contact's centre in major semi-axes: no plane of nodes, where two elements meet.
 _BESIDE = 0.01
-_UM, _MPA, _INK, _MARK = 1e6, 1e-6, "#20262c", "#00a0c8"
+_UM, _MPA, _MARK = 1e6, 1e-6, "#00a0c8"
 
 
-def write_contact_stress(result: Result, folder: Path) -> list[Path]:
-    """Write contact.vtu and stress_contact.png; nothing where no contact at points is loaded.
+def contact_stress_files(result: Result) -> dict[str, bytes]:
+    """contact.vtu and stress_contact.png; nothing where no contact at points is loaded.
 
     Raises
     ------
     RacewayError
-        pyvista or matplotlib is missing, or the folder cannot be written.
+        pyvista or matplotlib is missing.
     """
-    bodies: Any = result.model.bearing
+    bodies: ElasticBodies = result.model.bearing  # type: ignore[assignment]
     sides = below_contacts(bodies, result.model, result.equilibrium)
     if not sides:
-        return []
+        return {}
     figure, grid = drawn(result, sides)
-    return [write_whole(vtu(grid), folder / "contact.vtu"), save_figure(figure, folder / "stress_contact.png", 110)]
+    return {"contact.vtu": _vtu(grid), "stress_contact.png": figure_png(figure, 110)}
 
 
-def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Any]:
+def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
     """The figure of the contacts of ``below_contacts``, and pyvista's grid of the elements near them."""
-    pyvista = pyvista_of("")
+    pyvista = pyvista_of()
     near: dict[int, tuple[np.ndarray, float]] = {}
     for side in sides:
         places = np.concatenate([near[side.index][0] if side.index in near else np.empty((0, 3)), side.axis.pole[None]])
-        near[side.index] = places, _NEAR * max(one.semi_axes[0] for one in sides)
-    grid = new_grid(pyvista, Fields.of(result, near))
+        near[side.index] = places, _NEAR * max(contact.semi_axes[0] for contact in sides)
+    grid = _new_grid(pyvista, Fields.of(result, near))
     races = [[side for side in sides if side.race == race] for race in dict.fromkeys(side.race for side in sides)]
     figure = new_figure(15.6, 5.6 * len(races))
     panels = figure.subplots(len(races), 3, squeeze=False, width_ratios=(1.0, 1.0, 0.75))
-    cuts = [quietly(pyvista, _contact_section, pyvista, grid, pair) for pair in races]
+    cuts = quietly(pyvista, lambda: [_contact_section(grid, pair) for pair in races])
     for column, name in enumerate(("von Mises stress", "largest shear stress")):
         top = max(float(values[column].max(initial=0.0)) for _, values in cuts)
         for row, (pair, (polygons, values)) in enumerate(zip(races, cuts, strict=True)):
             _draw(panels[row, column], pair, polygons, values[column], top, name)
     for row, pair in enumerate(races):
         _along_the_normal(panels[row, 2], pair, grid)
-    told = "plane of the rolling direction and the contact's normal; ball above, ring below"
+    subtitle = "plane of the rolling direction and the contact's normal; ball above, ring below"
     if any(side.resolved for side in sides):
-        told += "; + largest shear stress on the normal"
-    figure.suptitle(f"{result.title}\n{told}", fontsize=12)
+        subtitle += "; + largest shear stress on the normal"
+    figure.suptitle(f"{result.title}\n{subtitle}", fontsize=12)
     return figure, grid
 
 
-def _contact_section(pyvista: ModuleType, grid: Any, pair: list[BelowContact]) -> tuple[list[np.ndarray], np.ndarray]:
+def _contact_section(grid: Grid, pair: list[BelowContact]) -> tuple[list[np.ndarray], np.ndarray]:
     """Polygons (k, 2) of the deformed elements, along the rolling direction and into the ball [m], and two stresses (2, n) [Pa]."""
     ball = pair[0]
-    kept = grid.extract_cells(np.isin(grid.cell_data["body"], [side.index for side in pair]))
-    moved = kept.point_data["displacement [m]"]
+    bodies = grid.extract_cells(np.isin(grid.cell_data["body"], [side.index for side in pair]))
+    moved = bodies.point_data["displacement [m]"]
     # The contact's centre as the ball's nearest node has moved.
-    nearest = int(np.linalg.norm(kept.points - ball.axis.pole, axis=1).argmin())
+    nearest = int(np.linalg.norm(bodies.points - ball.axis.pole, axis=1).argmin())
     pole = ball.axis.pole + moved[nearest]
-    kept.points = kept.points + moved
+    bodies.points = bodies.points + moved
     beside = pole + _BESIDE * ball.semi_axes[0] * ball.axis.axes[0]
-    cut = kept.slice(normal=ball.axis.axes[0], origin=beside)
+    cut = bodies.slice(normal=ball.axis.axes[0], origin=beside)
     plane = ((cut.points - pole) @ ball.axis.axes.T)[:, 1:]
-    polygons, chosen, at = [], np.zeros(cut.n_cells, dtype=bool), 0
+    polygons, visible, at = [], np.zeros(cut.n_cells, dtype=bool), 0
     for cell in range(cut.n_cells):
         count = int(cut.faces[at])
         corners = _within(plane[cut.faces[at + 1 : at + 1 + count]], _WIDE * ball.semi_axes[1])
         at += 1 + count
-        chosen[cell] = len(corners) > 0
-        if chosen[cell]:
+        visible[cell] = len(corners) > 0
+        if visible[cell]:
             polygons.append(corners)
-    names = ("von Mises stress [Pa]", "largest shear stress [Pa]")
-    return polygons, np.stack([np.asarray(cut.cell_data[name])[chosen] for name in names])
+    return polygons, np.stack([np.asarray(cut.cell_data[name])[visible] for name in _STRESSES])
 
 
 def _within(corners: np.ndarray, half: float) -> np.ndarray:
@@ -261,14 +257,14 @@ def _within(corners: np.ndarray, half: float) -> np.ndarray:
     for axis in (0, 1):
         for sign in (1.0, -1.0):
             inside = half - sign * corners[:, axis]
-            kept = []
+            clipped = []
             for k in range(len(corners)):
-                here, there = inside[k - 1], inside[k]
-                if (here < 0.0) != (there < 0.0):
-                    kept.append(corners[k - 1] + here / (here - there) * (corners[k] - corners[k - 1]))
-                if there >= 0.0:
-                    kept.append(corners[k])
-            corners = np.array(kept).reshape(-1, 2)
+                last, now = inside[k - 1], inside[k]
+                if (last < 0.0) != (now < 0.0):
+                    clipped.append(corners[k - 1] + last / (last - now) * (corners[k] - corners[k - 1]))
+                if now >= 0.0:
+                    clipped.append(corners[k])
+            corners = np.array(clipped).reshape(-1, 2)
     return corners
 
 
@@ -278,9 +274,8 @@ def _draw(
     """One stress in the section, ball above, ring below."""
     from matplotlib.collections import PolyCollection
 
-    shown = PolyCollection(
-        [_UM * one for one in polygons], array=_MPA * values, cmap="inferno", edgecolor=_INK, linewidth=0.15
-    )
+    scaled = [_UM * polygon for polygon in polygons]
+    shown = PolyCollection(scaled, array=_MPA * values, cmap="inferno", edgecolor=INK, linewidth=0.15)
     shown.set_clim(0.0, _MPA * top)
     axes.add_collection(shown)
     wide = _UM * _WIDE * pair[0].semi_axes[1]
@@ -297,8 +292,7 @@ def _draw(
     axes.set_aspect("equal")
     axes.set_xlabel("rolling direction [µm]")
     _depth_axis(axes)
-    one = pair[0]
-    axes.set_title(f"{name}\n{one.race} race, ball {one.ball}, {one.load:.4g} N", fontsize=11)
+    axes.set_title(f"{name}\n{pair[0].race} race, ball {pair[0].ball}, {pair[0].load:.4g} N", fontsize=11)
 
 
 def _depth_axis(axes: Axes) -> None:
@@ -307,22 +301,22 @@ def _depth_axis(axes: Axes) -> None:
     axes.set_ylabel("depth: in ring ↓  in ball ↑ [µm]")
 
 
-def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Any) -> None:
+def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Grid) -> None:
     """Stresses on the contact's normal beside Hertz's at the same load: fitted where the mesh resolves them, else of its elements."""
     for side, sign in zip(pair, (1.0, -1.0), strict=False):
-        profile, told = side.profile, sign > 0.0
+        profile, in_ball = side.profile, sign > 0.0
         depth = profile.depth
         exact = axis_stresses(depth, side.semi_axes, side.peak_pressure, side.poisson)
         full = np.concatenate([exact, np.zeros_like(exact)], axis=1)
         shear = axis_shear(depth, side.semi_axes, side.peak_pressure, side.poisson)
         # Above the first element's centre the fit extrapolates.
         inside = depth >= (0.5 * profile.lengths[0, 2] if side.resolved else 0.0)
-        found = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
+        computed = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
         for values, hertz, colour, word in (
-            (found[0], von_mises(full), "#b5651d", "von Mises"),
-            (found[1], shear, "#0b5fa5", "largest shear"),
+            (computed[0], von_mises(full), "#b5651d", "von Mises"),
+            (computed[1], shear, "#0b5fa5", "largest shear"),
         ):
-            mesh, theory = (f"{word}, mesh", f"{word}, Hertz") if told else (None, None)
+            mesh, theory = (f"{word}, mesh", f"{word}, Hertz") if in_ball else (None, None)
             axes.plot(_MPA * values[inside], sign * _UM * depth[inside], color=colour, linewidth=1.6, label=mesh)
             axes.plot(_MPA * hertz, sign * _UM * depth, color=colour, linewidth=1.0, linestyle="--", label=theory)
         words = f"Hertz {_MPA * side.hertz[0]:.4g} MPa at {_UM * side.hertz[1]:.3g} µm"
@@ -331,16 +325,9 @@ def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Any) -> None:
             words = f"{side.body}: {_MPA * size:.4g} MPa at {_UM * at:.3g} µm\n{words}"
         else:
             words = f"{side.body}: not resolved by this mesh;\nsteps are its elements\n{words}"
-        axes.text(
-            0.97,
-            0.98 if told else 0.02,
-            words,
-            transform=axes.transAxes,
-            ha="right",
-            va="top" if told else "bottom",
-            fontsize=8,
-        )
-    axes.axhline(0.0, color=_INK, linewidth=0.8)
+        height, up = (0.98, "top") if in_ball else (0.02, "bottom")
+        axes.text(0.97, height, words, transform=axes.transAxes, ha="right", va=up, fontsize=8)
+    axes.axhline(0.0, color=INK, linewidth=0.8)
     wide = _UM * _WIDE * pair[0].semi_axes[1]
     axes.set_ylim(-wide, wide)
     axes.set_xlim(0.0, 1.9 * axes.get_xlim()[1])  # room for words
@@ -350,10 +337,9 @@ def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Any) -> None:
     axes.legend(fontsize=8, loc="center right")
 
 
-def _elements_on(side: BelowContact, grid: Any) -> np.ndarray:
+def _elements_on(side: BelowContact, grid: Grid) -> np.ndarray:
     """(2, n) von Mises and largest shear stresses [Pa] of the elements at the depths of the profile, nan outside of all."""
     places = side.axis.at_depth(side.profile.depth) + _BESIDE * np.asarray(side.semi_axes) @ side.axis.axes[:2]
     body = grid.extract_cells(grid.cell_data["body"] == side.index)
     cell = np.atleast_1d(body.find_containing_cell(places))
-    names = "von Mises stress [Pa]", "largest shear stress [Pa]"
-    return np.stack([np.where(cell < 0, np.nan, body.cell_data[name][cell]) for name in names])
+    return np.stack([np.where(cell < 0, np.nan, body.cell_data[name][cell]) for name in _STRESSES])

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
-import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from textwrap import wrap
@@ -17,7 +16,6 @@ import numpy as np
 from raceway.bodies.mesh import mesh_scene
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.doors import door
-from raceway.framework.duties import traits_of
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, largest_facts, race_words
 from raceway.out.progress import ShowProgress, telling
@@ -25,16 +23,16 @@ from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.plugins.pictures import given_axes, picture, save_figure
+from raceway.plugins.pictures import figure_png, given_axes, picture
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.scene.inputs import as_scene
 from raceway.storage.files import writable, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.view.bodies import Bearing, State
-from raceway.studies.view.mesh import draw as draw_mesh
+from raceway.studies.view.mesh import mesh_picture
 from raceway.studies.view.page import view_page
-from raceway.studies.view.pictures import contacts, overview, png
-from raceway.studies.view.stress import contacts_left_out, write_contact_stress, write_fields
+from raceway.studies.view.pictures import contacts, overview
+from raceway.studies.view.stress import contact_stress_files, contacts_left_out, field_files
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,8 +52,8 @@ class View(Shown):
     Examples
     --------
     >>> import raceway as rw
-    >>> found = rw.view({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
-    >>> found.pictures["bearing.png"][:4], found.files
+    >>> view = rw.view({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> view.pictures["bearing.png"][:4], view.files
     (b'\\x89PNG', [])
     """
 
@@ -94,9 +92,9 @@ class View(Shown):
         SceneError
             No such picture.
         """
-        known = [one for one in self.pictures if one.endswith(".png")]
-        if name not in known:
-            raise SceneError.at("name", name, f"must be one of {', '.join(known)}")
+        names = [file for file in self.pictures if file.endswith(".png")]
+        if name not in names:
+            raise SceneError.at("name", name, f"must be one of {', '.join(names)}")
         from matplotlib.image import imread
 
         axes = given_axes(ax, 8.0, 6.0)
@@ -116,20 +114,22 @@ class View(Shown):
         return f"{picture}{super()._repr_html_()}"
 
 
+#: Resolution of the PNG files.
+_DOTS_PER_INCH = 110
 #: Moments of a turn among which the peak is looked for.
 _EVERY = 360
 
 
 def at_rest(result: Result) -> State:
     """The static state, with the numbers of result.json."""
-    found, model = result.equilibrium, result.model
-    balls = equilibrium_table(model, found)["balls"]
+    equilibrium, model = result.equilibrium, result.model
+    balls = equilibrium_table(model, equilibrium)["balls"]
 
     def column(name: str) -> np.ndarray:
         return np.array([ball[name.format(race)] for race in ("inner", "outer") for ball in balls])
 
     half = np.column_stack([column("semi_major_{}_m"), column("semi_minor_{}_m")])
-    angle = np.r_[found.angle_inner, found.angle_outer]
+    angle = np.r_[equilibrium.angle_inner, equilibrium.angle_outer]
     return State(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
 
 
@@ -147,8 +147,8 @@ def at_peak(result: Result) -> tuple[State, float]:
     record, model = result.simulation.record, result.model
     per_turn = max(record.schedule.steps_per_turn // record.schedule.stride, 1)
     first = max(len(record.time) - per_turn, 0)
-    chosen = first + np.unique(np.linspace(0, len(record.time) - first, _EVERY, endpoint=False).astype(int))
-    k = int(chosen[np.argmax(record.contact_force[chosen].max(axis=1))])
+    samples = first + np.unique(np.linspace(0, len(record.time) - first, _EVERY, endpoint=False).astype(int))
+    k = int(samples[np.argmax(record.contact_force[samples].max(axis=1))])
     z, load, t = model.system.ball_count, record.contact_force[k], float(record.time[k])
     now = attrs.evolve(model, system=model.system.at_speed(t))
     angle = np.concatenate(now.bearing.contact_angles(now, record.displacement[k], record.ball[k], load, t))
@@ -165,97 +165,99 @@ def _ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.
     return np.column_stack([major, minor]), pressure
 
 
-#: File -> its path, what is seen on it, what is told below it.
-Pictures = dict[str, tuple[Path, str, str]]
+@attrs.frozen
+class _Image:
+    """Content of a PNG file, what is seen on it, and its caption."""
+
+    content: bytes
+    alternative: str
+    caption: str
 
 
-def draw(result: Result, folder: Path, page: bool, mesh: Path | None, on_progress: OnProgress) -> Tables:
-    """Write the pictures of a result, on request its HTML page; ``files`` and what is shown on them.
-
-    Parameters
-    ----------
-    mesh : a picture of it that stands there already
+def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, dict[str, bytes]]:
+    """What is shown of a result, and the files by name: pictures, on request the HTML page, fields of elastic bodies.
 
     Raises
     ------
     RacewayError
-        A package that is missing, a folder that cannot be written.
+        A package that is missing.
     """
-
     bearing = Bearing.of(result)
-    rest = at_rest(result)
-    shown, when = rest, "at rest"
+    moments = {"bearing.png": (at_rest(result), "at rest")}
     if result.simulation is not None:
-        shown, angle = at_peak(result)
-        when = f"when a ball carries most, {angle:.0f} deg into the turn"
-    pictures = _still(result, bearing, rest, (shown, when), folder, on_progress)
-    if mesh is not None:
-        pictures[mesh.name] = mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away"
-    fields: list[Path] = []
+        state, angle = at_peak(result)
+        moments["bearing-peak.png"] = state, f"when a ball carries most, {angle:.0f} deg into the turn"
+    state, when = list(moments.values())[-1]
+    images = dict(_images(result, bearing, moments, on_progress))
+    fields: dict[str, bytes] = {}
     if result.model.traits.every_node:
-        on_progress("drawing stress.png", len(pictures), 0)
-        *fields, path = write_fields(result, folder)
-        told = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
-        told = "; ".join(filter(None, (told, contacts_left_out(result))))
-        pictures["stress.png"] = path, "stress in a section of rings and ball", told
-        if not result.model.traits.resultants:
-            on_progress("drawing stress_contact.png", len(pictures), 0)
-            for path in write_contact_stress(result, folder):
-                if path.suffix == ".png":
-                    told = "Stresses below the most loaded contact of each race, at rest; Hertz's depth of the largest shear stress is marked"
-                    pictures[path.name] = path, "stress below the contacts, close up", told
-                else:
-                    fields.append(path)
+        mesh = mesh_picture(mesh_scene(result.model.scene), f"{result.title}\nthe mesh")
+        images["mesh.png"] = _Image(mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away")
+        fields = _stresses(result, images, on_progress)
+    files = {name: image.content for name, image in images.items()}
     if page:
-        text = {
-            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, shown),
-            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, shown)}."],
+        words = {
+            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, state),
+            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."],
         }  # fmt: skip
-        images = [(path.read_bytes(), seen, told) for path, seen, told in pictures.values()]
-        path = view_page(bearing, shown, text, images).write(folder / "view.html")
-        pictures["view.html"] = path, "", ""
-    return {
+        seen = [(image.content, image.alternative, image.caption) for image in images.values()]
+        files["view.html"] = view_page(bearing, state, words, seen).html().encode()
+    content: Tables = {
         "title": result.title,
         "shown": when,
-        **largest_contacts(shown.load, shown.peak, "largest"),
+        **largest_contacts(state.load, state.peak, "largest"),
         "assumed": list(bearing.assumed),
         "warnings": list(result.warnings),
-        "files": [str(path) for path in (*(path for path, _, _ in pictures.values()), *fields)],
+        "files": [],
     }
+    return content, files | fields
 
 
-def _still(
-    result: Result, bearing: Bearing, rest: State, peak: tuple[State, str], folder: Path, on_progress: OnProgress
-) -> Pictures:
-    """Pictures of single states, at rest and when a ball carries most, and of the whole record."""
-    shown, when = peak
-    states = {"bearing.png": (rest, "at rest")} | ({"bearing-peak.png": (shown, when)} if shown is not rest else {})
-    pictures: Pictures = {}
-    for name, (state, words) in states.items():
-        on_progress(f"drawing {name}", len(pictures), 0)
-        path = write_whole(
-            png(overview(bearing, state, f"{_short(result.title)}\n{words}: {_loads(state)}\n{_widened(bearing, state)}")),
-            folder / name,
-        )
-        pictures[name] = (
-            path,
-            f"the bearing cut open, balls coloured by their load, {words}",
-            f"Loads {words}: {_loads(state)}; {_widened(bearing, state)}",
-        )
-    on_progress("drawing contacts.png", len(pictures), 0)
-    path = save_figure(contacts(bearing, shown, f"{_short(result.title)}, {when}"), folder / "contacts.png", 110)
-    told = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
-    pictures["contacts.png"] = path, "section of the rings with the ball, and its two contact ellipses", told
-    path = save_figure(picture(result, "ball_loads"), folder / "ball-loads.png", 110)
-    pictures["ball-loads.png"] = path, "ball loads by azimuth", "Ball loads on the inner race by azimuth"
-    if result.simulation is not None:
-        path = save_figure(picture(result, "orbit"), folder / "orbit.png", 110)
-        pictures["orbit.png"] = path, "orbit of the inner ring", "Orbit of the inner ring's reference point"
-    return pictures
+def _images(
+    result: Result, bearing: Bearing, moments: dict[str, tuple[State, str]], on_progress: OnProgress
+) -> Iterator[tuple[str, _Image]]:
+    """The bearing at rest and when a ball carries most, the contacts then, and what the whole record draws."""
+    title = _short(result.title)
+    for name, (state, when) in moments.items():
+        on_progress(f"drawing {name}", 0, 0)
+        loads, widened = _loads(state), _widened(bearing, state)
+        content = overview(bearing, state, f"{title}\n{when}: {loads}\n{widened}")
+        seen = f"the bearing cut open, balls coloured by their load, {when}"
+        yield name, _Image(content, seen, f"Loads {when}: {loads}; {widened}")
+    on_progress("drawing contacts.png", 0, 0)
+    state, when = list(moments.values())[-1]
+    content = figure_png(contacts(bearing, state, f"{title}, {when}"), _DOTS_PER_INCH)
+    seen = "section of the rings with the ball, and its two contact ellipses"
+    caption = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
+    yield "contacts.png", _Image(content, seen, caption)
+    for name, seen, caption in (
+        ("ball_loads", "ball loads by azimuth", "Ball loads on the inner race by azimuth"),
+        ("orbit", "orbit of the inner ring", "Orbit of the inner ring's reference point"),
+    )[: len(moments)]:  # at rest there is no orbit
+        content = figure_png(picture(result, name), _DOTS_PER_INCH)
+        yield f"{name.replace('_', '-')}.png", _Image(content, seen, caption)
+
+
+def _stresses(result: Result, images: dict[str, _Image], on_progress: OnProgress) -> dict[str, bytes]:
+    """Files of the fields of elastic bodies; their pictures are added to the images."""
+    on_progress("drawing stress.png", 0, 0)
+    files = field_files(result)
+    caption = "von Mises stress at the elements' centres, in the plane of the axis and the most loaded ball, at rest"
+    caption = "; ".join(filter(None, (caption, contacts_left_out(result))))
+    images["stress.png"] = _Image(files.pop("stress.png"), "stress in a section of rings and ball", caption)
+    if result.model.traits.resultants:
+        return files
+    on_progress("drawing stress_contact.png", 0, 0)
+    files |= contact_stress_files(result)
+    if "stress_contact.png" in files:
+        caption = "Stresses below the most loaded contact of each race, at rest; Hertz's depth of the largest shear stress is marked"
+        content = files.pop("stress_contact.png")
+        images["stress_contact.png"] = _Image(content, "stress below the contacts, close up", caption)
+    return files
 
 
 def _loads(state: State) -> str:
-    loads = [f"{some.min():.4g} to {some.max():.4g} N" for some in np.split(state.load, 2)]
+    loads = [f"{race.min():.4g} to {race.max():.4g} N" for race in np.split(state.load, 2)]
     most = largest_contacts(state.load, state.peak, "largest")
     where = race_words(most["largest_pressure_race"])
     return f"inner race {loads[0]}, outer race {loads[1]}, pressure up to {1e-6 * most['largest_pressure_pa']:.4g} MPa ({where})"
@@ -276,14 +278,14 @@ def _bearing_words(result: Result) -> str:
 
 
 def _lead(result: Result, state: State) -> str:
-    load, found = result.model.scene.load, result.identification
+    load, identified = result.model.scene.load, result.identification
     words = [f"Axial load {load.axial:.4g} N"]
     if any(load.radial):
         words.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
-    if found is not None:
+    if identified is not None:
         words.append(
-            f"{result.model.excitation.name} force of {found.force_amplitude:.4g} N at {60.0 * found.frequency_hz:.6g} r/min, "
-            f"K = {1e-6 * found.equivalent_stiffness:.4g} N/µm"
+            f"{result.model.excitation.name} force of {identified.force_amplitude:.4g} N at {60.0 * identified.frequency_hz:.6g} r/min, "
+            f"K = {1e-6 * identified.equivalent_stiffness:.4g} N/µm"
         )
     words.append(f"axial displacement {1e6 * result.equilibrium.displacement[0]:.4g} µm")
     words.append(_loads(state))
@@ -335,23 +337,18 @@ def view(
     Examples
     --------
     >>> import raceway as rw
-    >>> found = rw.view({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
-    >>> sorted(found.pictures)
+    >>> view = rw.view({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}})
+    >>> sorted(view.pictures)
     ['ball-loads.png', 'bearing.png', 'contacts.png']
     """
-    given = scene if isinstance(scene, Result) else as_scene(scene, plugins=plugins)
-    read = given.model.scene if isinstance(given, Result) else given
+    source = scene if isinstance(scene, Result) else as_scene(scene, plugins=plugins)
     folder = None if out is None else writable(Path(out))
     for package in ("pyvista", "matplotlib"):
         if find_spec(package) is None:
             raise RacewayError(f"pictures need {package}: {extra('view')}")
     refuse_pictures()
-    with tempfile.TemporaryDirectory(prefix="raceway-view-") as temporary, telling(progress) as told:
-        result = given if isinstance(given, Result) else run(given, registry_with(plugins), told)
-        place = Path(temporary) if folder is None else folder
-        mesh = None
-        if traits_of(read).every_node:
-            mesh = draw_mesh(mesh_scene(read), f"{read.title}\nthe mesh", place / "mesh.png")
-        content = draw(result, place, page, mesh, told)
-        pictures = {Path(name).name: Path(name).read_bytes() for name in content["files"]}
-        return View(content if folder is not None else {**content, "files": []}, pictures)
+    with telling(progress) as on_progress:
+        result = source if isinstance(source, Result) else run(source, registry_with(plugins), on_progress)
+        content, pictures = _draw(result, page, on_progress)
+        answer = View(content, pictures)
+        return answer if folder is None else View({**content, "files": list(map(str, answer.save(folder)))}, pictures)
