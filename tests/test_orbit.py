@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.periodic.floquet import Floquet, fate_of
+from raceway.core.periodic.floquet import Floquet, floquet_of
 from raceway.core.ring.orbit import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import chosen_start
 from raceway.testing import b7206c, model_of, solve_equilibrium
@@ -109,6 +109,6 @@ def test_what_grows_is_called_unstable(largest, verdict):
 def test_what_dies_within_a_span_has_the_multiplier_zero(recwarn):
     """Dashpots of 1e5 N s/m leave nothing: it was not a number, with a warning of numpy's, and all of them "neutral"."""
     over = np.diag([0.0, 0.5, -0.9])
-    assert fate_of(over, np.pi / 6.0).multipliers == pytest.approx([0.9**12, 0.5**12, 0.0])
-    assert fate_of(0.0 * over, np.pi / 6.0).verdict == "stable"
+    assert floquet_of(over, np.pi / 6.0).multipliers == pytest.approx([0.9**12, 0.5**12, 0.0])
+    assert floquet_of(0.0 * over, np.pi / 6.0).verdict == "stable"
     assert not recwarn.list

@@ -18,7 +18,7 @@ from raceway.core.periodic.refinement import motion_at, record
 from raceway.core.periodic.search import (
     Recorded,
     find,
-    from_rest,
+    force_continuation,
     guess,
     highest_order,
     mesh_of,
@@ -149,7 +149,7 @@ def softening():
 
 def test_a_branch_passes_its_folds(softening):
     problem, q, tangent = softening
-    points = list(from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
+    points = list(force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     shares = np.array([point.parameter for point in points])
     assert points[-1].parameter >= 1.0
     assert any(point.folded for point in points)
@@ -193,7 +193,7 @@ def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
     """Each point of the branch from rest with the known slope and by differences."""
     problem, q, tangent = softening
     nodes = mesh_of(problem, highest_order(problem, tangent))
-    first = next(from_rest(problem, q, tangent, nodes))
+    first = next(force_continuation(problem, q, tangent, nodes))
 
     def followed(slope):
         branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, 1e-6, 1e-4, 512, slope)
@@ -208,14 +208,14 @@ def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
 def test_a_motion_is_kept_where_two_exist(softening):
     """Down the upper branch by 3 % of the force at a time to between the folds; there the search from rest finds the lower motion."""
     problem, q, tangent = softening
-    points = list(from_rest(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
+    points = list(force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     turned = int(np.argmax(np.diff([point.parameter for point in points]) < 0.0))
     high, low = points[turned].parameter, min(point.parameter for point in points[turned:])
     near, share = neighbour_of(points[-1].solved, q, tangent), points[-1].parameter
     while share > 0.5 * (low + high):
         share *= 0.97
         kept = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near, True)
-        assert not kept.others
+        assert not kept.coexisting
         near = neighbour_of(kept.refined.solved, q, tangent)
     assert low < share < high
     searched = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near)
@@ -323,7 +323,7 @@ def test_a_recorded_turn_leads_to_its_own_motion(which):
     system = by_address(model.system)
     problem = problem_of(system, 2.0 * np.pi / period, equilibrium.displacement)
     found = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8)
-    lasting = [one.refined.solved for one in found.all if one.fate.verdict != "unstable"]
+    lasting = [one.refined.solved for one in found.all if one.floquet.verdict != "unstable"]
     assert len(lasting) == 2
     turn = record(lasting[which], Schedule(period / 72, 72, 2), {})
     settled = steady_record(model, equilibrium, SimpleNamespace(whole=turn))

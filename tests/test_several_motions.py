@@ -11,7 +11,7 @@ from rich.console import Console
 from raceway import ConvergenceError, run
 from raceway.cli.run_screen import run_screen
 from raceway.core.periodic import search as direct
-from raceway.core.periodic import steady as beginning
+from raceway.core.periodic import steady
 from raceway.core.ring.orbit import differentiation
 from validation.several import article, by_integration, heavy
 
@@ -136,7 +136,7 @@ def test_turns_that_do_not_repeat_after_a_failed_search_have_no_error(monkeypatc
     def none(*_):
         raise ConvergenceError("none is found")
 
-    monkeypatch.setattr(beginning, "beginning", none)
+    monkeypatch.setattr(steady, "starting_orbit", none)
     result = solved(heavy(82.0))
     assert result.simulation.start.kind == "ramp"
     assert result.error["total"] is None and "do not repeat" in result.error["how"]["total"]

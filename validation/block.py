@@ -54,18 +54,18 @@ class Block:
         self.threads = ThreadPool(1)
 
     def begin(self, motion: Motion) -> State:
-        assert motion.whole is not None
-        if self.friction is not None and "friction" in motion.whole:
-            self.friction.restore(dict(motion.whole))
-        return State(*(motion.whole[name].copy() for name in ("u", "v", "a", "rest")))
+        assert motion.full_state is not None
+        if self.friction is not None and "friction" in motion.full_state:
+            self.friction.restore(dict(motion.full_state))
+        return State(*(motion.full_state[name].copy() for name in ("u", "v", "a", "rest")))
 
     def motion(self, state: State) -> Motion:
         s = state.copy()
-        whole = {"u": s.u, "v": s.v, "a": s.a, "rest": -self.mass_times(s.a) if s.rest is None else s.rest}
+        whole = {"u": s.u, "v": s.v, "a": s.a, "rest": -self.mass_times(s.a) if s.net_force is None else s.net_force}
         if self.friction is not None:
             whole |= self.friction.state()
         still = np.zeros((0, 2))
-        return Motion(self._mean(s.u), self._mean(s.v), self._mean(s.a), still, still, whole=whole)
+        return Motion(self._mean(s.u), self._mean(s.v), self._mean(s.a), still, still, full_state=whole)
 
     def at_rest(self, v: float = 0.0) -> Motion:
         """Settled under the weight (without friction), moving along x with v [m/s]."""
@@ -87,7 +87,7 @@ class Block:
             if v:  # it has been sliding
                 friction.committed[:, 0] = friction.coefficient * pressure
             whole |= friction.state()
-        return Motion(motion.q, motion.v, motion.a, motion.ball, motion.ball_before, whole=whole)
+        return Motion(motion.q, motion.v, motion.a, motion.ball, motion.ball_before, full_state=whole)
 
     def outer_force(self, t: float) -> np.ndarray:
         return np.array([self.pull(t), 0.0, 0.0, 0.0, 0.0])

@@ -236,7 +236,7 @@ def compliances() -> Rule:
             for _ in range(times):
                 _BODIES.clear()
                 bodies = elastic_bodies(scene, basis)
-                found.append(np.concatenate([bodies.inner.own, bodies.outer.own, [bodies.ball_own]]))
+                found.append(np.concatenate([bodies.inner.direct, bodies.outer.direct, [bodies.ball_direct]]))
         finally:
             structural.kept = kept
         return np.array(found if times == count else found * count)

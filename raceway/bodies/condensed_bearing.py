@@ -128,7 +128,7 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
         soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda one: one[1].young)
         why = f"is too soft for {basis.ball_load:.3g} N a ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
         raise SceneError.at(f"bearing.{soft}.young", steel.young, why)
-    return attrs.evolve(found, ball_own=own, ball_opposite=opposite)
+    return attrs.evolve(found, ball_direct=own, ball_opposite=opposite)
 
 
 def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
@@ -231,7 +231,7 @@ class CondensedBearing(Bearing):
                 "contact_angle_deg": float(np.degrees(angle)),
                 "inner_m_per_n": inner,
                 "outer_m_per_n": outer,
-                "ball_own_m_per_n": self.compliances.ball_own,
+                "ball_own_m_per_n": self.compliances.ball_direct,
                 "ball_opposite_m_per_n": self.compliances.ball_opposite,
                 "largest_between_balls_m_per_n": self.compliances.largest_across,
                 "between_balls": self.angles is not None,

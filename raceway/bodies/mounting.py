@@ -210,7 +210,7 @@ def _mounted(model: Model) -> Ring:
     still = attrs.evolve(scene.kinematics, spin_speed_rpm=0.0, radial_expansion=0.0, ring_growth=False, ball_growth=False)
     cold = attrs.evolve(scene.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
     fits = growth_of(attrs.evolve(scene, kinematics=still, mounting=cold), model.basis.row)
-    return model.system.standing(Growth(growth.common - fits.common, growth.own - fits.own))
+    return model.system.standing(Growth(growth.common - fits.common, growth.by_ball - fits.by_ball))
 
 
 def _unloaded(model: Model, system: Ring) -> float:

@@ -151,5 +151,5 @@ def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
     if not scene.bearing.equal_rows:
         grooves = np.array([_grooves(scene, one) for one in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
-    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.own
+    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
     return table

@@ -68,11 +68,11 @@ def take_compile_seconds() -> float:
 @cache
 def kernel_folder() -> OpenFolder | None:
     """The folder that this process reads and writes compiled kernels in; None when there is none."""
-    found = opened(current_folder())
-    if isinstance(found, OpenFolder):
-        return found
+    folder = opened(current_folder())
+    if isinstance(folder, OpenFolder):
+        return folder
     warnings.warn(
-        f"compiled kernels cannot be kept in {current_folder()} ({found}); compiling in memory, which costs some ten seconds "
+        f"compiled kernels cannot be kept in {current_folder()} ({folder}); compiling in memory, which costs some ten seconds "
         "a run. Set RACEWAY_CACHE_DIR to a folder of your own that can be written.",
         RuntimeWarning,
         stacklevel=2,
@@ -81,9 +81,9 @@ def kernel_folder() -> OpenFolder | None:
 
 
 @cache
-def _warn_incomplete(place: Path, why: str) -> None:
+def _warn_incomplete(folder: Path, why: str) -> None:
     warnings.warn(
-        f"{place} cannot be written ({why}) and lacks some kernels: they are compiled in memory at every run. Set "
+        f"{folder} cannot be written ({why}) and lacks some kernels: they are compiled in memory at every run. Set "
         "RACEWAY_CACHE_DIR to a folder of your own that can be written.",
         RuntimeWarning,
         stacklevel=4,
@@ -180,11 +180,11 @@ class Kernel(_Dispatcher):
 
     @classmethod
     def _rebuild(cls, function: Any, signature: Any, options: Any, uuid: str) -> Any:
-        found = cls._memo.get(uuid)
-        if found is None:
-            found = cls(function, signature, options)
-            found._set_uuid(uuid)
-        return found
+        kernel = cls._memo.get(uuid)
+        if kernel is None:
+            kernel = cls(function, signature, options)
+            kernel._set_uuid(uuid)
+        return kernel
 
     def _make(self) -> None:
         function, billed = self.py_func, clock["compile_s"] + clock["load_s"]

@@ -29,9 +29,9 @@ class Motion:
     q, v, a : (5,) displacement, velocity, acceleration (of generalised-alpha: its own a)
     ball, ball_before : (Z, 2 or 4) positions (and slips) of the balls now and one step earlier [m]
     memory : (2 Z, m) of the contact law; None for a law that remembers nothing yet
-    rest : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
+    net_force : (5,) internal less outer forces [N, N m]; None where it is -M a: of generalised-alpha it is not, and a run that
         goes on from another's final motion needs it
-    whole : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
+    full_state : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
     near : the ``solution`` in the record of a similar motion by the same method, for methods that can start from one
     stay : whether to stay on the motion of ``near`` where several may exist
     """
@@ -41,9 +41,9 @@ class Motion:
     a: np.ndarray
     ball: np.ndarray
     ball_before: np.ndarray
-    rest: np.ndarray | None = None
+    net_force: np.ndarray | None = None
     memory: np.ndarray | None = None
-    whole: Mapping[str, np.ndarray] | None = None
+    full_state: Mapping[str, np.ndarray] | None = None
     near: Any = None
     stay: bool = False
 
@@ -178,15 +178,15 @@ def drift(energies: Mapping[str, np.ndarray]) -> float | None:
     """
     if "external" not in energies:
         return None
-    kept = [energies[name] for name in (*STORED, *LOST) if name in energies]
-    total = np.sum(kept, axis=0) - energies["external"]
-    size = max([float(np.ptp(one)) for one in (*kept, energies["external"])] + [1e-300])
+    terms = [energies[name] for name in (*STORED, *LOST) if name in energies]
+    total = np.sum(terms, axis=0) - energies["external"]
+    size = max([float(np.ptp(term)) for term in (*terms, energies["external"])] + [1e-300])
     return float(np.abs(total - total[0]).max() / size)
 
 
-def largest_share(energies: Mapping[str, np.ndarray], part: str, whole: str) -> float:
+def largest_share(energies: Mapping[str, np.ndarray], part: str, total: str) -> float:
     """Largest part over the largest whole, for instance "hourglass" of "elastic"."""
-    return float(energies[part].max(initial=0.0) / max(energies[whole].max(initial=0.0), 1e-300))
+    return float(energies[part].max(initial=0.0) / max(energies[total].max(initial=0.0), 1e-300))
 
 
 def friction_lost(energies: Mapping[str, np.ndarray]) -> float:
@@ -202,16 +202,16 @@ class State:
     Attributes
     ----------
     u, v, a : (size,) displacement, velocity, acceleration (of generalised-alpha: its own a)
-    rest : (size,) internal less outer forces; of generalised-alpha it is not -M a; None where it is
+    net_force : (size,) internal less outer forces; of generalised-alpha it is not -M a; None where it is
     """
 
     u: np.ndarray
     v: np.ndarray
     a: np.ndarray
-    rest: np.ndarray | None = None
+    net_force: np.ndarray | None = None
 
     def copy(self) -> State:
-        return State(self.u.copy(), self.v.copy(), self.a.copy(), None if self.rest is None else self.rest.copy())
+        return State(self.u.copy(), self.v.copy(), self.a.copy(), None if self.net_force is None else self.net_force.copy())
 
 
 @attrs.frozen(eq=False)
@@ -243,7 +243,7 @@ class SteppedSystem(Protocol):
        method begins a step on the parabola through the displacements before, not at constant acceleration: for many modes that
        steps do not resolve, whose accelerations alternate.  Entries of coordinates that are held may be anything in forces; ``solve``
        and ``accelerations`` give zero there.
-    2. ``begin(motion)``: the state that a motion stands for, with ``rest``, and all memory set to it; also for a motion that another run
+    2. ``begin(motion)``: the state that a motion stands for, with ``net_force``, and all memory set to it; also for a motion that another run
        of the same system ended with, of which nothing may be lost.  ``motion(state)``: the way back, after ``commit``.
     3. ``outer_force(t)``: the excitation (5,) on the ring; ``external(t, scale)``: (size,) constant load + scale * excitation.
     4. ``internal(t, dt, u, v)``: C v + f(u, v) after a step dt from the committed memory; keeps its linearisation and its
@@ -294,7 +294,7 @@ class SteppedSystem(Protocol):
 
 def check_start(system: Any, start: Motion) -> None:
     """Refuse a motion that is none of a system's; see ``check_state``."""
-    parts = {name: getattr(start, name) for name in ("q", "v", "a", "rest", "ball", "ball_before", "memory")}
+    parts = {name: getattr(start, name) for name in ("q", "v", "a", "net_force", "ball", "ball_before", "memory")}
     check_state(system, "the motion that an integration starts from", **parts)
 
 
@@ -304,7 +304,7 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
     Parameters
     ----------
     system : with ``ball_count``, ``ball_columns`` and ``law_state``;  who : whose arrays they are, for the message
-    arrays : by name: ``q``, ``v``, ``a``, ``rest`` (5,), ``memory`` as ``law_state``, and any other (Z, columns) of balls
+    arrays : by name: ``q``, ``v``, ``a``, ``net_force`` (5,), ``memory`` as ``law_state``, and any other (Z, columns) of balls
 
     Raises
     ------
@@ -312,13 +312,13 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
         With the array, its shape, and the system's.
     """
     coordinates = (5,), "x, y, z, tilts"
-    known: dict[str, tuple[tuple[int, ...], str]] = dict.fromkeys(("q", "v", "a", "rest"), coordinates)
-    known["memory"] = system.law_state.shape, "a row for each contact"
+    shapes: dict[str, tuple[tuple[int, ...], str]] = dict.fromkeys(("q", "v", "a", "net_force"), coordinates)
+    shapes["memory"] = system.law_state.shape, "a row for each contact"
     balls = (system.ball_count, system.ball_columns), "a row for each ball"
     for name, values in arrays.items():
-        wanted, rows = known.get(name, balls)
-        if values is not None and np.shape(values) != wanted:
-            raise PluginError(f"{who}: `{name}` has the shape {np.shape(values)}; that of this system is {wanted}: {rows}")
+        shape, rows = shapes.get(name, balls)
+        if values is not None and np.shape(values) != shape:
+            raise PluginError(f"{who}: `{name}` has the shape {np.shape(values)}; that of this system is {shape}: {rows}")
 
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
@@ -381,9 +381,9 @@ class Recorder:
             A displacement or rotation that no bearing makes, or that is no number.
         """
         outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
-        done = self._passed(state, outer)
+        step_work = self._passed(state, outer)
         system, schedule = self.system, self.schedule
-        self._work += done
+        self._work += step_work
         self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
@@ -395,10 +395,10 @@ class Recorder:
         self._done += 1
         if (schedule.first + self._done) % schedule.stride == 0:
             t = self.time_of(self._done)
-            seen = system.observe(state.u, state.v if velocity is None else velocity)
-            if seen.energies:
-                seen.energies["external"] = self._work
-            self._rows.append((t, seen))
+            observation = system.observe(state.u, state.v if velocity is None else velocity)
+            if observation.energies:
+                observation.energies["external"] = self._work
+            self._rows.append((t, observation))
         now = time.perf_counter()
         if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
             self._reported = now
@@ -411,13 +411,17 @@ class Recorder:
     def record(self) -> Record:
         """The whole ``Record``."""
         times = np.array([t for t, _ in self._rows])
-        seen = [one for _, one in self._rows]
+        observations = [observation for _, observation in self._rows]
         z = self.system.ball_count
 
         def stack(name: str, shape: tuple[int, ...]) -> np.ndarray:
-            return np.array([getattr(one, name) for one in seen]) if seen else np.zeros((0, *shape))
+            return (
+                np.array([getattr(observation, name) for observation in observations])
+                if observations
+                else np.zeros((0, *shape))
+            )
 
-        first: Observation | None = seen[0] if seen else None
+        first: Observation | None = observations[0] if observations else None
         return Record(
             time=times,
             displacement=stack("displacement", (5,)),
@@ -435,7 +439,10 @@ class Recorder:
                 "max_penetration_m": self._penetration,
                 "peak_contact_force_n": self._peak,
             },
-            energies={name: np.array([one.energies[name] for one in seen]) for name in (first.energies if first else ())},
+            energies={
+                name: np.array([observation.energies[name] for observation in observations])
+                for name in (first.energies if first else ())
+            },
         )
 
     def _passed(self, state: State, outer: np.ndarray) -> float:
@@ -449,17 +456,17 @@ class Recorder:
         size = len(state.u)
         count = -(-size // _BLOCK)
         arrays = [np.ascontiguousarray(each, dtype=float) for each in (self._outer, outer, self.state.u, state.u)]
-        done, fine = np.empty(count), np.empty(count, dtype=bool)
+        works, fine = np.empty(count), np.empty(count, dtype=bool)
 
-        def one(number: int) -> None:
+        def block_work(number: int) -> None:
             part = _BLOCK * number, min(_BLOCK * (number + 1), size)
             fine[number] = bounded(*part, BOUND, arrays[-1])
-            done[number] = work(*part, *arrays)
+            works[number] = work(*part, *arrays)
 
-        self.system.threads.do(count, one)
+        self.system.threads.do(count, block_work)
         if not fine.all():
             raise self.unbounded()
-        return float(done.sum())
+        return float(works.sum())
 
     def unbounded(self) -> StabilityError:
         """The error for a motion that grows without bound."""
@@ -476,9 +483,9 @@ class Recorder:
 
     def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
         """The error for a step that found no balance, with the residuals [N] of its iterations."""
-        kept = ", ".join(f"{r:.2g}" for r in residuals[-6:])
+        tail = ", ".join(f"{r:.2g}" for r in residuals[-6:])
         history = (
-            f" (residuals of {len(residuals)} iterations: {'..., ' if len(residuals) > 6 else ''}{kept} N)"
+            f" (residuals of {len(residuals)} iterations: {'..., ' if len(residuals) > 6 else ''}{tail} N)"
             if residuals
             else ""
         )
@@ -495,5 +502,5 @@ class Recorder:
     def _last_good(self) -> dict[str, np.ndarray]:
         self.system.rollback()
         motion = self.system.motion(self.state)
-        found = {"t": np.array(self.time_of(self._done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
-        return found | dict(motion.whole or {})
+        state = {"t": np.array(self.time_of(self._done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
+        return state | dict(motion.full_state or {})

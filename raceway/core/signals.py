@@ -157,11 +157,11 @@ def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> 
     """The signal (n, k) less mean and straight line through the means of its whole turns; of one turn the mean only."""
     turns = max(int(turns_of(time, frequency_hz) + 1e-6), 1)
     samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
-    whole = min(turns * samples_per_turn, len(time))
+    samples = min(turns * samples_per_turn, len(time))
     if turns < 2:
-        return signal - signal[:whole].mean(axis=0)
-    means = signal[:whole].reshape(turns, samples_per_turn, -1).mean(axis=1)
-    centres = time[:whole].reshape(turns, samples_per_turn).mean(axis=1)
+        return signal - signal[:samples].mean(axis=0)
+    means = signal[:samples].reshape(turns, samples_per_turn, -1).mean(axis=1)
+    centres = time[:samples].reshape(turns, samples_per_turn).mean(axis=1)
     offset = centres - centres.mean()
     slope = offset @ (means - means.mean(axis=0)) / (offset @ offset)
     return signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
@@ -205,7 +205,7 @@ def phasors(time: np.ndarray, signal: np.ndarray, frequencies: list[float]) -> n
     return solution[2 : 2 + count] - 1j * solution[2 + count :]
 
 
-def lines(time: np.ndarray, displacement: np.ndarray, wanted: dict[str, float]) -> list[Line]:
+def lines(time: np.ndarray, displacement: np.ndarray, frequencies: dict[str, float]) -> list[Line]:
     """Lines of a displacement (n, >= 3) x, y, z at named frequencies [Hz].
 
     Notes
@@ -215,12 +215,12 @@ def lines(time: np.ndarray, displacement: np.ndarray, wanted: dict[str, float]) 
     """
     most = 0.5 * (len(time) - 1) / (time[-1] - time[0])
     least = 0.5 / (time[-1] - time[0])
-    kept: dict[str, float] = {}
-    for name, frequency in wanted.items():
-        if frequency < most and all(abs(frequency - other) >= least for other in (0.0, *kept.values())):
-            kept[name] = frequency
-    found = phasors(time, displacement[:, :3], list(kept.values()))
+    resolved: dict[str, float] = {}
+    for name, frequency in frequencies.items():
+        if frequency < most and all(abs(frequency - neighbour) >= least for neighbour in (0.0, *resolved.values())):
+            resolved[name] = frequency
+    amplitudes = phasors(time, displacement[:, :3], list(resolved.values()))
     return [
         Line(name, frequency, 0.5 * abs(y + 1j * z), 0.5 * abs(y - 1j * z), abs(x))
-        for (name, frequency), (x, y, z) in zip(kept.items(), found, strict=True)
+        for (name, frequency), (x, y, z) in zip(resolved.items(), amplitudes, strict=True)
     ]

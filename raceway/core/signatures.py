@@ -28,11 +28,11 @@ def record(kind: type[tuple[Any, ...]], *fields: types.Type) -> types.BaseTuple:
 
 
 class Balls(NamedTuple):
-    """``place`` (Z, 2 to 8), and its rate = ``gain`` [1/s] * place + ``known`` (like place) [m/s]: an integrator's formula."""
+    """``position`` (Z, 2 to 8), and its rate = ``gain`` [1/s] * position + ``history`` (like position) [m/s]: an integrator's formula."""
 
-    place: np.ndarray
+    position: np.ndarray
     gain: float
-    known: np.ndarray
+    history: np.ndarray
 
 
 class Contacts(NamedTuple):
@@ -107,7 +107,7 @@ class Steps(NamedTuple):
 
 
 class State(NamedTuple):
-    """Motion (4, 5): q, v, a, rest force; places of the balls (Z, c) now and a step before; the law's memory (2 Z, m)."""
+    """Motion (4, 5): q, v, a, net force; positions of the balls (Z, c) now and a step before; the law's memory (2 Z, m)."""
 
     motion: np.ndarray
     ball: np.ndarray
@@ -125,7 +125,7 @@ class Recording(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """A state at rest: displacement (5,), places of the balls (Z, c), the law's memory (2 Z, m)."""
+    """A state at rest: displacement (5,), positions of the balls (Z, c), the law's memory (2 Z, m)."""
 
     q: np.ndarray
     ball: np.ndarray

@@ -24,9 +24,9 @@ from raceway.core.patches.pressure import BeyondPatch, Contact
 from raceway.core.revolution.body import (
     Revolution,
     along_normal,
+    direct_compliance,
     groove_compliance,
     offset_weights,
-    own_compliance,
     solved_harmonics,
 )
 from raceway.core.revolution.sections import Profile, coarse_profile
@@ -64,11 +64,11 @@ def nodal_weights(places: np.ndarray, centre: float, half: float) -> np.ndarray:
     """
     x, w = density(64)
     at = np.clip(centre + half * x, places[0], places[-1])
-    left = np.clip(np.searchsorted(places, at) - 1, 0, len(places) - 2)
-    share = (at - places[left]) / (places[left + 1] - places[left])
+    node = np.clip(np.searchsorted(places, at) - 1, 0, len(places) - 2)
+    share = (at - places[node]) / (places[node + 1] - places[node])
     weights = np.zeros(len(places))
-    np.add.at(weights, left, w * (1.0 - share))
-    np.add.at(weights, left + 1, w * share)
+    np.add.at(weights, node, w * (1.0 - share))
+    np.add.at(weights, node + 1, w * share)
     return weights
 
 
@@ -99,7 +99,7 @@ class RingCompliance:
 
     Attributes
     ----------
-    angles : (n,) float, contact angles [rad], equidistant;  own : (n,) float, a contact on itself [m/N]
+    angles : (n,) float, contact angles [rad], equidistant;  direct : (n,) float, a contact on itself [m/N]
     across : (n, n, Z) float, displacement along the normal at one angle by a force along that at another, k balls further
         round; entry 0 is not used [m/N]
     elements : hexahedra that the ring stands for;  depths : (COUNT,) float [m]
@@ -107,7 +107,7 @@ class RingCompliance:
     """
 
     angles: np.ndarray
-    own: np.ndarray
+    direct: np.ndarray
     across: np.ndarray
     elements: int
     depths: np.ndarray
@@ -115,10 +115,10 @@ class RingCompliance:
 
     @cached_property
     def smooth(self) -> CubicSpline:
-        """``own`` over the angle [rad]."""
+        """``direct`` over the angle [rad]."""
         from scipy.interpolate import CubicSpline
 
-        return CubicSpline(self.angles, self.own)
+        return CubicSpline(self.angles, self.direct)
 
 
 def reach(shape: RingShape, ball_diameter: float) -> float:
@@ -170,11 +170,11 @@ def ring_compliance(
         return {"compliance": raw, "half_space": half_space(depths, half, young, poisson).mean(keepdims=True)}
 
     name = "inner" if shape.inner else "outer"
-    found = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)
-    across = found["compliance"]
-    own = np.diagonal(across[:, :, 0]) - found["half_space"]
+    arrays = kept("structural", f"{name} ring, {divisions} x {len(profile.quads)} elements", inputs, SOURCES, make)
+    across = arrays["compliance"]
+    direct = np.diagonal(across[:, :, 0]) - arrays["half_space"]
     along = shape.groove * float(profile.angles[1] - profile.angles[0])
-    return RingCompliance(table, own, across, len(profile.quads) * divisions, depths, along)
+    return RingCompliance(table, direct, across, len(profile.quads) * divisions, depths, along)
 
 
 def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = None, surface: float | None = None) -> Profile:
@@ -191,7 +191,7 @@ def _columns(
 
     profile, sign = body.profile, shape.sign
     size = 3 * len(profile.points)
-    loads, seen = np.zeros((size, len(table))), np.zeros((size, len(table)))
+    loads, observed = np.zeros((size, len(table))), np.zeros((size, len(table)))
     for a, angle in enumerate(table):
         weights = nodal_weights(profile.angles, angle, half / shape.groove)
         loads[3 * profile.race, a] = weights * sign * np.cos(profile.angles)
@@ -200,9 +200,9 @@ def _columns(
         centre = np.array([shape.centre_r, shape.centre_x])
         nodes, shares = interpolation(profile, centre + (shape.groove + depths)[:, None] * normal)
         for component, part in ((0, normal[0]), (2, normal[1])):
-            np.add.at(seen[:, a], (3 * nodes + component).ravel(), (shares * part / len(depths)).ravel())
+            np.add.at(observed[:, a], (3 * nodes + component).ravel(), (shares * part / len(depths)).ravel())
     unknowns = body.unknowns
-    loads, seen = loads[unknowns], seen[unknowns]
+    loads, observed = loads[unknowns], observed[unknowns]
     solved = solved_harmonics(body.divisions, "sampled")
     even, _ = offset_weights(body.divisions, solved, offsets)
     harmonic = np.empty((len(solved), len(table), len(table)))
@@ -210,7 +210,7 @@ def _columns(
         factor = splu(
             body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
         )
-        harmonic[i] = seen.T @ factor.solve(loads)
+        harmonic[i] = observed.T @ factor.solve(loads)
     return np.ascontiguousarray(np.moveaxis(np.tensordot(even, harmonic, axes=1), 0, 2))
 
 
@@ -255,21 +255,21 @@ class Calibration:
     ----------
     angles : (n,) contact angles [rad], ascending
     compliance : (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
-    left : how well it is known: what was still to come beyond the finer patch, and the scatter of its mean [m/N]
+    uncertainty : how well it is known: what was still to come beyond the finer patch, and the scatter of its mean [m/N]
     trend : change of (approach - Hertz's) / Q with the logarithm of the load, which is left out [m/N]
     load : where the compliance holds [N]
     """
 
     angles: np.ndarray
     compliance: np.ndarray
-    left: float
+    uncertainty: float
     trend: float
     load: float
 
     def error(self, load: np.ndarray) -> np.ndarray:
         """(...) error of the secant or the tangent compliance at other loads [N], the larger one [m/N]."""
         away = np.log(load / self.load)
-        return self.left + self.trend * np.maximum(np.abs(1.0 - away), np.abs(away))
+        return self.uncertainty + self.trend * np.maximum(np.abs(1.0 - away), np.abs(away))
 
 
 def calibrated(
@@ -295,25 +295,27 @@ def calibrated(
         "points": profile.points, "seat_nodes": profile.seat, "inner": body.shape.inner, "groove": body.shape.groove,
         "centre": [body.shape.centre_r, body.shape.centre_x], "seat": body.seat, "load": load, "radius": radius,
         "balls": balls, "angle": angle, "solids": [*attrs.astuple(body.solid), *attrs.astuple(ball)],
-        "ellipses": [[*(float(axis) for axis in one.semi_axes(1.0)), float(one.factor)] for one in ellipses],
+        "ellipses": [[*(float(axis) for axis in contact.semi_axes(1.0)), float(contact.factor)] for contact in ellipses],
     }  # fmt: skip
 
     def make() -> dict[str, np.ndarray]:
-        found = []
-        for place in (angle, angle + _FURTHER):
+        calibration = []
+        for contact_angle in (angle, angle + _FURTHER):
             try:
-                found.append([_compliances(body, ball, ellipses, n, Loaded(load, radius, balls, place)) for n in POINTS])
+                calibration.append(
+                    [_compliances(body, ball, ellipses, n, Loaded(load, radius, balls, contact_angle)) for n in POINTS]
+                )
             except (BeyondPatch, ConvergenceError, MeshError):
                 break
-        return {"compliance": np.array(found)}
+        return {"compliance": np.array(calibration)}
 
     word = "inner" if body.shape.inner else "outer"
     values = kept("contact", f"one ball on the {word} ring, {POINTS[1]} points", inputs, SOURCES, make)["compliance"]
     if not values.size:
         return None
-    found = _limit(values, angle, load)
+    calibration = _limit(values, angle, load)
     ellipse = ellipses[0 if body.shape.inner else 1]
-    return found if found.left <= _TELLS * float(ellipse.approach(load)) / load else None
+    return calibration if calibration.uncertainty <= _TELLS * float(ellipse.approach(load)) / load else None
 
 
 def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
@@ -323,9 +325,9 @@ def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
     trends, secant = np.polyfit(logs, limit.T, 1)
     trend = float(trends.mean())
     scatter = (limit - secant[:, None] - trend * logs).std(axis=1) / np.sqrt(len(LOADS))
-    left = np.abs(limit - values[:, 1]).mean(axis=1) + scatter
+    remainder = np.abs(limit - values[:, 1]).mean(axis=1) + scatter
     angles = np.array([angle, angle + _FURTHER])[: len(limit)]
-    return Calibration(angles, secant + trend, float(left.max()), abs(trend), load)
+    return Calibration(angles, secant + trend, float(remainder.max()), abs(trend), load)
 
 
 @attrs.frozen
@@ -355,17 +357,17 @@ def _compliances(body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse]
 def _compliance(contact: Contact, patch: Patch, ellipse: Ellipse, load: float, angle: float) -> float:
     """(approach - Hertz's) / load under a load along the normal, by Newton from Hertz's approach [m/N]."""
     normal = patch.race.sense * np.array([np.sin(angle), np.cos(angle)])
-    rest, hertz = patch.race.groove - patch.ball.radius, float(ellipse.approach(load))
-    place = (rest + hertz) * normal
+    offset, hertz = patch.race.groove - patch.ball.radius, float(ellipse.approach(load))
+    centre = (offset + hertz) * normal
     for _ in range(_ITERATIONS):
-        pressed = contact.press(place, np.zeros(2))
+        pressed = contact.press(centre, np.zeros(2))
         change = np.linalg.solve(pressed.stiffness, load * normal + pressed.force)
-        place = place + change
+        centre = centre + change
         if np.abs(change).max() < 1e-9 * hertz:
             if pressed.truncated:
                 raise ConvergenceError("the groove's edge cuts the contact off", {})
-            return (float(normal @ place) - rest - hertz) / load + float(normal @ patch.race.crossing[0] @ normal)
-    raise ConvergenceError("no approach found for a single contact", {"place": place})
+            return (float(normal @ centre) - offset - hertz) / load + float(normal @ patch.race.crossing[0] @ normal)
+    raise ConvergenceError("no approach found for a single contact", {"place": centre})
 
 
 #: Harmonics that are looked at; the lowest mode of a free ring is its second, that of a mounted one the 0th or 1st.
@@ -403,17 +405,17 @@ class ElasticBodies:
     Attributes
     ----------
     inner, outer : of the rings, at the same angles
-    ball_own, ball_opposite : of a ball, by its load on the same and on the other race [m/N]
+    ball_direct, ball_opposite : of a ball, by its load on the same and on the other race [m/N]
     calibrations : of contacts on the inner and the outer race at their surface points, where those are known
     """
 
     inner: RingCompliance
     outer: RingCompliance
-    ball_own: float
+    ball_direct: float
     ball_opposite: float
     calibrations: tuple[Calibration | None, Calibration | None] = (None, None)
 
-    def own(self, race: int, angles: np.ndarray) -> np.ndarray:
+    def direct(self, race: int, angles: np.ndarray) -> np.ndarray:
         """Compliance of ring and ball together at contact angles [rad], in m/N; race: 0 inner, 1 outer.
 
         Notes
@@ -427,23 +429,23 @@ class ElasticBodies:
         calibration = self.calibrations[race]
         if calibration is None:
             return np.zeros(len(angles))
-        known = calibration.compliance - self._matched(race, calibration.angles)
-        return np.asarray(np.interp(np.abs(angles), calibration.angles, known))
+        excess = calibration.compliance - self._matched(race, calibration.angles)
+        return np.asarray(np.interp(np.abs(angles), calibration.angles, excess))
 
     def _matched(self, race: int, angles: np.ndarray) -> np.ndarray:
-        one = (self.inner, self.outer)[race]
-        return np.asarray(one.smooth(np.clip(angles, one.angles[0], one.angles[-1])) + self.ball_own)
+        ring = (self.inner, self.outer)[race]
+        return np.asarray(ring.smooth(np.clip(angles, ring.angles[0], ring.angles[-1])) + self.ball_direct)
 
     def at(self, angle: float) -> tuple[float, float]:
         """Compliances (inner, outer) of ring and ball together at a contact angle [rad], in m/N."""
-        inner, outer = (float(self.own(race, np.array([angle]))[0]) for race in (0, 1))
+        inner, outer = (float(self.direct(race, np.array([angle]))[0]) for race in (0, 1))
         return inner, outer
 
     @property
     def largest_across(self) -> float:
         """Largest compliance between two balls through a ring [m/N]."""
-        between = (np.diagonal(one.across[:, :, 1:]) for one in (self.inner, self.outer))
-        return float(max(np.abs(one).max(initial=0.0) for one in between))
+        between = (np.diagonal(ring.across[:, :, 1:]) for ring in (self.inner, self.outer))
+        return float(max(np.abs(ring).max(initial=0.0) for ring in between))
 
 
 def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | None = None) -> System:
@@ -457,7 +459,7 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     Notes
     -----
     Tables over the angle become cubic splines without slope at their ends.  Where balls act on each other the table holds what
-    a contact's own compliance has beyond n.M n of its groove centre's motion.
+    a contact's direct compliance has beyond n.M n of its groove centre's motion.
     """
     from scipy.interpolate import CubicSpline
 
@@ -465,10 +467,10 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     knots = bodies.inner.angles
     distance = knots[1] - knots[0]
     tables, rings = [], []
-    for race, one in enumerate((bodies.inner, bodies.outer)):
-        values = bodies.own(race, knots)
+    for race, ring in enumerate((bodies.inner, bodies.outer)):
+        values = bodies.direct(race, knots)
         if angles is not None:
-            rings.append(between_grooves(one, angles))
+            rings.append(between_grooves(ring, angles))
             values -= along_normal(knots, rings[-1][0])
         tables += [values, distance * CubicSpline(knots, values, bc_type=((1, 0.0), (1, 0.0)))(knots, 1)]
     head = [bodies.ball_opposite, 0.0 if angles is None else 1.0, count, knots[0], distance, len(knots)]
@@ -483,7 +485,7 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     )
 
 
-def between_grooves(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
+def between_grooves(ring: RingCompliance, angles: np.ndarray) -> np.ndarray:
     """Compliance of one ring between groove centres, from loads and displacements along the normals of contacts.
 
     Parameters
@@ -499,8 +501,8 @@ def between_grooves(one: RingCompliance, angles: np.ndarray) -> np.ndarray:
     Angles of the table have the weight of a normal distribution about those of the balls.
     """
     middle, width = float(angles.mean()), float(np.hypot(_WIDTH, angles.std()))
-    weight = np.exp(-0.5 * ((one.angles - middle) / width) ** 2)
-    out = np.empty((one.across.shape[2], 3))
-    out[0] = own_compliance(one.angles, one.own, weight)
-    out[1:] = groove_compliance(one.angles, one.across[:, :, 1:], weight)
+    weight = np.exp(-0.5 * ((ring.angles - middle) / width) ** 2)
+    out = np.empty((ring.across.shape[2], 3))
+    out[0] = direct_compliance(ring.angles, ring.direct, weight)
+    out[1:] = groove_compliance(ring.angles, ring.across[:, :, 1:], weight)
     return out

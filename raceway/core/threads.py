@@ -18,9 +18,9 @@ def usable_cores() -> int:
     """Cores that this process may use: those that the system gives it, at most what the variables ``BOUNDS`` say."""
     count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     for name in BOUNDS:
-        said = os.environ.get(name, "").split(",")[0].strip()  # OpenMP takes a list, a number for each level
-        if said.isdigit() and int(said) > 0:
-            count = min(count, int(said))
+        limit = os.environ.get(name, "").split(",")[0].strip()  # OpenMP takes a list, a number for each level
+        if limit.isdigit() and int(limit) > 0:
+            count = min(count, int(limit))
     return count
 
 
@@ -81,22 +81,22 @@ class ThreadPool:
         if self._pool is None:
             work()
             return
-        others = [self._pool.submit(work) for _ in range(min(self.count, count) - 1)]
+        helpers = [self._pool.submit(work) for _ in range(min(self.count, count) - 1)]
         try:
             work()
         finally:
-            wait(others)
-        for one in others:
-            one.result()
+            wait(helpers)
+        for helper in helpers:
+            helper.result()
 
     def do_shares(self, count: int, job: Callable[[int, int], T]) -> list[T]:
         """What ``job(first, last)`` returns on equal shares of ``count`` things."""
         shares = share(count, self.count if self._pool is not None else 1)
         # Every place is filled before the list is handed out.
-        found: list[T] = [None] * len(shares)  # type: ignore[list-item]
+        results: list[T] = [None] * len(shares)  # type: ignore[list-item]
 
-        def one(number: int) -> None:
-            found[number] = job(*shares[number])
+        def share_job(number: int) -> None:
+            results[number] = job(*shares[number])
 
-        self.do(len(shares), one)
-        return found
+        self.do(len(shares), share_job)
+        return results

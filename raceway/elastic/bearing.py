@@ -241,7 +241,7 @@ class ElasticSystem:
                 )
 
 
-#: Names of the unknowns in ``Motion.whole``.
+#: Names of the unknowns in ``Motion.full_state``.
 _UNKNOWNS = ("u", "v", "a", "rest")
 #: What ``Seen`` gives: ring displacement, velocity (5,), gaps, contact forces (2 Z,), ball places (Z, 2).
 Seen = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -276,7 +276,7 @@ class SteppedElastic:
             self.ball_count = (len(contact.counts) + 1) // 2
 
     def begin(self, motion: Motion) -> State:
-        whole = dict(motion.whole or {})
+        whole = dict(motion.full_state or {})
         contact = self.system.contact
         if contact is not None and "projected" in whole:
             contact.restore(whole["projected"], whole["memory"])
@@ -286,7 +286,7 @@ class SteppedElastic:
 
     def motion(self, state: State) -> Motion:
         s, contact = state.copy(), self.system.contact
-        rest = -self.mass_times(s.a) if s.rest is None else s.rest
+        rest = -self.mass_times(s.a) if s.net_force is None else s.net_force
         whole = dict(zip(_UNKNOWNS, (s.u, s.v, s.a, rest), strict=True))
         if contact is not None:
             whole |= {"projected": contact.projected.copy(), "memory": contact.memory.copy()}
@@ -294,7 +294,7 @@ class SteppedElastic:
                 whole |= contact.friction.state()
         q, v, _, _, ball = self._seen(s.u, s.v)
         a = self._seen(s.u, s.a)[1]
-        return Motion(q, v, a, ball, ball.copy(), whole=whole)
+        return Motion(q, v, a, ball, ball.copy(), full_state=whole)
 
     def motion_of(self, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
         """A motion with unknowns, velocities and accelerations (size,) whose forces balance."""
@@ -307,7 +307,7 @@ class SteppedElastic:
         v = np.concatenate([np.zeros(a.frame_size), velocity.reshape(-1)[a.free]])
         still = np.zeros((self.ball_count, 2))
         whole = {"u": zero, "v": v, "a": zero.copy(), "rest": zero.copy()}
-        return Motion(np.zeros(5), np.zeros(5), np.zeros(5), still, still.copy(), whole=whole)
+        return Motion(np.zeros(5), np.zeros(5), np.zeros(5), still, still.copy(), full_state=whole)
 
     def outer_force(self, t: float) -> np.ndarray:
         out = np.zeros(5)

@@ -23,8 +23,8 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
 from raceway.core.periodic.intervals import Change, Eliminated, condense, imbalances, spread
-from raceway.core.periodic.search import Found, find, problem_of
-from raceway.core.periodic.steady import first_line, orbits, refuse, unstable
+from raceway.core.periodic.search import PeriodicMotion, find, problem_of
+from raceway.core.periodic.steady import first_line, growth_of_disturbances, orbit_tables, refuse
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System, by_address, surrogate
@@ -93,7 +93,7 @@ class SteadyOrbit:
     """
 
     model: Model
-    orbit: Found
+    orbit: PeriodicMotion
 
     @property
     def solved(self) -> Solved:
@@ -127,10 +127,10 @@ class SteadyOrbit:
     @property
     def warning(self) -> str:
         """What a person must know of an orbit that is unstable; empty where it is not."""
-        table = orbits([self.orbit])[0]
+        table = orbit_tables([self.orbit])[0]
         if table["stable"]:
             return ""
-        return f"the steady orbit is unstable, {unstable(table)}: a ring leaves it, and what holds of it holds of no lasting motion"
+        return f"the steady orbit is unstable, {growth_of_disturbances(table)}: a ring leaves it, and what holds of it holds of no lasting motion"
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -203,7 +203,7 @@ class SteadyOrbit:
         out = _condensed(problem, attrs.evolve(path, ball=path.ball.copy()), slope)
         # What is left of the balance of forces is no part of the derivative.
         out.stages[:, 2 * n] = out.transfer[:, 2 * n] = 0.0
-        first = np.linalg.solve(problem.closing - out.whole[:, : 2 * n], out.whole[:, 2 * n + 1])
+        first = np.linalg.solve(problem.closing - out.span_transfer[:, : 2 * n], out.span_transfer[:, 2 * n + 1])
         change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
         spread(problem.free, out, first, 1.0, change)
         return change

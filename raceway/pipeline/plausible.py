@@ -251,7 +251,7 @@ def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> flo
     if "ring_growth" in keys:
         grown = attrs.evolve(model.scene, kinematics=attrs.evolve(model.scene.kinematics, ring_growth=True))
         more, now = growth_of(grown, model.basis.row), model.basis.growth
-        radial = np.abs(more.common[1] + more.own[:, 1] - now.common[1] - now.own[:, 1]).max()
+        radial = np.abs(more.common[1] + more.by_ball[:, 1] - now.common[1] - now.by_ball[:, 1]).max()
         bound += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
     return bound
 
@@ -263,7 +263,7 @@ def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equili
     growth, kernel = growth_of(scene, model.basis.row), ring.kernel
     scalars, table = ring.scalars.copy(), ring.table.copy()
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
-    table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.own - model.basis.growth.own
+    table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.by_ball - model.basis.growth.by_ball
     if scene.kinematics.gyroscopic != "none":
         from raceway.core.ring.kernels.structural import condensed
         from raceway.core.ring.kernels.tangential import rigid_tangential

@@ -180,12 +180,12 @@ def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, wa
     ring = compiled(system)
     if ring is None or not searches_orbits(model.scene):
         return Start("orbit", steady_orbit(system, period, q))
-    from raceway.core.periodic.steady import beginning
+    from raceway.core.periodic.steady import starting_orbit
 
-    search = beginning(ring, period, q, watch)
+    search = starting_orbit(ring, period, q, watch)
     if search is None:
         return Start("orbit", steady_orbit(system, period, q))
-    if not search.told:
+    if not search.orbits:
         return Start("orbit", search.orbit)
     # Orbits of another motion than that of the scene are stated in warnings only.
     differences = {
@@ -194,10 +194,10 @@ def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, wa
         "at its first speed": model.excitation.period_s is None,
     }
     prefix = ", ".join(words for words, differs in differences.items() if differs)
-    orbits, warnings = tuple(search.told), search.warnings
+    orbits, warnings = tuple(search.orbits), search.warnings
     if prefix:
         orbits, warnings = (), tuple(f"{prefix}: {text}" for text in warnings)
-    return Start("orbit", search.orbit, orbits, search.told[0]["stable"], warnings)
+    return Start("orbit", search.orbit, orbits, search.orbits[0]["stable"], warnings)
 
 
 def _step_warnings(

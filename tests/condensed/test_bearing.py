@@ -174,9 +174,9 @@ def test_limit_takes_away_an_error_of_order_two_and_gives_the_tangent():
     found = calibration._limit(np.array([values, values + 1e-10]), 0.26, 200.0)
     assert found.compliance == pytest.approx([-0.98e-9, -0.88e-9], rel=1e-12)
     assert found.trend == pytest.approx(2e-11, rel=1e-9)
-    assert found.left == pytest.approx(3e-9 / calibration.POINTS[1] ** 2, rel=1e-9)
+    assert found.uncertainty == pytest.approx(3e-9 / calibration.POINTS[1] ** 2, rel=1e-9)
     # At the typical load the tangent is right and the secant off by the trend.
-    assert found.error(np.array([200.0])) == pytest.approx(found.left + found.trend)
+    assert found.error(np.array([200.0])) == pytest.approx(found.uncertainty + found.trend)
 
 
 @pytest.mark.parametrize("tilt", ["locked", "free"])
@@ -198,4 +198,4 @@ def test_thin_walls_are_within_what_is_stated_of_pressures_at_surface_points(til
 def test_the_calibration_holds_for_both_signs_of_the_angle():
     """Both lands of this preset are alike."""
     bodies = at_rest()[0].bearing.compliances
-    assert bodies.own(0, np.array([-0.3])) - bodies.own(0, np.array([0.3])) == pytest.approx(0.0, abs=0.01e-9)
+    assert bodies.direct(0, np.array([-0.3])) - bodies.direct(0, np.array([0.3])) == pytest.approx(0.0, abs=0.01e-9)

@@ -77,7 +77,7 @@ def test_impact(claim):
         force, times = 4.0 * record.contact_force[:, 0], record.time
         lasting.append(float(times[np.flatnonzero(force > 0.0)[-1]]))
         peaks.append(heard.max())
-        away = quarter.speed(record.final.whole["v"])
+        away = quarter.speed(record.final.full_state["v"])
         impulses.append(abs(float(np.sum(force) * (times[1] - times[0])) / (quarter.mass * (1.0 + away)) - 1.0))
         errors += [abs(force.max() / wanted.force - 1.0), abs(lasting[-1] / wanted.time - 1.0)]
         energies.append(drift(record.energies) or 0.0)
@@ -165,7 +165,9 @@ def test_restart(claim, bearing, method, factor, count, bound):
     whole = integrate(method, built.system, start, Schedule(step, count, 1))
     first = integrate(method, built.system, start, Schedule(step, count // 2, 1))
     second = integrate(method, built.system, first.final, Schedule(step, count // 2, 1, first=count // 2))
-    apart = np.abs(second.final.whole["u"] - whole.final.whole["u"]).max() / np.abs(whole.final.whole["u"]).max()
+    apart = (
+        np.abs(second.final.full_state["u"] - whole.final.full_state["u"]).max() / np.abs(whole.final.full_state["u"]).max()
+    )
     source = "the same steps" if bound == 0.0 else "Newton's tolerance: linear solves remember their factors"
     claim(
         f"two halves, {method.name}: largest relative difference of all unknowns",

@@ -125,7 +125,7 @@ def held_poles(model, found):
     system = model.system
     system.evaluate(found.displacement, ball=found.ball)
     row = system.pool.row(system.table)
-    stiff = [contact.mean_stiffness(seen) for contact, seen in zip(row.balls.contacts, row.last.seen, strict=True)]
+    stiff = [contact.mean_stiffness(seen) for contact, seen in zip(row.balls.contacts, row.last.relative, strict=True)]
     z = system.ball_count
     both = np.zeros((2 * z, 2 * z))
     for k, (inner, outer) in enumerate(zip(stiff[:z], stiff[z:], strict=True)):

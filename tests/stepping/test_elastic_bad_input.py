@@ -121,9 +121,9 @@ def test_going_on_equals_never_having_stopped(method):
     whole, half = run(None, 0, 40), run(None, 0, 20)
     rest = run(half.final, 20, 20)
     assert whole.contact_force.max() > 0.0
-    apart = np.abs(rest.final.whole["u"] - whole.final.whole["u"]).max()
+    apart = np.abs(rest.final.full_state["u"] - whole.final.full_state["u"]).max()
     # Explicit steps to the last bit; implicit ones to Newton's tolerance of 1e-9 of the forces.
-    assert apart <= (1e-7 * np.abs(whole.final.whole["u"]).max() if method.implicit else 0.0)
+    assert apart <= (1e-7 * np.abs(whole.final.full_state["u"]).max() if method.implicit else 0.0)
 
 
 def test_an_equilibrium_that_is_not_found_keeps_the_last_good_state_and_the_residuals():

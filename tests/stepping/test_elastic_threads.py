@@ -55,14 +55,14 @@ def test_the_digits_do_not_depend_on_the_number_of_threads(case):
     alone = moved(case, 1)
     assert np.abs(alone.displacement[-1, 1:3]).max() > 0.0
     if case == "friction":
-        assert np.abs(alone.final.whole["friction"]).max() > 0.0
+        assert np.abs(alone.final.full_state["friction"]).max() > 0.0
     for threads in (2, 3):
         found = moved(case, threads)
         assert found.counts["threads"] == threads
         names = ("displacement", "velocity", "gap", "contact_force", "ball")
         one, other = ({name: getattr(record, name) for name in names} for record in (alone, found))
-        for name, values in (one | alone.final.whole | alone.energies).items():
-            assert np.array_equal((other | found.final.whole | found.energies)[name], values), name
+        for name, values in (one | alone.final.full_state | alone.energies).items():
+            assert np.array_equal((other | found.final.full_state | found.energies)[name], values), name
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -160,6 +160,6 @@ def test_a_step_that_finds_no_balance_leaves_state_and_history():
     with pytest.raises(ConvergenceError, match="did not converge after 0 of 10 steps") as caught:
         integrate(Newmark(), block, start, Schedule(1e-6, 10, 1))
     state = caught.value.state
-    assert (state["u"] == start.whole["u"]).all()
+    assert (state["u"] == start.full_state["u"]).all()
     assert len(state["residuals"]) == 40
     assert np.isfinite(state["residuals"]).all()

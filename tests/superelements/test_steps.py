@@ -143,10 +143,12 @@ def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
     assert not friction.slipping.all()
     # Contacts balance at every evaluation: the first solution, and refinements by five digits.
     assert new.counts["evaluations"] <= 4 * 4
-    moved = {name: np.abs(old.final.whole[name] - start.whole[name]).max() for name in ("u", "v", "a")}
+    moved = {name: np.abs(old.final.full_state[name] - start.full_state[name]).max() for name in ("u", "v", "a")}
     for name, size in moved.items():
-        assert np.abs(new.final.whole[name] - old.final.whole[name]).max() < 1e-5 * size, name
-    assert np.abs(new.final.whole["u"] - old.final.whole["u"]).max() < 1e-7 * np.abs(old.final.whole["u"]).max()
+        assert np.abs(new.final.full_state[name] - old.final.full_state[name]).max() < 1e-5 * size, name
+    assert (
+        np.abs(new.final.full_state["u"] - old.final.full_state["u"]).max() < 1e-7 * np.abs(old.final.full_state["u"]).max()
+    )
     change = np.abs(old.contact_force - old.contact_force[0]).max()
     assert np.abs(new.contact_force - old.contact_force).max() < 1e-5 * change
     assert np.abs(new.contact_force - old.contact_force).max() < 1e-7 * old.contact_force.max()

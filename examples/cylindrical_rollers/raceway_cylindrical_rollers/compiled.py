@@ -33,7 +33,7 @@ def rollers(t, q, v, balls, contacts, constants, response):
     With the radial approach of both races d = y cos + z sin + growth - clearance / 2, a roller lies where
     Q_o(p) = Q_i(d - p) + F_c.  The difference of the sides grows with p: Newton's method within a bracket finds the one place.
     """
-    ball, ball_gain, ball_known = balls
+    ball, ball_gain, ball_history = balls
     law, law_params, law_old, law_new, dt = contacts
     scalars, table = constants
     f, K, C, work = response
@@ -45,7 +45,7 @@ def rollers(t, q, v, balls, contacts, constants, response):
         approach, push = work[_APPROACH, z + k], table[k, CENTRIFUGAL]
         # Without any load a roller lies in the middle; a pushed one as deep as its outer contact asks for.
         outer = ball[k, 1] if (approach > 0.0 or push > 0.0) and ball[k, 1] > 0.0 else 0.5 * approach
-        own = ball_gain * outer + ball_known[k, 1]
+        own = ball_gain * outer + ball_history[k, 1]
         work[_OUTER, k] = outer
         work[_BRACKET, k], work[_BRACKET, z + k] = min(0.0, approach), np.inf if push > 0.0 else max(0.0, approach)
         gap[k], gap[z + k] = outer - approach, -outer

@@ -73,12 +73,12 @@ def film(
     material = alpha * modulus
     central, minimum = _by_regime(np.maximum(speed, 1e-300), material, heavy, k, across / along)
     regime = np.argmax(minimum, axis=0)
-    chosen, moves = regime, viscous > 0.0
-    one = np.arange(len(regime))
+    moves = viscous > 0.0
+    contact = np.arange(len(regime))
     return Film(
-        np.where(moves, central[chosen, one] * along, 0.0),
-        np.where(moves, minimum[chosen, one] * along, 0.0),
-        regime, _BY_LOAD[chosen],
+        np.where(moves, central[regime, contact] * along, 0.0),
+        np.where(moves, minimum[regime, contact] * along, 0.0),
+        regime, _BY_LOAD[regime],
     )  # fmt: skip
 
 
@@ -136,7 +136,7 @@ def entraining_speed(
     w_c = w (1 - g_i) / (2 - g_i + g_o), the surfaces of the inner contact run at (w - w_c) d_m/2 (1 - g_i), those of the outer at
     w_c d_m/2 (1 + g_o), which is the same speed; of one angle w d_m/4 (1 - g^2).
     """
-    gi, go = (ball_diameter * np.cos(one) / pitch_diameter for one in (inner, outer))
+    gi, go = (ball_diameter * np.cos(angle) / pitch_diameter for angle in (inner, outer))
     cage = spin * (1.0 - gi) / (2.0 - gi + go)
     half = 0.5 * pitch_diameter
     return (spin - cage) * half * (1.0 - gi), cage * half * (1.0 + go)

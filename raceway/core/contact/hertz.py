@@ -142,9 +142,9 @@ class Ellipse:
         return np.where(load > 0.0, 1.5 * load / (np.pi * a * b), 0.0)
 
 
-def every(contacts: Sequence[Ellipse], chosen: np.ndarray) -> Ellipse:
+def every(contacts: Sequence[Ellipse], indices: np.ndarray) -> Ellipse:
     """Hertz contacts of many pairs at once, whose numbers and answers are arrays (n,); ``chosen`` (n,) indices of the contacts."""
-    columns: Any = np.array([attrs.astuple(one) for one in contacts])[chosen].T.copy()
+    columns: Any = np.array([attrs.astuple(contact) for contact in contacts])[indices].T.copy()
     return Ellipse(*columns)
 
 
@@ -200,7 +200,7 @@ def ball_compliance(
     ----------
     Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., sections 172-173 (solutions of degree n in a sphere).
     """
-    c0, c1, rest = _series(poisson)
+    c0, c1, coefficients = _series(poisson)
     radial, weight = np.polynomial.legendre.leggauss(_POINTS)
     radial = 0.5 * (radial + 1.0)
     around = 2.0 * np.pi * (np.arange(_POINTS) + 0.5) / _POINTS
@@ -212,12 +212,12 @@ def ball_compliance(
     # Points on themselves: the mean distance within what one of them stands for; a logarithm hardly minds.
     np.fill_diagonal(half_chord, 0.3 / _POINTS * np.sqrt(semi_major * semi_minor) / radius)
     grid = np.linspace(0.0, half_chord.max(), 65)
-    smooth = np.interp(half_chord.ravel(), grid, np.polynomial.legendre.legval(1.0 - 2.0 * grid**2, rest))
+    smooth = np.interp(half_chord.ravel(), grid, np.polynomial.legendre.legval(1.0 - 2.0 * grid**2, coefficients))
     s = half_chord.ravel()
     field = (smooth - c1 * np.log(s + s * s)).reshape(half_chord.shape)
-    own = float(share @ field @ share)
-    opposite = float(np.polynomial.legendre.legval(-1.0, rest)) + 0.5 * c0 - c1 * np.log(2.0)
-    return own / (young * radius), float(opposite) / (young * radius)
+    same = float(share @ field @ share)
+    opposite = float(np.polynomial.legendre.legval(-1.0, coefficients)) + 0.5 * c0 - c1 * np.log(2.0)
+    return same / (young * radius), float(opposite) / (young * radius)
 
 
 @cache
@@ -323,7 +323,7 @@ def largest_shear(semi_axes: tuple[float, float], peak_pressure: float, poisson:
     grid = np.linspace(0.0, _DEEP, _GRID + 1)
     k = int(shear(grid).argmax())
     bounds = (grid[max(k - 1, 0)], grid[min(k + 1, _GRID)])
-    found = minimize_scalar(
+    optimum = minimize_scalar(
         lambda x: -float(shear(np.array([x]))[0]), bounds=bounds, method="bounded", options={"xatol": 1e-9}
     )
-    return -float(found.fun) * peak_pressure, float(found.x) * minor
+    return -float(optimum.fun) * peak_pressure, float(optimum.x) * minor

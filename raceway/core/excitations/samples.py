@@ -18,12 +18,12 @@ def samples(t, params, out):
     Before the first and after the last sample of a record that does not repeat, the end values hold.
     """
     n = (params.size - 2) // 5
-    place = t / params[0]
-    k = int(np.floor(place))
-    u = place - k
+    position = t / params[0]
+    k = int(np.floor(position))
+    u = position - k
     repeat = params[1] != 0.0
     if not repeat:
-        if place <= 0.0:
+        if position <= 0.0:
             k, u = 0, 0.0
         elif k >= n - 1:
             k, u = n - 2, 1.0

@@ -91,11 +91,11 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     blocks = -(-len(cells) // WIDTH)
     edges = np.unique(np.linspace(0, blocks, min(RANGES, blocks) + 1).astype(np.int64)) * WIDTH
     edges[-1] = len(cells)
-    rows, place = [], 0
+    rows, offset = [], 0
     for first, last in zip(edges[:-1], edges[1:], strict=True):
         low, high = int(cells[first:last].min()), int(cells[first:last].max()) + 1
-        rows.append((first, last, low, high, place))
-        place += high - low
+        rows.append((first, last, low, high, offset))
+        offset += high - low
     return np.array(rows, dtype=np.int64)
 
 
@@ -277,8 +277,8 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
     for begin, end in _growing(count):
         if bounds[order[begin]] <= largest:
             break
-        chosen = order[begin:end]
-        scaled = np.concatenate([_scaled(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in chosen.tolist()])
+        elements = order[begin:end]
+        scaled = np.concatenate([_scaled(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()])
         if not _all_below(scaled, largest * (1.0 + _SAME)):
             largest = max(largest, float(np.linalg.eigvalsh(scaled)[:, -1].max()))
     return float(2.0 / np.sqrt(largest))

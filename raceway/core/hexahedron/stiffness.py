@@ -38,11 +38,11 @@ def add_hourglass(moduli, x, mean, volume, K):
             slope_y += HOURGLASS[n, a] * x[n, 1]
             slope_z += HOURGLASS[n, a] * x[n, 2]
         for i in range(8):
-            left = HOURGLASS[i, a] - slope_x * mean[i, 0] - slope_y * mean[i, 1] - slope_z * mean[i, 2]
+            gamma_i = HOURGLASS[i, a] - slope_x * mean[i, 0] - slope_y * mean[i, 1] - slope_z * mean[i, 2]
             for j in range(8):
-                right = HOURGLASS[j, a] - slope_x * mean[j, 0] - slope_y * mean[j, 1] - slope_z * mean[j, 2]
+                gamma_j = HOURGLASS[j, a] - slope_x * mean[j, 0] - slope_y * mean[j, 1] - slope_z * mean[j, 2]
                 for k in range(3):
-                    K[3 * i + k, 3 * j + k] += factor * left * right
+                    K[3 * i + k, 3 * j + k] += factor * gamma_i * gamma_j
 
 
 @jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX, CUBE, VECTOR, MATRIX, MATRIX))
@@ -242,8 +242,8 @@ def range_force(r, ranges, cells, x, u, moduli, work, f):
     Flanagan, Belytschko, A uniform strain hexahedron and quadrilateral with orthogonal hourglass control, Int. J. Numer.
     Meth. Engng 17 (1981) 679-706.
     """
-    first, last, node, end, place = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
-    for i in range(3 * place, 3 * (place + end - node)):
+    first, last, node, end, offset = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
+    for i in range(3 * offset, 3 * (offset + end - node)):
         f[i] = 0.0
     base = uint64(WORK * r)
     for begin in range(first, last, WIDTH):
@@ -260,7 +260,7 @@ def range_force(r, ranges, cells, x, u, moduli, work, f):
             e = uint64(begin + i)
             for j in range(8):
                 at = base + uint64(WIDTH * j + i + 384)
-                n = uint64(3) * uint64(cells[e, uint64(j)] - node + place)
+                n = uint64(3) * uint64(cells[e, uint64(j)] - node + offset)
                 f[n] += work[at]
                 f[n + uint64(1)] += work[at + uint64(128)]
                 f[n + uint64(2)] += work[at + uint64(256)]
@@ -286,19 +286,19 @@ def range_hourglass_energy(r, ranges, cells, x, u, moduli):
     """
     total = 0.0
     for e in range(ranges[r, 0], ranges[r, 1]):
-        place = (
+        coordinates = (
             modes(_nodes(cells, e, uint64(0), x)),
             modes(_nodes(cells, e, uint64(1), x)),
             modes(_nodes(cells, e, uint64(2), x)),
         )
         b = (
-            gradient_modes(place[1], place[2]), gradient_modes(place[2], place[0]), gradient_modes(place[0], place[1]),
+            gradient_modes(coordinates[1], coordinates[2]), gradient_modes(coordinates[2], coordinates[0]), gradient_modes(coordinates[0], coordinates[1]),
         )  # fmt: skip
-        over = 1.0 / mean_gradient(b[0], place[0])
+        over = 1.0 / mean_gradient(b[0], coordinates[0])
         squares = 0.0
         for k in range(3):
             moved = modes(_nodes(cells, e, uint64(k), u))
-            q = _hourglass(1.0, _gradient(over, b, moved), moved, place)
+            q = _hourglass(1.0, _gradient(over, b, moved), moved, coordinates)
             squares += q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
         total += 0.5 * (moduli[2] / 64.0) * over * (square(b[0]) + square(b[1]) + square(b[2])) * squares
     return total
@@ -351,12 +351,12 @@ def range_point_force(kind, r, ranges, cells, points, u, moduli, f):
     -----
     These are the elements for accuracy on coarse meshes; the loops are plain, one element after the other.
     """
-    first, last, node, end, place = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
+    first, last, node, end, offset = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
     x, inverse, mean, weight = np.empty((8, 3)), np.empty((3, 3)), np.empty((8, 3)), np.empty(8)
     B, rows, square = np.zeros((8, 6, COLUMNS)), np.zeros((6, COLUMNS)), np.empty((9, 9))
     values, stress = np.zeros(COLUMNS), np.empty(6)
     columns = COLUMNS if kind == 2 else 24
-    f[3 * place : 3 * (place + end - node)] = 0.0
+    f[3 * offset : 3 * (offset + end - node)] = 0.0
     for e in range(first, last):
         for n in range(8):
             for k in range(3):
@@ -368,7 +368,7 @@ def range_point_force(kind, r, ranges, cells, points, u, moduli, f):
         for g in range(count):
             point_stress(moduli, B, g, weight[g], 0, columns, values, stress)
             for n in range(8):
-                at = 3 * (int64(cells[e, n]) - node + place)
+                at = 3 * (int64(cells[e, n]) - node + offset)
                 for k in range(3):
                     for s in range(6):
                         f[at + k] += B[g, s, 3 * n + k] * stress[s]

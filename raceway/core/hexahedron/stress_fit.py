@@ -60,11 +60,11 @@ class StressFit:
             distance = np.sqrt(np.einsum("ka,ka->k", away, away))
             # The farthest one would have no weight.
             reach = max(_REACH, 1.01 * float(np.partition(distance, fewest)[fewest]))
-            found, rank = self._fit(away, distance, reach)
+            coefficients, rank = self._fit(away, distance, reach)
             while rank < _TERMS and reach < distance.max():
                 reach *= _WIDER
-                found, rank = self._fit(away, distance, reach)
-            out[i] = (_terms((where[i : i + 1] - around[i]) / unit) @ found)[0]
+                coefficients, rank = self._fit(away, distance, reach)
+            out[i] = (_terms((where[i : i + 1] - around[i]) / unit) @ coefficients)[0]
         return out
 
     def _fit(self, away: Floats, distance: Floats, reach: float) -> tuple[Floats, int]:
@@ -72,8 +72,8 @@ class StressFit:
         near = np.flatnonzero(distance < reach)
         weight = 1.0 - (distance[near] / reach) ** 2  # the root of w
         terms = _terms(away[near]) * weight[:, None]
-        found, _, rank, _ = np.linalg.lstsq(terms, self.values[near] * weight[:, None], rcond=_SINGULAR)
-        return np.asarray(found, dtype=np.float64), int(rank)
+        coefficients, _, rank, _ = np.linalg.lstsq(terms, self.values[near] * weight[:, None], rcond=_SINGULAR)
+        return np.asarray(coefficients, dtype=np.float64), int(rank)
 
 
 def _terms(s: Floats) -> Floats:

@@ -83,7 +83,7 @@ def _rounded(p: np.ndarray) -> np.ndarray:
 
 def _outward_quads(number: np.ndarray) -> np.ndarray:
     """(k, 4) lattice nodes of the cube's surface quadrilaterals, anticlockwise seen from outside."""
-    found = []
+    quads = []
     for axis in range(3):
         for side, flip in ((0, True), (-1, False)):
             # Axes in cyclic order, so that (first, second, normal) is right-handed.
@@ -93,5 +93,5 @@ def _outward_quads(number: np.ndarray) -> np.ndarray:
             quad = [face[:-1, :-1], face[1:, :-1], face[1:, 1:], face[:-1, 1:]]
             if flip:
                 quad = quad[::-1]
-            found.append(np.stack(quad, axis=-1).reshape(-1, 4))
-    return np.concatenate(found)
+            quads.append(np.stack(quad, axis=-1).reshape(-1, 4))
+    return np.concatenate(quads)

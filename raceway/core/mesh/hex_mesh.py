@@ -150,20 +150,20 @@ class HexMesh:
         those of swept meshes are; cells by their smallest node.
         """
         order = _cuthill_mckee(self.cells, len(self.points))
-        place = np.empty(len(order), dtype=np.int64)
-        place[order] = np.arange(len(order))
-        cells = place[self.cells]
+        rank = np.empty(len(order), dtype=np.int64)
+        rank[order] = np.arange(len(order))
+        cells = rank[self.cells]
         if np.ptp(cells, axis=1).sum() >= np.ptp(self.cells, axis=1).sum():
-            order = place = np.arange(len(order))
+            order = rank = np.arange(len(order))
             cells = self.cells
         sequence = np.argsort(cells.min(axis=1), kind="stable")
-        where = np.empty(len(sequence), dtype=np.int64)
-        where[sequence] = np.arange(len(sequence))
+        cell_rank = np.empty(len(sequence), dtype=np.int64)
+        cell_rank[sequence] = np.arange(len(sequence))
         return HexMesh(
             self.points[order],
             cells[sequence],
-            {name: place[nodes] for name, nodes in self.node_sets.items()},
-            {name: np.column_stack([where[f[:, 0]], f[:, 1]]) for name, f in self.facet_sets.items()},
+            {name: rank[nodes] for name, nodes in self.node_sets.items()},
+            {name: np.column_stack([cell_rank[f[:, 0]], f[:, 1]]) for name, f in self.facet_sets.items()},
         )
 
 
@@ -233,11 +233,11 @@ def _member(sets: dict[str, np.ndarray], name: str, kind: str) -> np.ndarray:
         close = difflib.get_close_matches(name, list(sets), n=1, cutoff=0.4)
         hint = f" (did you mean '{close[0]}'?)" if close else ""
         raise MeshError(f"the mesh has no {kind} set '{name}'{hint}; it has {', '.join(sorted(sets)) or 'none'}")
-    found = sets[name]
-    if not len(found):
-        full = [other for other in sorted(sets) if len(sets[other])]
+    members = sets[name]
+    if not len(members):
+        full = [filled for filled in sorted(sets) if len(sets[filled])]
         raise MeshError(f"{kind} set '{name}' is empty; sets that are not: {', '.join(full) or 'none'}")
-    return found
+    return members
 
 
 def azimuth(bearing: Any, index: int) -> float:
@@ -251,14 +251,14 @@ def ball_names(bearing: Any) -> list[str]:
     return [f"ball_{index:0{digits}d}" for index in range(bearing.ball_count)]
 
 
-def placed(points: np.ndarray, bearing: Any, psi: float, side: float = 1.0, place: float = 0.0) -> np.ndarray:
+def placed(points: np.ndarray, bearing: Any, psi: float, side: float = 1.0, axial: float = 0.0) -> np.ndarray:
     """A ball's points (n, 3) from its own axes (rolling, across, towards the outer contact) to its place in the bearing."""
     alpha = bearing.contact_angle
     radial = np.array([0.0, cos(psi), sin(psi)])
     u = np.array([0.0, -sin(psi), cos(psi)])
     w = np.array([side * sin(alpha), 0.0, 0.0]) + cos(alpha) * radial
     v = np.cross(w, u)
-    centre = 0.5 * bearing.pitch_diameter * radial + [place, 0.0, 0.0]
+    centre = 0.5 * bearing.pitch_diameter * radial + [axial, 0.0, 0.0]
     return np.asarray(points @ np.stack([u, v, w]) + centre)
 
 

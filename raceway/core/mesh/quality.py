@@ -69,12 +69,12 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> Quality:
     MeshError
         How many cells, the first of them, its centre and its nodes.
     """
-    found = quality(mesh)
-    bad = np.flatnonzero(found.scaled_jacobian < DEGENERATE)
+    measures = quality(mesh)
+    bad = np.flatnonzero(measures.scaled_jacobian < DEGENERATE)
     if not len(bad):
-        return found
+        return measures
     cell = int(bad[0])
-    value = float(found.scaled_jacobian[cell])
+    value = float(measures.scaled_jacobian[cell])
     word = "inverted" if value < -DEGENERATE else "degenerate"
     centre = ", ".join(f"{x:.6g}" for x in mesh.points[mesh.cells[cell]].mean(axis=0))
     nodes = ", ".join(str(node) for node in mesh.cells[cell])
@@ -240,9 +240,9 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
     one mesh), takes that one's numbers over.
     """
     bodies: dict[str, Tables] = {}
-    seen: dict[int, str] = {}
+    first_names: dict[int, str] = {}
     for name, mesh in meshes.items():
-        twin = seen.setdefault(id(mesh.cells), name)
+        twin = first_names.setdefault(id(mesh.cells), name)
         bodies[name] = bodies[twin] if twin != name and _congruent(mesh, meshes[twin]) else _body(mesh)
     weights = np.array([body["elements"] for body in bodies.values()], dtype=float)
 
@@ -265,7 +265,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
 
 
 def _body(mesh: HexMesh) -> Tables:
-    found = quality(mesh)
+    measures = quality(mesh)
     least, total, largest = np.inf, 0.0, 0.0
     for first in range(0, len(mesh.cells), BLOCK):
         length = _edges(mesh, mesh.cells[first : first + BLOCK])
@@ -276,9 +276,9 @@ def _body(mesh: HexMesh) -> Tables:
         "elements": len(mesh.cells),
         "nodes": len(mesh.points),
         "memory_bytes": mesh.memory_bytes,
-        "scaled_jacobian": {"min": float(found.scaled_jacobian.min()), "mean": float(found.scaled_jacobian.mean())},
-        "aspect": {"max": float(found.aspect.max()), "mean": float(found.aspect.mean())},
-        "skew": {"max": float(found.skew.max()), "mean": float(found.skew.mean())},
+        "scaled_jacobian": {"min": float(measures.scaled_jacobian.min()), "mean": float(measures.scaled_jacobian.mean())},
+        "aspect": {"max": float(measures.aspect.max()), "mean": float(measures.aspect.mean())},
+        "skew": {"max": float(measures.skew.max()), "mean": float(measures.skew.mean())},
         "element_size_m": sizes,
         "patch_size_m": _widest(patches),
     }
@@ -315,8 +315,8 @@ def _edges(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2))
 
 
-def _congruent(mesh: HexMesh, other: HexMesh) -> bool:
+def _congruent(mesh: HexMesh, twin: HexMesh) -> bool:
     """Whether a sample of edges is as long in both: a rigid motion of the same cells."""
     sample = mesh.cells[:: max(len(mesh.cells) // 1000, 1)]
     size = float(np.ptp(mesh.points, axis=0).max())
-    return np.allclose(_edges(mesh, sample), _edges(other, sample), rtol=0.0, atol=1e-9 * size)
+    return np.allclose(_edges(mesh, sample), _edges(twin, sample), rtol=0.0, atol=1e-9 * size)

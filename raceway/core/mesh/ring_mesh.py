@@ -215,8 +215,8 @@ class RingSection:
         wall = 0.5 * (top - bore)
         r = bore + wall[:, None] * (1.0 + up)
         area = along[:, None] * wall[:, None] * share
-        place = centre_x - groove * sin(alpha), centre_r - groove * cos(alpha)
-        return cls(np.repeat(x, _ACROSS), r.ravel(), area.ravel(), place)
+        contact = centre_x - groove * sin(alpha), centre_r - groove * cos(alpha)
+        return cls(np.repeat(x, _ACROSS), r.ravel(), area.ravel(), contact)
 
     @property
     def moments(self) -> tuple[float, float, float]:
@@ -262,8 +262,8 @@ class RingSection:
 
 def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
-    one = np.eye(_DEGREE + 1)
-    slopes = np.polynomial.legendre.legder(one, axis=1)
+    identity = np.eye(_DEGREE + 1)
+    slopes = np.polynomial.legendre.legder(identity, axis=1)
     value = np.polynomial.legendre.legvander(z, _DEGREE).T
     return value, slopes @ value[:-1]
 
@@ -288,7 +288,7 @@ class RingShape:
     groove : radius of the groove
     centre_x, centre_r : axial place and radius of the circle of groove centres
     contact : angle from the groove's radial direction to the free contact [rad], along increasing x
-    given : what a user's polygon gives in place of seat, land and width; these three are then its extremes
+    profile : what a user's polygon gives in place of seat, land and width; these three are then its extremes
     """
 
     inner: bool
@@ -299,11 +299,11 @@ class RingShape:
     centre_x: float
     centre_r: float
     contact: float
-    given: Outline | None = None
+    profile: Outline | None = None
 
     def __attrs_post_init__(self) -> None:
         name = "inner ring" if self.inner else "outer ring"
-        if self.given is None:
+        if self.profile is None:
             self._check_plain(name)
         if self.wall <= 0.0:
             raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
@@ -336,8 +336,8 @@ class RingShape:
     @property
     def edge(self) -> float:
         """Angle from the groove's bottom to its edge, of unequal shoulders to the lower one's [rad]."""
-        if self.given is not None:
-            return min(-self.given.edges[0], self.given.edges[1])
+        if self.profile is not None:
+            return min(-self.profile.edges[0], self.profile.edges[1])
         return acos(self.sign * (self.land - self.centre_r) / self.groove)
 
     @property
@@ -348,18 +348,18 @@ class RingShape:
     @property
     def outline(self) -> Outline:
         """The section without its groove."""
-        if self.given is not None:
-            return self.given
+        if self.profile is not None:
+            return self.profile
         reach = self.groove * sin(self.edge)
         return plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
 
     @property
     def wall(self) -> float:
         """Least thickness under the groove [m]; plain rings: under its bottom."""
-        if self.given is None:
+        if self.profile is None:
             return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
-        x, r = self.surface(np.linspace(*self.given.edges, 181)).T
-        return float((self.sign * (np.interp(x, *self.given.seat.T) - r)).min())
+        x, r = self.surface(np.linspace(*self.profile.edges, 181)).T
+        return float((self.sign * (np.interp(x, *self.profile.seat.T) - r)).min())
 
     @property
     def thickness(self) -> float:
@@ -369,7 +369,7 @@ class RingShape:
     @property
     def volume(self) -> float:
         """Exact volume [m3]: hollow cylinder less the groove's circular segment (Pappus)."""
-        if self.given is not None:
+        if self.profile is not None:
             return self.moments[0]
         away = abs(self.centre_r - self.land)
         half = sqrt(self.groove**2 - away**2)
@@ -466,8 +466,8 @@ def ring_mesh(
 
 def _swept_cells(ni: int, nj: int, nk: int) -> np.ndarray:
     k, j, i = np.meshgrid(np.arange(nk), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
-    here, there = (k * nj + j) * ni + i, ((k + 1) % nk * nj + j) * ni + i
-    return np.stack([n + o for n in (here, there) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
+    near, far = (k * nj + j) * ni + i, ((k + 1) % nk * nj + j) * ni + i
+    return np.stack([n + o for n in (near, far) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
 
 
 def _facets(
@@ -512,7 +512,7 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
     """
     key = "inner_profile" if inner else "outer_profile"
     if getattr(bearing, key, None) is not None:
-        return _given(bearing, key, inner)
+        return _profile_ring(bearing, key, inner)
     for key in ("bore", "outer_diameter", "width"):
         if getattr(bearing, key, None) is None:
             raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
@@ -538,7 +538,7 @@ def _groove(bearing: Any, inner: bool) -> Tables:
     }
 
 
-def _given(bearing: Any, key: str, inner: bool) -> RingShape:
+def _profile_ring(bearing: Any, key: str, inner: bool) -> RingShape:
     """A ring whose section the user gives."""
     groove = _groove(bearing, inner)
     outline = polygon_outline(
@@ -552,4 +552,4 @@ def _given(bearing: Any, key: str, inner: bool) -> RingShape:
             f"`bearing.{key}` has its seat at a diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
         )
     width = float(outline.seat[-1, 0] - outline.seat[0, 0])
-    return RingShape(inner, float(seat), float(land), width, **groove, given=outline)
+    return RingShape(inner, float(seat), float(land), width, **groove, profile=outline)

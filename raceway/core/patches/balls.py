@@ -147,19 +147,19 @@ class LinearisedBalls:
     Attributes
     ----------
     contact_states : (2 Z) answers of the contacts
-    force : (2 Z, 2) forces on the balls that are carried on [N];  rest : (2 Z, 2) what the contacts give beyond them
+    force : (2 Z, 2) forces on the balls that are carried on [N];  excess : (2 Z, 2) what the contacts give beyond them
     contact_stiffness : (4 Z, 4 Z) S [N/m];  ball_stiffness : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
     balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
     by_section_turn : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
     couple : (Z,) on that section [N m]
     couple_by_place : (Z, 4 Z) its derivative by D [N]; None where there are no couples
     crossed : (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
-    seen : (2 Z, 2) D, the balls seen from the grooves [m]
+    relative : (2 Z, 2) D, the balls seen from the grooves [m]
     """
 
     contact_states: list[ContactState]
     force: np.ndarray
-    rest: np.ndarray
+    excess: np.ndarray
     carried: np.ndarray
     contact_stiffness: np.ndarray
     ball_stiffness: np.ndarray
@@ -168,7 +168,7 @@ class LinearisedBalls:
     couple: np.ndarray
     couple_by_place: np.ndarray | None
     crossed: np.ndarray | float
-    seen: np.ndarray
+    relative: np.ndarray
 
 
 class Balls:
@@ -192,50 +192,55 @@ class Balls:
         self.evaluations = 0
 
     def linear(
-        self, centre: np.ndarray, place: np.ndarray, force: np.ndarray, rate: np.ndarray, applied: AppliedLoads | None = None
+        self,
+        centre: np.ndarray,
+        position: np.ndarray,
+        force: np.ndarray,
+        rate: np.ndarray,
+        applied: AppliedLoads | None = None,
     ) -> LinearisedBalls:
         """Press all contacts.
 
         Parameters
         ----------
-        centre, place : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
+        centre, position : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
         """
         applied = applied or AppliedLoads(np.zeros(self.count))
         moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
-        seen = np.concatenate([place - centre, place]) + moved
+        relative = np.concatenate([position - centre, position]) + moved
         contact_states = [
             contact.press(d, r, applied.of(k))
-            for k, (contact, d, r) in enumerate(zip(self.contacts, seen, rate, strict=True))
+            for k, (contact, d, r) in enumerate(zip(self.contacts, relative, rate, strict=True))
         ]
         self.evaluations += 1
-        answer = np.array([one.force for one in contact_states])
+        answer = np.array([state.force for state in contact_states])
         z = self.count
-        couple, by_place = np.array([one.couple for one in contact_states[:z]]), None
+        couple, by_place = np.array([state.couple for state in contact_states[:z]]), None
         crossed: np.ndarray | float = 0.0
         if applied.with_couples:
             by_place = np.zeros((z, 4 * z))
-            for k, one in enumerate(contact_states[:z]):
-                by_place[k, 2 * k : 2 * k + 2] = one.couple_by_place
+            for k, state in enumerate(contact_states[:z]):
+                by_place[k, 2 * k : 2 * k + 2] = state.couple_by_place
         if applied.gyroscopic is not None and by_place is not None:
             crossed = np.zeros_like(self.coupling)
-            for k, one in enumerate(contact_states[:z]):
-                more = applied.gyroscopic.of(seen[k], seen[z + k], one)
+            for k, state in enumerate(contact_states[:z]):
+                more = applied.gyroscopic.of(relative[k], relative[z + k], state)
                 at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
                 answer[[k, z + k]] += more.force.reshape(2, 2)
                 crossed[np.ix_(at, at)] = more.stiffness
                 couple[k] += more.couple
                 by_place[k, at] += more.couple_by_place
-        rest = (answer - force).reshape(-1)
-        stiffness = [one.stiffness for one in contact_states]
+        excess = (answer - force).reshape(-1)
+        stiffness = [state.stiffness for state in contact_states]
         contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
-            stiffness, rest, contact_states, crossed, applied.spring
+            stiffness, excess, contact_states, crossed, applied.spring
         )
-        acting = self.loads + applied.push - applied.spring * place
+        acting = self.loads + applied.push - applied.spring * position
         balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
         return LinearisedBalls(
             contact_states,
             force,
-            rest.reshape(-1, 2),
+            excess.reshape(-1, 2),
             carried,
             contact_stiffness,
             ball_stiffness,
@@ -244,19 +249,19 @@ class Balls:
             couple,
             by_place,
             crossed,
-            seen,
+            relative,
         )
 
-    def smoothed_stiffness(self, now: LinearisedBalls, centre: np.ndarray, place: np.ndarray) -> LinearisedBalls:
+    def smoothed_stiffness(self, now: LinearisedBalls, centre: np.ndarray, position: np.ndarray) -> LinearisedBalls:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
         moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
-        seen = np.concatenate([place - centre, place]) + moved
+        relative = np.concatenate([position - centre, position]) + moved
         stiffness = [
-            contact.mean_stiffness(d) + one.along
-            for contact, d, one in zip(self.contacts, seen, now.contact_states, strict=True)
+            contact.mean_stiffness(d) + state.along
+            for contact, d, state in zip(self.contacts, relative, now.contact_states, strict=True)
         ]
         contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
-            stiffness, now.rest.reshape(-1), now.contact_states, now.crossed
+            stiffness, now.excess.reshape(-1), now.contact_states, now.crossed
         )
         return attrs.evolve(
             now,
@@ -269,25 +274,25 @@ class Balls:
     def _together(
         self,
         stiffness: list[np.ndarray],
-        rest: np.ndarray,
+        excess: np.ndarray,
         contact_states: list[ContactState],
         crossed: np.ndarray | float,
         spring: float = 0.0,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
-        stiff, by_section_turn = np.zeros_like(self.coupling), np.zeros((len(rest), self.count))
-        for k, one in enumerate(stiffness):
-            stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = one
+        stiff, by_section_turn = np.zeros_like(self.coupling), np.zeros((len(excess), self.count))
+        for k, block in enumerate(stiffness):
+            stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = block
         stiff += crossed
-        for k, other in enumerate(contact_states[: self.count]):
-            by_section_turn[2 * k : 2 * k + 2, k] = other.by_turn
-        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, by_section_turn, rest]))
-        contact_stiffness = both[:, : len(rest)]
-        if isinstance(crossed, float) and all(one.traction_state is None for one in contact_states):
+        for k, state in enumerate(contact_states[: self.count]):
+            by_section_turn[2 * k : 2 * k + 2, k] = state.by_turn
+        both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, by_section_turn, excess]))
+        contact_stiffness = both[:, : len(excess)]
+        if isinstance(crossed, float) and all(state.traction_state is None for state in contact_states):
             contact_stiffness = 0.5 * (contact_stiffness + contact_stiffness.T)
         ball_stiffness = self._both.T @ contact_stiffness @ self._both
         ball_stiffness += (spring + _IDLE * max(np.abs(ball_stiffness).max(), 1.0)) * np.eye(len(ball_stiffness))
-        return contact_stiffness, ball_stiffness, both[:, -1], both[:, len(rest) : -1]
+        return contact_stiffness, ball_stiffness, both[:, -1], both[:, len(excess) : -1]
 
     def follow(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z, 2 Z) motion of the balls that follows a motion of the inner groove centres."""
@@ -303,14 +308,14 @@ class Balls:
         """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
         n, by_place = 2 * self.count, now.couple_by_place
         assert by_place is not None
-        by_turn = np.array([one.couple_by_turn for one in now.contact_states[: self.count]])
+        by_turn = np.array([state.couple_by_turn for state in now.contact_states[: self.count]])
         # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
-        seen = by_place @ (self._ones - self.coupling @ now.contact_stiffness)
+        by_relative = by_place @ (self._ones - self.coupling @ now.contact_stiffness)
         applied = np.concatenate([now.contact_stiffness @ self._inner, -now.by_section_turn], axis=1)
         balls = np.linalg.solve(now.ball_stiffness, self._both.T @ applied)
         force = applied - now.contact_stiffness @ self._both @ balls
-        couple = seen @ self._both @ balls
-        couple[:, :n] -= seen @ self._inner
+        couple = by_relative @ self._both @ balls
+        couple[:, :n] -= by_relative @ self._inner
         couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.by_section_turn
         return np.concatenate([self._inner.T @ force, couple])
 
@@ -340,12 +345,12 @@ class Balls:
 
     def residual(self, now: LinearisedBalls) -> float:
         """Largest force out of balance of any ball or contact [N]."""
-        return float(max(np.abs(now.balance).max(), np.abs(now.rest).max()))
+        return float(max(np.abs(now.balance).max(), np.abs(now.excess).max()))
 
     def settle(
         self,
         centre: np.ndarray,
-        place: np.ndarray,
+        position: np.ndarray,
         force: np.ndarray,
         rate: np.ndarray,
         tolerance: float,
@@ -358,22 +363,22 @@ class Balls:
         ConvergenceError
         """
         still = np.zeros(2 * self.count)
-        now = self.linear(centre, place, force, rate, applied)
+        now = self.linear(centre, position, force, rate, applied)
         for _ in range(_LIMIT):
             size = self.residual(now)
             scale = max(np.abs(now.force).max(), np.abs(self.loads).max(), 1.0)
             if size <= tolerance * scale:
-                return place, force, now
+                return position, force, now
             step, change = self.move(now, still)
             part = min(1.0, self.step / max(np.abs(step).max(), 1e-300))
             for _ in range(8):
-                other = self.linear(centre, place + part * step, force + part * change, rate, applied)
-                if self.residual(other) < (1.0 - 0.1 * part) * size or part < 0.02:
+                trial = self.linear(centre, position + part * step, force + part * change, rate, applied)
+                if self.residual(trial) < (1.0 - 0.1 * part) * size or part < 0.02:
                     break
                 part *= 0.4
-            place, force, now = place + part * step, force + part * change, other
+            position, force, now = position + part * step, force + part * change, trial
             if self.residual(now) >= size and size <= 1e3 * tolerance * scale:
-                return place, force, now
+                return position, force, now
         raise ConvergenceError(
-            "the balls find no equilibrium between the races", {"place": place, "residual": self.residual(now)}
+            "the balls find no equilibrium between the races", {"place": position, "residual": self.residual(now)}
         )

@@ -70,7 +70,7 @@ class Friction:
         self._sliding = np.zeros(patch.rows * patch.columns, dtype=np.int64)
         self._stuck, self._lower = _NONE, np.zeros((0, 0))
 
-    def pull(self, nodes: np.ndarray, load: np.ndarray, place: float, slip: np.ndarray) -> Traction:
+    def pull(self, nodes: np.ndarray, load: np.ndarray, position: float, slip: np.ndarray) -> Traction:
         """Tractions at a place [m] of the contact along the groove.
 
         Parameters
@@ -82,11 +82,11 @@ class Friction:
         ConvergenceError
             The sets repeat themselves.
         """
-        after = np.full(len(slip), place)
+        after = np.full(len(slip), position)
         if not len(nodes):
             return Traction(0.0, 0.0, np.zeros(0), after, 0.0, np.zeros(0, dtype=np.int64))
         self._gather(nodes)
-        bound, free = self.coefficient * load, place - slip[nodes]
+        bound, free = self.coefficient * load, position - slip[nodes]
         sliding = self._sliding[nodes]
         for iteration in range(1, _LIMIT + 1):
             stuck = np.flatnonzero(sliding == 0)
@@ -94,14 +94,14 @@ class Friction:
             if len(stuck):
                 self._factorise(stuck)
                 traction[stuck] = self._solve((free - self._block @ traction)[stuck])
-            rest = free - self._block @ traction  # what slips on top
+            excess = free - self._block @ traction  # what slips on top
             breaks = (sliding == 0) & (np.abs(traction) > bound * (1.0 + 1e-12))
-            stops = sliding * rest < 0.0
+            stops = sliding * excess < 0.0
             if not (breaks.any() or stops.any()):
                 break
             if iteration > _WHOLE:
                 breaks, stops = _one(breaks, np.abs(traction) - bound), stops & ~breaks.any()
-                stops = _one(stops, -sliding * rest)
+                stops = _one(stops, -sliding * excess)
             sliding = np.where(breaks, np.sign(traction).astype(np.int64), np.where(stops, 0, sliding))
         else:
             raise ConvergenceError(f"the points that slip were not found after {_LIMIT} exchanges")
@@ -113,7 +113,7 @@ class Friction:
             ones = self._solve(np.ones(len(stuck)))
             by_place = float(ones.sum())
             by_load *= 1.0 - ones @ self._block[stuck]
-        moved = np.where(sliding == 0, 0.0, rest)
+        moved = np.where(sliding == 0, 0.0, excess)
         after[nodes] = slip[nodes] + moved
         return Traction(float(traction.sum()), by_place, by_load, after, float(traction @ moved), sliding)
 

@@ -189,7 +189,7 @@ class Solid:
 
     Attributes
     ----------
-    young [Pa], poisson, formulation : see ``raceway.core.revolution.body``; between points of a contact "full" converges
+    young, poisson, formulation : [Pa, -], see ``raceway.core.revolution.body``; between points of a contact "full" converges
         faster than "incompatible" (at 4 points along a semi-axis the peak pressure is 0.4 % low, not 0.7 %)
     bulk : size of elements far from the contacts [m]
     """
@@ -234,9 +234,9 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     neighbours = np.arange(1, balls // 2 + 1) * (count // balls)
     steps = np.concatenate([np.arange(columns), neighbours])
     load = dofs(section.race)
-    what = f"{'inner' if sense < 0.0 else 'outer'} ring, {count} x {len(section.quads)} elements, {rows} rows of points"
+    label = f"{'inner' if sense < 0.0 else 'outer'} ring, {count} x {len(section.quads)} elements, {rows} rows of points"
     full = cached_compliance(
-        what, section, count, ring.solid.young, ring.solid.poisson, load, load, steps, ring.solid.formulation, ring.seat
+        label, section, count, ring.solid.young, ring.solid.poisson, load, load, steps, ring.solid.formulation, ring.seat
     )
     normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial
     near = _projected(full[:columns], normal)

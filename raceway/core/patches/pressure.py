@@ -84,8 +84,8 @@ class Factor:
         if self._nodes is not None and np.array_equal(nodes, self._nodes):
             return
         joined = np.isin(nodes, self._base, assume_unique=True, invert=True)
-        left = np.isin(self._base, nodes, assume_unique=True, invert=True)
-        changed = int(joined.sum() + left.sum())
+        leaving = np.isin(self._base, nodes, assume_unique=True, invert=True)
+        changed = int(joined.sum() + leaving.sum())
         self._nodes = nodes.copy()
         if not len(self._base) or changed > max(2, _BORDER * len(nodes)):
             self._factorise(nodes)
@@ -93,17 +93,17 @@ class Factor:
         self._same = changed == 0
         if self._same:
             return
-        self._joined, self._left = np.flatnonzero(joined), np.flatnonzero(left)
-        self._kept, self._kept_base = np.flatnonzero(~joined), np.flatnonzero(~left)
+        self._joined, self._left = np.flatnonzero(joined), np.flatnonzero(leaving)
+        self._kept, self._kept_base = np.flatnonzero(~joined), np.flatnonzero(~leaving)
         new = nodes[self._joined]
         self._cross = self.block(self._base, new)
-        many = len(self._joined)
+        count = len(self._joined)
         sides = np.zeros((len(self._base), changed))
-        sides[:, :many] = self._cross
-        sides[self._left, many + np.arange(len(self._left))] = 1.0
+        sides[:, :count] = self._cross
+        sides[self._left, count + np.arange(len(self._left))] = 1.0
         self._reach = self._plain(sides)
         schur = -sides.T @ self._reach
-        schur[:many, :many] += self.block(new, new) + self._extra * np.eye(many)
+        schur[:count, :count] += self.block(new, new) + self._extra * np.eye(count)
         self._schur = schur
 
     def _factorise(self, nodes: np.ndarray) -> None:
@@ -200,16 +200,16 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     while count < _LIMIT:
         count += 1
         load, by_gap, by_rate = law(w, v)
-        rest = g + compliance @ load - w
-        now = float(np.abs(rest).max())
+        residual = g + compliance @ load - w
+        now = float(np.abs(residual).max())
         if now <= _TOLERANCE * depth:
             break
         active = np.flatnonzero(by_gap < 0.0)
         more = np.zeros(len(near))
         if len(active):
             lower = _factor(compliance, active, -by_gap[active])
-            more[active] = -cho_solve(lower, rest[active], check_finite=False)
-        step = rest + compliance @ more
+            more[active] = -cho_solve(lower, residual[active], check_finite=False)
+        step = residual + compliance @ more
         part = 1.0 if now < before else 0.5
         w = w + part * step
         before = now
@@ -316,7 +316,7 @@ class ContactState:
     along : (2, 2) what friction adds to ``stiffness``
     couple : of friction on the section of the ring, derivative of its work by the section's turn [N m]
     by_turn : (2,) minus the derivative of the force by that turn [N];  couple_by_place : (2,) [N];  couple_by_turn [N m]
-    gripped : tractions along the groove; None without friction
+    traction_state : tractions along the groove; None without friction
     normal : (2,) the part of ``force`` that pressures make, where there is friction [N]
     """
 
@@ -368,7 +368,7 @@ class Contact:
         self._gap = np.empty((patch.rows, patch.columns))
         self.iterations = 0
 
-    def press(self, place: np.ndarray, rate: np.ndarray, slipping: SlipState | None = None) -> ContactState:
+    def press(self, position: np.ndarray, rate: np.ndarray, slipping: SlipState | None = None) -> ContactState:
         """Solve for a place (2,) and a velocity (2,) of the ball's centre, seen from the groove's centre.
 
         Friction acts where ``slipping`` is given.
@@ -379,11 +379,11 @@ class Contact:
             Contact at the end of the patch, short of the groove's edge.
         """
         patch = self.patch
-        axial, radial = float(place[0]), float(place[1])
+        axial, radial = float(position[0]), float(position[1])
         sphere_in_torus(axial, radial, patch.geometry, patch.meridian, patch.parallel, self._gap)
         gap = self._gap.reshape(-1)
         if not (gap < 0.0).any():
-            return self._open(place, slipping)
+            return self._open(position, slipping)
         if self.law is None:
             nodes, load, count = active_set(gap, self._nodes, self._factor)
             solve = lambda right: self._factor.solve(nodes, right)  # noqa: E731
@@ -397,7 +397,7 @@ class Contact:
         self.iterations += count
         self._nodes = nodes
         if not len(nodes):
-            return self._open(place, slipping)
+            return self._open(position, slipping)
         slope, curved = self._derivatives(nodes, load, axial, radial)
         force = slope.T @ load
         carried = solve(slope)
@@ -405,9 +405,9 @@ class Contact:
         viscous = self._viscous(state, slope, carried)
         truncated = self._ends(nodes, force)
         normal = ContactState(force, stiffness, viscous, nodes, load, penetration, truncated)
-        return normal if slipping is None else self._rubbed(normal, place, slipping, -carried)
+        return normal if slipping is None else self._rubbed(normal, position, slipping, -carried)
 
-    def mean_stiffness(self, place: np.ndarray) -> np.ndarray:
+    def mean_stiffness(self, position: np.ndarray) -> np.ndarray:
         """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
 
         Notes
@@ -417,36 +417,36 @@ class Contact:
         that distance has no ripple.
         """
         pitch = self.patch.race.angle[1] - self.patch.race.angle[0]
-        kept = self._nodes, self._depth.copy()
+        memory = self._nodes, self._depth.copy()
         total = np.zeros((2, 2))
         for angle in pitch * ((np.arange(_PLACES) + 0.5) / _PLACES - 0.5):
             c, s = np.cos(angle), np.sin(angle)
             turn = np.array([[c, s], [-s, c]])
-            total += turn.T @ self.press(turn @ place, np.zeros(2)).stiffness @ turn
-        self._nodes, self._depth = kept
+            total += turn.T @ self.press(turn @ position, np.zeros(2)).stiffness @ turn
+        self._nodes, self._depth = memory
         return total / _PLACES
 
-    def _open(self, place: np.ndarray, slipping: SlipState | None) -> ContactState:
+    def _open(self, position: np.ndarray, slipping: SlipState | None) -> ContactState:
         self._nodes = _NONE
         zero = np.zeros((2, 2))
         open_ = ContactState(np.zeros(2), zero, zero, _NONE, np.zeros(0))
-        return open_ if slipping is None else self._rubbed(open_, place, slipping, np.zeros((0, 2)))
+        return open_ if slipping is None else self._rubbed(open_, position, slipping, np.zeros((0, 2)))
 
-    def along(self, place: np.ndarray, turn: float = 0.0) -> float:
+    def along(self, position: np.ndarray, turn: float = 0.0) -> float:
         """Place of the contact along the groove [m]: all points of the ball move so far over the race."""
         race = self.patch.race
-        angle = np.arctan2(race.sense * place[0], race.sense * place[1])
+        angle = np.arctan2(race.sense * position[0], race.sense * position[1])
         return float((race.groove - self.patch.ball.radius) * angle - (race.groove * turn if race.sense < 0.0 else 0.0))
 
     def _rubbed(
-        self, normal: ContactState, place: np.ndarray, slipping: SlipState, load_by_place: np.ndarray
+        self, normal: ContactState, position: np.ndarray, slipping: SlipState, load_by_place: np.ndarray
     ) -> ContactState:
         """With friction; load_by_place (n, 2): derivatives of the points' forces by the ball's place [N/m]."""
         assert self.friction is not None
         race = self.patch.race
-        traction_state = self.friction.pull(normal.nodes, normal.load, self.along(place, slipping.turn), slipping.slip)
-        length = float(np.hypot(*place))
-        n = race.sense * place / length
+        traction_state = self.friction.pull(normal.nodes, normal.load, self.along(position, slipping.turn), slipping.slip)
+        length = float(np.hypot(*position))
+        n = race.sense * position / length
         t = np.array([n[1], -n[0]])
         lever = (race.groove - self.patch.ball.radius) / length
         ahead = race.sense * lever * t  # derivative of the place along the groove by the ball's
@@ -540,7 +540,7 @@ class Reach:
     mean_load: float
     largest_load: float
 
-    def grown(self, left: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> Reach:
+    def grown(self, beyond: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> Reach:
         """One that holds a contact which left this one, by a clear step at least.
 
         Raises
@@ -548,19 +548,19 @@ class Reach:
         ConvergenceError
             A contact as large as the ball: what runs away is not meshed.
         """
-        load = max(self.largest_load, left.load) * (room if left.across else 1.0)
+        load = max(self.largest_load, beyond.load) * (room if beyond.across else 1.0)
         a, b = ellipse.semi_axes(load)
         if not max(a, b) < radius:
-            raise ConvergenceError(f"the balls run away from the races: {left}, on an ellipse as large as the ball")
-        old = self.inner if left.sense < 0.0 else self.outer
+            raise ConvergenceError(f"the balls run away from the races: {beyond}, on an ellipse as large as the ball")
+        old = self.inner if beyond.sense < 0.0 else self.outer
         half = AROUND * float(a) / radius + 3.0 * MARGIN
-        window = _rounded(min(old[0], left.angle - half), max(old[1], left.angle + half))
-        if not left.across and window == old:
+        window = _rounded(min(old[0], beyond.angle - half), max(old[1], beyond.angle + half))
+        if not beyond.across and window == old:
             window = (old[0] - 3.0 * MARGIN, old[1] + 3.0 * MARGIN)
         widest = max(self.widest, AROUND * float(b))
-        if left.across and widest == self.widest:
+        if beyond.across and widest == self.widest:
             widest *= room
-        inner, outer = (window, self.outer) if left.sense < 0.0 else (self.inner, window)
+        inner, outer = (window, self.outer) if beyond.sense < 0.0 else (self.inner, window)
         return Reach(inner, outer, widest, self.mean_load, load)
 
 
@@ -589,9 +589,9 @@ def reach_of(
         heaviest = max(float(load.max()), 1.0)
         a, b = ellipse.semi_axes(room * heaviest)
         carrying = load > 1e-3 * heaviest
-        known = angle[carrying] if carrying.any() else np.array([free])
+        angles = angle[carrying] if carrying.any() else np.array([free])
         half = AROUND * float(a) / radius + MARGIN
-        windows.append(_rounded(float(known.min()) - half, float(known.max()) + half))
+        windows.append(_rounded(float(angles.min()) - half, float(angles.max()) + half))
         widest, largest = max(widest, AROUND * float(b)), max(largest, heaviest)
     carrying = inner[1] > 0.1 * max(float(inner[1].max()), 1.0)
     mean = float(inner[1][carrying].mean()) if carrying.any() else largest

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 
 #: Columns before the slips: energy lost, number of velocities known, the last velocity, the one before, number of the patches.
-_LOST, _KNOWN, _LAST, _BEFORE, _GRID, _SLIP = range(6)
+_LOST, _VELOCITIES, _LAST, _BEFORE, _GRID, _SLIP = range(6)
 
 
 @attrs.frozen(eq=False)
@@ -51,13 +51,13 @@ class History:
     Attributes
     ----------
     lost : (2 Z,) energy that friction has taken [J]
-    known : 0 to 2;  last, before : (Z, 2) velocities of the balls [m/s]
+    velocities : 0 to 2, how many are known;  last, before : (Z, 2) velocities of the balls [m/s]
     grid : number of the patches on which the slips lie;  slip : (2 Z, points) [m], beyond the slip of the contact as a
         whole; without columns at first
     """
 
     lost: np.ndarray
-    known: int
+    velocities: int
     last: np.ndarray
     before: np.ndarray
     grid: int
@@ -70,46 +70,46 @@ class History:
             none = np.zeros((balls, 2))
             return cls(np.zeros(2 * balls), 0, none, none, 0, np.zeros((2 * balls, 0)))
         last, before = (memory[:, column].reshape(2, -1).T for column in (_LAST, _BEFORE))
-        return cls(memory[:, _LOST], int(memory[0, _KNOWN]), last, before, int(memory[0, _GRID]), memory[:, _SLIP:])
+        return cls(memory[:, _LOST], int(memory[0, _VELOCITIES]), last, before, int(memory[0, _GRID]), memory[:, _SLIP:])
 
     def slips(self, reference: np.ndarray, generations: list[tuple[Patch, Patch]]) -> list[np.ndarray]:
         """Of the points of every contact on the last of the patches [m]; reference (2 Z,): of the contacts as a whole."""
         balls, now, then = len(reference) // 2, generations[-1], generations[self.grid]
         out = []
-        for k, whole in enumerate(reference):
+        for k, contact_slip in enumerate(reference):
             patch, before = now[k // balls], then[k // balls]
             if not self.slip.shape[1]:
-                out.append(np.full(patch.rows * patch.columns, whole))
+                out.append(np.full(patch.rows * patch.columns, contact_slip))
             elif patch is before:
-                out.append(whole + self.slip[k, : patch.rows * patch.columns])
+                out.append(contact_slip + self.slip[k, : patch.rows * patch.columns])
             else:
-                out.append(whole + _resampled(self.slip[k, : before.rows * before.columns], before, patch))
+                out.append(contact_slip + _resampled(self.slip[k, : before.rows * before.columns], before, patch))
         return out
 
-    def with_inertia(self, given: AppliedLoads, mass: float, dt: float, gain: float, rate: np.ndarray) -> AppliedLoads:
+    def with_inertia(self, loads: AppliedLoads, mass: float, dt: float, gain: float, rate: np.ndarray) -> AppliedLoads:
         """With the force -m a of balls that move at gain * place + rate, a from the velocities before (BDF 2, at first BDF 1)."""
-        if not self.known:
-            return given
-        if self.known == 1:
-            to_v, rest = 1.0 / dt, -self.last / dt
+        if not self.velocities:
+            return loads
+        if self.velocities == 1:
+            to_v, history = 1.0 / dt, -self.last / dt
         else:
-            to_v, rest = 1.5 / dt, (0.5 * self.before - 2.0 * self.last) / dt
-        return attrs.evolve(given, push=-mass * (to_v * rate + rest), spring=mass * to_v * gain)
+            to_v, history = 1.5 / dt, (0.5 * self.before - 2.0 * self.last) / dt
+        return attrs.evolve(loads, push=-mass * (to_v * rate + history), spring=mass * to_v * gain)
 
     def after(
         self, velocity: np.ndarray | None, traction_state: list[Traction | None], reference: np.ndarray, grid: int = 0
     ) -> np.ndarray:
         """(2 Z, 5 + points) the memory when the step is accepted; velocity (Z, 2) of the balls, None in a series of equilibria."""
-        rubbed = [one for one in traction_state if one is not None]
-        points = max((len(one.slip) for one in rubbed), default=0)
+        rubbed = [traction for traction in traction_state if traction is not None]
+        points = max((len(traction.slip) for traction in rubbed), default=0)
         out = np.zeros((len(traction_state), _SLIP + points))
         out[:, _LOST], out[:, _GRID] = self.lost, grid
         if velocity is not None:
-            out[:, _KNOWN] = min(self.known + 1, 2)
+            out[:, _VELOCITIES] = min(self.velocities + 1, 2)
             out[:, _LAST], out[:, _BEFORE] = velocity.T.reshape(-1), self.last.T.reshape(-1)
-        for k, one in enumerate(rubbed):
-            out[k, _LOST] += one.lost
-            out[k, _SLIP : _SLIP + len(one.slip)] = one.slip - reference[k]
+        for k, traction in enumerate(rubbed):
+            out[k, _LOST] += traction.lost
+            out[k, _SLIP : _SLIP + len(traction.slip)] = traction.slip - reference[k]
         return out
 
 
@@ -149,7 +149,7 @@ class Row:
     where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
 
     def settle(
-        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, given: AppliedLoads | None = None
+        self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, loads: AppliedLoads | None = None
     ) -> tuple[np.ndarray, LinearisedBalls]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
 
@@ -161,16 +161,16 @@ class Row:
         if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():
             step, change = self.balls.move(self.last, (centre - self.centre).reshape(-1))
             try:
-                near = self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance, given)
+                near = self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance, loads)
                 return self._keep(centre, near)
             except ConvergenceError:
                 pass  # from the guess, then
-        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, given))
+        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, loads))
 
     def _keep(
-        self, centre: np.ndarray, found: tuple[np.ndarray, np.ndarray, LinearisedBalls]
+        self, centre: np.ndarray, solution: tuple[np.ndarray, np.ndarray, LinearisedBalls]
     ) -> tuple[np.ndarray, LinearisedBalls]:
-        self.centre, (self.where, self.force, self.last) = centre, found
+        self.centre, (self.where, self.force, self.last) = centre, solution
         return self.where, self.last
 
 
@@ -245,13 +245,13 @@ class Pool:
         out = np.zeros((2, z, 2, 2, z, 2))
         ball = np.arange(z)
         for component in (0, 1):
-            for here, there in ((0, 1), (1, 0)):
-                out[here, ball, component, there, ball, component] = -self.patches[0].ball.opposite
+            for side, opposite in ((0, 1), (1, 0)):
+                out[side, ball, component, opposite, ball, component] = -self.patches[0].ball.opposite
         for race, patch in enumerate(self.patches):
             for k in range(z):
                 first = k // row * row
-                for other in range(first, first + row):
-                    out[race, k, :, race, other, :] += patch.race.crossing[(k - other) % row]
+                for neighbour in range(first, first + row):
+                    out[race, k, :, race, neighbour, :] += patch.race.crossing[(k - neighbour) % row]
         return out.reshape(4 * z, 4 * z)
 
 
@@ -279,9 +279,9 @@ class PatchSystem(SteppedRing):
     pool: Pool
     ball_mass: float = 0.0
 
-    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> PatchSystem:
+    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> PatchSystem:
         """With the rigid ring of these balls."""
-        return attrs.evolve(super().of_balls(chosen, table), rigid=self.rigid.of_balls(chosen, table))
+        return attrs.evolve(super().of_balls(balls, table), rigid=self.rigid.of_balls(balls, table))
 
     @property
     def conservative(self) -> bool:
@@ -333,18 +333,18 @@ class PatchSystem(SteppedRing):
         moving = bool(v.any()) or ball_rate is not None
         rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
         turning = self._turning(t)
-        given = AppliedLoads(turning @ q, gyroscopic=self.gyroscopic)
+        loads = AppliedLoads(turning @ q, gyroscopic=self.gyroscopic)
         if with_friction and ball is not None:
-            given = attrs.evolve(given, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
+            loads = attrs.evolve(loads, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
         if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
-            given = history.with_inertia(given, self.ball_mass, dt, gain, ball_rate[:, :2])
-        where, now = row.settle(centre, where, rate, _BALLS, given)
+            loads = history.with_inertia(loads, self.ball_mass, dt, gain, ball_rate[:, :2])
+        where, now = row.settle(centre, where, rate, _BALLS, loads)
         answer = self._answer(row.balls, centre, jacobian, turning, where, rate, now)
-        known = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
+        ball_velocity = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
         after = history.after(
-            known,
-            [one.traction_state for one in now.contact_states],
+            ball_velocity,
+            [state.traction_state for state in now.contact_states],
             reference.T.reshape(-1),
             len(self.pool.generations) - 1,
         )
@@ -402,8 +402,8 @@ class PatchSystem(SteppedRing):
         turn = self._turning(t) @ q
         assert row.last is not None
         places = [
-            contact.along(seen, float(turn[k % self.ball_count]))
-            for k, (contact, seen) in enumerate(zip(row.balls.contacts, row.last.seen, strict=True))
+            contact.along(position, float(turn[k % self.ball_count]))
+            for k, (contact, position) in enumerate(zip(row.balls.contacts, row.last.relative, strict=True))
         ]
         return np.array(places).reshape(2, -1).T
 
@@ -415,15 +415,15 @@ class PatchSystem(SteppedRing):
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
         first = attrs.evolve(self.surrogate, load=self.load / parts)
-        place, ball, _ = first.settle(q)
+        q_part, ball, _ = first.settle(q)
         if not self.table[:, CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0
         for part in range(1, parts + 1):
-            task = partial(self._newton, place, ball, self.load * (part / parts), tolerance)
-            place, ball, count = self.pool.widened(task)
+            task = partial(self._newton, q_part, ball, self.load * (part / parts), tolerance)
+            q_part, ball, count = self.pool.widened(task)
             total += count
-        return place, ball, total
+        return q_part, ball, total
 
     def _newton(
         self, q: np.ndarray, ball: np.ndarray, load: np.ndarray, tolerance: float
@@ -439,10 +439,10 @@ class PatchSystem(SteppedRing):
         now = balls.linear(centre, where, force, still, AppliedLoads(turning @ q, gyroscopic=gyroscopic))
         weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
         limit = STEP * self.pool.diameter
-        chosen = self.free > 0.0
+        free = self.free > 0.0
         best = np.inf
         for iteration in range(1, _LIMIT + 1):
-            rest = jacobian.T @ balls.carried(now) + turning.T @ balls.couple(now) + self.stiffness @ q - load
+            imbalance = jacobian.T @ balls.carried(now) + turning.T @ balls.couple(now) + self.stiffness @ q - load
             out = jacobian.T @ now.force[: self.ball_count].reshape(-1) + turning.T @ now.couple + self.stiffness @ q - load
             size = max(float(np.abs(out * weight).max()), balls.residual(now))
             scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
@@ -455,7 +455,7 @@ class PatchSystem(SteppedRing):
             dq = np.zeros(5)
             matrix = self.reduced(tangent)
             matrix += 1e-12 * max(np.trace(matrix), 1.0) * np.eye(len(matrix))
-            dq[chosen] = np.linalg.solve(matrix, -rest[chosen])
+            dq[free] = np.linalg.solve(matrix, -imbalance[free])
             step, change = balls.move(now, jacobian @ dq)
             reach = max(float(np.abs(jacobian @ dq).max()), float(np.abs(step).max()))
             if not np.isfinite(reach):
@@ -463,16 +463,16 @@ class PatchSystem(SteppedRing):
             part = min(1.0, limit / max(reach, 1e-300))
             before = size
             for _ in range(6):
-                other_q = q + part * dq
-                centre, _, _ = self._groove(other_q, none, 0.0)
-                given = AppliedLoads(turning @ other_q, gyroscopic=gyroscopic)
-                other = balls.linear(centre, where + part * step, force + part * change, still, given)
-                out = jacobian.T @ other.force[: self.ball_count].reshape(-1) + turning.T @ other.couple
-                out += self.stiffness @ other_q - load
-                if max(float(np.abs(out * weight).max()), balls.residual(other)) < 2.0 * before:
+                trial_q = q + part * dq
+                centre, _, _ = self._groove(trial_q, none, 0.0)
+                loads = AppliedLoads(turning @ trial_q, gyroscopic=gyroscopic)
+                trial = balls.linear(centre, where + part * step, force + part * change, still, loads)
+                out = jacobian.T @ trial.force[: self.ball_count].reshape(-1) + turning.T @ trial.couple
+                out += self.stiffness @ trial_q - load
+                if max(float(np.abs(out * weight).max()), balls.residual(trial)) < 2.0 * before:
                     break
                 part *= 0.4
-            q, where, force, now = other_q, where + part * step, force + part * change, other
+            q, where, force, now = trial_q, where + part * step, force + part * change, trial
         raise ConvergenceError(
             f"no static equilibrium of the nodal contacts found after {_LIMIT} iterations, relative residual {relative:.1e}",
             {"q": q, "ball": where},
@@ -487,12 +487,12 @@ class PatchSystem(SteppedRing):
         self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
         now: LinearisedBalls,
     ) -> Evaluation:  # fmt: skip
-        force = now.force + now.rest  # of pressures, friction and gyroscopic moments
-        pressures = np.array([one.force if one.traction_state is None else one.normal for one in now.contact_states])
+        force = now.force + now.excess  # of pressures, friction and gyroscopic moments
+        pressures = np.array([state.force if state.traction_state is None else state.normal for state in now.contact_states])
         size = np.hypot(pressures[:, 0], pressures[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
-        for k, one in enumerate(now.contact_states):
-            block = one.viscous
+        for k, state in enumerate(now.contact_states):
+            block = state.viscous
             if self.scalars[DAMPING] > 0.0 and size[k] > 0.0:
                 normal = pressures[k] / size[k]
                 dashpot = self.scalars[DAMPING] * np.outer(normal, normal)
@@ -505,12 +505,12 @@ class PatchSystem(SteppedRing):
         along = balls.slip(now) @ jacobian
         inner = force[: self.ball_count]
         reach = np.concatenate([centre - where, where])
-        rest = np.repeat([self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]], self.ball_count)
+        first_touch = np.repeat([self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]], self.ball_count)
         return Evaluation(
             jacobian.T @ inner.reshape(-1) + turning.T @ now.couple,
             self._stiffness(balls, now, jacobian, turning),
             along.T @ viscous @ along,
-            rest - np.hypot(reach[:, 0], reach[:, 1]),
+            first_touch - np.hypot(reach[:, 0], reach[:, 1]),
             size,
             where,
             self.law_state.copy(),
@@ -564,9 +564,9 @@ class PatchSystem(SteppedRing):
     ) -> np.ndarray:
         """(2 Z, 2) velocities of the balls seen from both grooves; balls follow the ring where no rate is given."""
         if ball_rate is not None:
-            own = gain * where + ball_rate[:, :2]
+            ball = gain * where + ball_rate[:, :2]
         elif row.last is not None:
-            own = (row.balls.follow(row.last) @ velocity.reshape(-1)).reshape(-1, 2)
+            ball = (row.balls.follow(row.last) @ velocity.reshape(-1)).reshape(-1, 2)
         else:
-            own = self.table[:, [OUTER_SHARE]] * velocity
-        return np.concatenate([own - velocity, own])
+            ball = self.table[:, [OUTER_SHARE]] * velocity
+        return np.concatenate([ball - velocity, ball])

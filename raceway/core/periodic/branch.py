@@ -23,7 +23,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Path, Problem, Solved, Symmetry, gap, renew, rotations, stiff
-from raceway.core.periodic.floquet import NEUTRAL, Floquet, fate_of, transfer
+from raceway.core.periodic.floquet import NEUTRAL, Floquet, floquet_of, transfer
 from raceway.core.periodic.intervals import FORCE, IMBALANCE, Change, Eliminated, condense, imbalances, spread
 from raceway.core.periodic.refinement import Estimate, divided, estimate, resampled
 from raceway.errors import ConvergenceError
@@ -63,7 +63,7 @@ class Point:
 
     @cached_property
     def floquet(self) -> Floquet:
-        return fate_of(self.transfer, self.solved.problem.symmetry.span)
+        return floquet_of(self.transfer, self.solved.problem.symmetry.span)
 
 
 @attrs.define(eq=False)
@@ -164,15 +164,17 @@ class Branch:
         moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
         path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
-        found = self._estimate(last, tangent)
+        estimated = self._estimate(last, tangent)
         for _ in range(4):
-            if found.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
+            if estimated.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
                 break
-            parts = np.where((found.defect > 0.1 * found.defect.max()) | (found.between > 0.1 * found.between.max()), 2, 1)
+            parts = np.where(
+                (estimated.defect > 0.1 * estimated.defect.max()) | (estimated.between > 0.1 * estimated.between.max()), 2, 1
+            )
             nodes, parent = divided(path.nodes, parts)
             finer = resampled(last.problem, path, nodes, parent)
             path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
-            found = self._estimate(last, tangent)
+            estimated = self._estimate(last, tangent)
         # Back where it came from: a corrector that turned round.
         if float(tangent @ here.tangent) < 0.5:
             raise ConvergenceError("the branch bends too much for the step")
@@ -182,11 +184,13 @@ class Branch:
         free = last.problem.free
         state = np.concatenate([(path.q[0] - moved.q[0])[free], (path.v[0] - moved.v[0])[free]]) / self.length
         strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
-        return Point(parameter, last, found.error, tangent, folded, deviation, strayed, self._order(last, parameter))
+        return Point(parameter, last, estimated.error, tangent, folded, deviation, strayed, self._order(last, parameter))
 
     def crossing(self, point: Point) -> float:
         """Determinant of the bordered problem, which changes its sign where another branch crosses, and not at a fold."""
-        return float(np.linalg.det(self._bordered(point.solved.problem, point.solved.eliminated.whole, point.tangent)))
+        return float(
+            np.linalg.det(self._bordered(point.solved.problem, point.solved.eliminated.span_transfer, point.tangent))
+        )
 
     def displacement(self, point: Point) -> np.ndarray:
         """(2 n,) of the unknown state at the start of the span, by a unit of length along the branch."""
@@ -197,15 +201,15 @@ class Branch:
 
     def _estimate(self, solved: Solved, tangent: np.ndarray) -> Estimate:
         """The error across the branch, which has a value at folds too."""
-        bordered = self._bordered(solved.problem, solved.eliminated.whole, tangent)
+        bordered = self._bordered(solved.problem, solved.eliminated.span_transfer, tangent)
         return estimate(solved, lambda end: np.linalg.solve(bordered, np.append(end, 0.0))[:-1])
 
-    def _bordered(self, problem: Problem, whole: np.ndarray, across: np.ndarray) -> np.ndarray:
+    def _bordered(self, problem: Problem, span_transfer: np.ndarray, across: np.ndarray) -> np.ndarray:
         """(2 n + 1, 2 n + 1) of the closing condition in scaled state and parameter, ``across`` as its last row."""
         n2 = 2 * len(problem.free)
         out = np.empty((n2 + 1, n2 + 1))
-        out[:n2, :n2] = problem.closing - whole[:, :n2]
-        out[:n2, n2] = -whole[:, n2 + 1] * self.unit / self.length
+        out[:n2, :n2] = problem.closing - span_transfer[:, :n2]
+        out[:n2, n2] = -span_transfer[:, n2 + 1] * self.unit / self.length
         out[n2] = across
         return out
 
@@ -217,8 +221,8 @@ class Branch:
         else:
             by = self._difference(problem, path, parameter)
         out, report = problem.eliminated(path.nodes), np.zeros(3)
-        done = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
-        return (out, report) if done == path.intervals and np.isfinite(report).all() else None
+        condensed = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
+        return (out, report) if condensed == path.intervals and np.isfinite(report).all() else None
 
     def _difference(self, problem: Problem, path: Path, parameter: float) -> np.ndarray:
         """By the parameter: central, at the end of what it may be to one side."""
@@ -228,10 +232,10 @@ class Branch:
                 sides.append((off, self.problem_at(parameter + off)))
             except ConvergenceError:
                 sides.append((0.0, problem))
-        (low, one), (high, two) = sides
+        (low, before), (high, after) = sides
         if low == high:
             self.problem_at(parameter + h)  # why there is none on either side
-        return (self._imbalance(two, path) - self._imbalance(one, path)) / (high - low)
+        return (self._imbalance(after, path) - self._imbalance(before, path)) / (high - low)
 
     def _imbalance(self, problem: Problem, path: Path) -> np.ndarray:
         push = problem.push(path.nodes)
@@ -254,20 +258,20 @@ class Branch:
             if linearised is None:
                 raise ConvergenceError("the balls find no place between the races")
             linear, report = linearised
-            whole = linear.whole
-            bordered = self._bordered(problem, whole, across)
+            span_transfer = linear.span_transfer
+            bordered = self._bordered(problem, span_transfer, across)
             right = np.zeros((2 * n + 1, 2))
-            right[: 2 * n, 0] = (whole[:, 2 * n] + gap(problem, path)) / self.length
+            right[: 2 * n, 0] = (span_transfer[:, 2 * n] + gap(problem, path)) / self.length
             right[2 * n, 1] = 1.0
             if predicted is not None:
                 off = np.concatenate([(path.q[0] - predicted[0].q[0])[free], (path.v[0] - predicted[0].v[0])[free]])
                 right[2 * n, 0] = -across[: 2 * n] @ off / self.length
                 right[2 * n, 0] -= across[-1] * (parameter - predicted[1]) / self.unit
             try:
-                found = np.linalg.solve(bordered, right)
+                solution = np.linalg.solve(bordered, right)
             except np.linalg.LinAlgError as why:
                 raise ConvergenceError("the branch has no single direction here") from why
-            first, dp = self.length * found[: 2 * n, 0], self.unit * found[2 * n, 0]
+            first, dp = self.length * solution[: 2 * n, 0], self.unit * solution[2 * n, 0]
             dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
             spread(free, linear, first, dp, Change(dq, dv, da))
             correction = float(np.abs(dq / problem.weight).max())
@@ -280,27 +284,27 @@ class Branch:
             parameter += dp
             renew(problem, path, lagging)
             size = float(np.abs(path.v / problem.weight).max())
-            place = float(np.abs(path.q / problem.weight).max())
-            if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * place:
-                tangent = found[:, 1] / np.linalg.norm(found[:, 1])
+            displacement = float(np.abs(path.q / problem.weight).max())
+            if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * displacement:
+                tangent = solution[:, 1] / np.linalg.norm(solution[:, 1])
                 solved = Solved(problem, path, linear, size, True, sweeps, correction)
                 return path, parameter, tangent, solved
         raise ConvergenceError("the corrector does not converge")
 
 
-def towards(one: Point, two: Point, wanted: float) -> Path:
+def towards(before: Point, after: Point, parameter: float) -> Path:
     """The path at one parameter between two points, or of the second one where their meshes differ."""
-    path = two.solved.path
-    if one.solved.path.intervals == path.intervals and np.array_equal(one.solved.path.nodes, path.nodes):
-        part = (wanted - one.parameter) / (two.parameter - one.parameter)
-        path = between(one.solved.path, path, part)
+    path = after.solved.path
+    if before.solved.path.intervals == path.intervals and np.array_equal(before.solved.path.nodes, path.nodes):
+        part = (parameter - before.parameter) / (after.parameter - before.parameter)
+        path = between(before.solved.path, path, part)
     return path
 
 
-def between(one: Path, two: Path, part: float) -> Path:
+def between(first: Path, second: Path, part: float) -> Path:
     """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
     names = ("q", "v", "a", "ball", "rate")
-    return attrs.evolve(two, **{x: (1.0 - part) * getattr(one, x) + part * getattr(two, x) for x in names})
+    return attrs.evolve(second, **{x: (1.0 - part) * getattr(first, x) + part * getattr(second, x) for x in names})
 
 
 def twice(symmetry: Symmetry) -> Symmetry:
@@ -382,7 +386,7 @@ class Special:
     angle: float | None = None
 
 
-def special_points(branch: Branch, one: Point, two: Point, size: float) -> list[Special]:
+def special_points(branch: Branch, start: Point, end: Point, size: float) -> list[Special]:
     """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds.
 
     Notes
@@ -403,34 +407,34 @@ def special_points(branch: Branch, one: Point, two: Point, size: float) -> list[
     Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), sections 5.3, 7.4; Kuznetsov, Elements of Applied
     Bifurcation Theory (1998), section 10.2.
     """
-    found = []
+    specials = []
     for kind, test in ((FOLD, _fold), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
-        if test(one) * test(two) < 0.0:
-            found.append(Special(kind, *located(branch, one, two, size, test)))
-    before, after = _outside(one), _outside(two)
+        if test(start) * test(end) < 0.0:
+            specials.append(Special(kind, *located(branch, start, end, size, test)))
+    before, after = _outside(start), _outside(end)
     by_pairs = after[1] - before[1]
-    if abs(by_pairs) >= 2 and abs(sum(after) - sum(before) - by_pairs) <= len(found):
+    if abs(by_pairs) >= 2 and abs(sum(after) - sum(before) - by_pairs) <= len(specials):
         count = min(before[1], after[1])
-        point, length = located(branch, one, two, size, lambda at: _pair(at, count))
+        point, length = located(branch, start, end, size, lambda at: _pair(at, count))
         critical = point.floquet.of_span
         pairs = critical[np.abs(critical.imag) > 1e-6]
-        found.append(Special(PAIR, point, length, float(abs(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))])))))
-    return found
+        specials.append(Special(PAIR, point, length, float(abs(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))])))))
+    return specials
 
 
-def located(branch: Branch, one: Point, two: Point, size: float, test: Test) -> tuple[Point, float]:
+def located(branch: Branch, start: Point, end: Point, size: float, test: Test) -> tuple[Point, float]:
     """Where a function of the points is zero between two neighbours at which its signs differ, and the length of the step to it."""
     from scipy.optimize import brentq
 
-    known = {0.0: one, size: two}
+    points = {0.0: start, size: end}
 
     def value(length: float) -> float:
-        if length not in known:
-            known[length] = branch.step(one, length)
-        return test(known[length])
+        if length not in points:
+            points[length] = branch.step(start, length)
+        return test(points[length])
 
     length = brentq(value, 0.0, size, xtol=_CLOSE * size, rtol=1e-12)
-    return known[length], length
+    return points[length], length
 
 
 def _fold(point: Point) -> float:
@@ -443,14 +447,14 @@ def _doubling(point: Point) -> float:
 
 def _outside(point: Point) -> tuple[int, int]:
     """How many multipliers of a turn lie outside the unit circle: real ones, and ones of pairs."""
-    fate = point.floquet
-    outside = fate.of_span[np.abs(fate.of_span) > 1.0 + NEUTRAL]
+    floquet = point.floquet
+    outside = floquet.of_span[np.abs(floquet.of_span) > 1.0 + NEUTRAL]
     complex_ones = int((np.abs(outside.imag) > 1e-6 * np.abs(outside)).sum())
     return len(outside) - complex_ones, complex_ones
 
 
 def _pair(point: Point, count: int) -> float:
     """How far the largest pair but ``count`` multipliers is outside."""
-    found = point.floquet.of_span
-    sizes = np.sort(np.abs(found[np.abs(found.imag) > 1e-6 * np.abs(found)]))[::-1]
+    multipliers = point.floquet.of_span
+    sizes = np.sort(np.abs(multipliers[np.abs(multipliers.imag) > 1e-6 * np.abs(multipliers)]))[::-1]
     return float(sizes[count] - 1.0 - NEUTRAL) if len(sizes) > count else -1.0

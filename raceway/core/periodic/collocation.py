@@ -179,14 +179,14 @@ def one_pitch(system: System, speed: float, q: np.ndarray) -> Symmetry | None:
         if sense == cage:
             continue
         span = 2.0 * np.pi / count / abs(sense - cage)
-        found = Symmetry(span, rotations(np.array([sense * span]))[0], sense * span, np.arange(len(table)), True)
-        if not _forces_turn(system, found, speed):
+        symmetry = Symmetry(span, rotations(np.array([sense * span]))[0], sense * span, np.arange(len(table)), True)
+        if not _forces_turn(system, symmetry, speed):
             continue
         order = _order(direction, list(rows.values()), -np.sign(sense - cage) * 2.0 * np.pi / count)
         if order is None:
             return None
-        found = attrs.evolve(found, order=order)
-        return found if _bodies_turn(system, found, speed, q) else None
+        symmetry = attrs.evolve(symmetry, order=order)
+        return symmetry if _bodies_turn(system, symmetry, speed, q) else None
     return None
 
 
@@ -202,18 +202,18 @@ def _order(direction: np.ndarray, rows: list[list[int]], by: float) -> np.ndarra
     return order
 
 
-def _forces_turn(system: System, found: Symmetry, speed: float) -> bool:
+def _forces_turn(system: System, symmetry: Symmetry, speed: float) -> bool:
     """Whether the force one span later is the force now, turned."""
     times = np.array([0.0, 0.37, 1.9]) / speed
     push = np.empty((6, 5))
-    forces(system.force, system.force_params, np.concatenate([times, times + found.span / speed]), push)
+    forces(system.force, system.force_params, np.concatenate([times, times + symmetry.span / speed]), push)
     push *= system.free
-    return bool(np.abs(push[3:] - push[:3] @ found.rotation.T).max() <= _SAME * np.abs(push).max())
+    return bool(np.abs(push[3:] - push[:3] @ symmetry.rotation.T).max() <= _SAME * np.abs(push).max())
 
 
-def _bodies_turn(system: System, found: Symmetry, speed: float, q: np.ndarray) -> bool:
+def _bodies_turn(system: System, symmetry: Symmetry, speed: float, q: np.ndarray) -> bool:
     """Whether mass, damping, shaft and contacts answer a turned motion with turned forces."""
-    turn, free = found.rotation, system.free
+    turn, free = symmetry.rotation, system.free
     linear = np.array([system.mass, system.damping, system.stiffness, np.diag(free)])
     apart = np.abs(turn @ linear - linear @ turn).max(axis=(1, 2))
     if (apart > 1e-12 * np.abs(linear).max(axis=(1, 2))).any():
@@ -225,14 +225,14 @@ def _bodies_turn(system: System, found: Symmetry, speed: float, q: np.ndarray) -
     v = 0.3 * speed * off[[0, 2, 1, 4, 3]]
     z = system.ball_count
     ball, gap, load = np.zeros((2, z, system.ball_columns)), np.empty((2, 2 * z)), np.empty((2, 2 * z))
-    times = np.array([0.0, found.span / speed])
+    times = np.array([0.0, symmetry.span / speed])
     states = States(times, np.array([state, turn @ state]), np.array([v, turn @ v]), ball, np.zeros_like(ball))
     if contacts(system.compiled_forces, system.law_state, states, gap, load) < 2:
         return False
     # Forces, gaps and places of all balls are what the ring's force is made of.
-    both = np.concatenate([found.order, found.order + z])
-    pairs = ((ball[0], ball[1], found.order), (gap[0], gap[1], both), (load[0], load[1], both))
-    return all(np.abs(two - one[order]).max() <= _SAME * np.abs(one).max() for one, two, order in pairs)
+    both = np.concatenate([symmetry.order, symmetry.order + z])
+    pairs = ((ball[0], ball[1], symmetry.order), (gap[0], gap[1], both), (load[0], load[1], both))
+    return all(np.abs(second - first[order]).max() <= _SAME * np.abs(first).max() for first, second, order in pairs)
 
 
 @attrs.frozen(eq=False)
@@ -385,11 +385,11 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
     rated = problem.system.rated_columns
-    wanted = derivative(problem, path)
+    rates = derivative(problem, path)
     if solved:
         old = path.rate[:, :, rated]
-        wanted = old + _solve(problem, path, wanted - old)
-    path.rate[:, :, rated] = wanted
+        rates = old + _solve(problem, path, rates - old)
+    path.rate[:, :, rated] = rates
 
 
 def between(problem: Problem, path: Path) -> np.ndarray:
@@ -429,40 +429,40 @@ def _lags(problem: Problem, path: Path) -> np.ndarray:
     """T (m s, Z, r, r) [s]: places by rates."""
     columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
     here, *moved = _places(problem, path, np.arange(len(path.a)), [[], *columns])
-    return np.stack([(one - here) / _step(problem, path) for one in moved], axis=-1)
+    return np.stack([(balls - here) / _step(problem, path) for balls in moved], axis=-1)
 
 
 def _step(problem: Problem, path: Path) -> float:
     return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
 
 
-def _places(problem: Problem, path: Path, chosen: np.ndarray, moved: list[list[int]]) -> list[np.ndarray]:
+def _places(problem: Problem, path: Path, samples: np.ndarray, moved: list[list[int]]) -> list[np.ndarray]:
     """Columns (n, Z, r) of the balls at some of the Gauss points, for each set of columns with the rates of that set moved."""
     system, rule = problem.system, problem.rule
     s, rated = len(rule.points), system.rated_columns
-    k, i = chosen // s, chosen % s
+    k, i = samples // s, samples % s
     h, a = np.diff(path.nodes)[k, None], path.a.reshape(path.intervals, s, 5)[k]
     q = path.q[k] + rule.points[i, None] * h * path.v[k] + h**2 * np.einsum("ns,nsc->nc", rule.position[i], a)
     v = (path.v[k] + h * np.einsum("ns,nsc->nc", rule.velocity[i], a)) * problem.speed
     times = (path.nodes[k] + rule.points[i] * h[:, 0]) / problem.speed
-    gap, force = np.empty((2, len(chosen), 2 * system.ball_count))
-    found = []
+    gap, force = np.empty((2, len(samples), 2 * system.ball_count))
+    places = []
     for columns in moved:
-        ball, rate = path.ball[chosen].copy(), path.rate[chosen].copy()
+        ball, rate = path.ball[samples].copy(), path.rate[samples].copy()
         rate[:, :, columns] += _step(problem, path)
-        done = contacts(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), gap, force)
-        if done < len(chosen):
-            raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
-        found.append(ball[:, :, rated])
-    return found
+        evaluated = contacts(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), gap, force)
+        if evaluated < len(samples):
+            raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
+        places.append(ball[:, :, rated])
+    return places
 
 
-def _solve(problem: Problem, path: Path, rest: np.ndarray) -> np.ndarray:
+def _solve(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
     """(I - D T)^-1 of a residual (m s, Z, r), all balls of a span together: one goes on where another one ends."""
     from scipy.sparse import bsr_array, eye_array
     from scipy.sparse.linalg import splu
 
-    n, z, r = rest.shape
+    n, z, r = residual.shape
     s, order = len(problem.rule.points), problem.symmetry.order
     lags, weights = _lags(problem, path), problem.speed * _weights(problem.rule, path.nodes)
     back = np.argsort(order)
@@ -473,8 +473,8 @@ def _solve(problem: Problem, path: Path, rest: np.ndarray) -> np.ndarray:
     blocks = -weights[None, :, :, None, None] * lags[at, whose]
     row = np.arange(z * n + 1) * (s + 4)
     matrix = bsr_array((blocks.reshape(-1, r, r), (whose * n + at).ravel(), row), shape=(z * n * r, z * n * r))
-    found = splu((matrix + eye_array(z * n * r)).tocsc()).solve(rest.swapaxes(0, 1).ravel())
-    return found.reshape(z, n, r).swapaxes(0, 1)
+    solution = splu((matrix + eye_array(z * n * r)).tocsc()).solve(residual.swapaxes(0, 1).ravel())
+    return solution.reshape(z, n, r).swapaxes(0, 1)
 
 
 #: Turns of motion and rates, and the change over the motion's size that rounding may leave.
@@ -507,8 +507,8 @@ class Solved:
 
         Much of a motion of picometres.
         """
-        place = ROUNDING * float(np.abs(self.path.q / self.problem.weight).max())
-        return max(place, self.correction) / max(self.size, 1e-300)
+        displacement = ROUNDING * float(np.abs(self.path.q / self.problem.weight).max())
+        return max(displacement, self.correction) / max(self.size, 1e-300)
 
 
 def gap(problem: Problem, path: Path) -> np.ndarray:
@@ -538,13 +538,13 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
         return _newton(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))
     sweeps, change = 0, np.inf
     for turn in range(_RATES):
-        found = _newton(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
-        sweeps += found.sweeps
-        last, change = change, float(np.abs((found.path.q - path.q) / problem.weight).max())
-        path = found.path
-        enough = 10.0 * max(tolerance, found.rounding) * found.size
-        if turn > 0 and (change <= enough or (change >= last and change <= _LEFT * found.size)):
-            return attrs.evolve(found, sweeps=sweeps)
+        solved = _newton(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
+        sweeps += solved.sweeps
+        last, change = change, float(np.abs((solved.path.q - path.q) / problem.weight).max())
+        path = solved.path
+        enough = 10.0 * max(tolerance, solved.rounding) * solved.size
+        if turn > 0 and (change <= enough or (change >= last and change <= _LEFT * solved.size)):
+            return attrs.evolve(solved, sweeps=sweeps)
         problem.watch()
         renew(problem, path, True)
     raise ConvergenceError(
@@ -558,12 +558,12 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
     """The compiled iteration; ``rated``: columns of the balls whose rates are put in after every sweep."""
     eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
-    found = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
+    solution = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
     closure, limits = (
         Closure(problem.closing, problem.symmetry.order, rated),
         Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience),
     )
-    samples = found.samples(problem.push(path.nodes))
+    samples = solution.samples(problem.push(path.nodes))
     status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(
@@ -576,7 +576,7 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
         )
     return Solved(
         problem,
-        found,
+        solution,
         eliminated,
         float(report[SIZE]),
         report[SHORTENED] == 0.0,

@@ -86,16 +86,16 @@ def floquet(solved: Solved, highest: float = 0.0) -> Floquet:
     The rates of the balls are taken as they are along the motion.  That leaves the phases as they are, and the decay that the
     contacts' dashpots bring off by the difference of the races' compliances over their sum (2 % of the decay for B7206C).
     """
-    return fate_of(transfer(solved, highest), solved.problem.symmetry.span)
+    return floquet_of(transfer(solved, highest), solved.problem.symmetry.span)
 
 
 def transfer(solved: Solved, highest: float = 0.0) -> np.ndarray:
     """(2 n, 2 n) of a disturbance of the state over a span, turned back; ``highest`` as of ``floquet``."""
-    whole = solved.eliminated.whole if highest == 0.0 else _finer(solved, highest)
-    return np.asarray(solved.problem.closing.T @ whole[:, : 2 * len(solved.problem.free)])
+    span_transfer = solved.eliminated.span_transfer if highest == 0.0 else _finer(solved, highest)
+    return np.asarray(solved.problem.closing.T @ span_transfer[:, : 2 * len(solved.problem.free)])
 
 
-def fate_of(over: np.ndarray, span: float) -> Floquet:
+def floquet_of(over: np.ndarray, span: float) -> Floquet:
     """Multipliers of a transfer over a span [rad]."""
     over_span = np.linalg.eigvals(over).astype(complex)
     over_turn = over_span ** (2.0 * np.pi / span)
@@ -108,9 +108,9 @@ def _finer(solved: Solved, highest: float) -> np.ndarray:
     problem, path = solved.problem, solved.path
     parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
     if parts.max() <= 1:
-        return solved.eliminated.whole
+        return solved.eliminated.span_transfer
     path = resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))
     out, samples = problem.eliminated(path.nodes), path.samples(problem.push(path.nodes))
     if condense(problem.equations, problem.mesh(path.nodes), samples, out, np.zeros(3)) < path.intervals:
         raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
-    return out.whole
+    return out.span_transfer

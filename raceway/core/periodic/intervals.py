@@ -75,11 +75,11 @@ class Samples(NamedTuple):
 
 
 class Eliminated(NamedTuple):
-    """stages (m s n, 2 n + 2): S_y, S_r, S_p; transfer (m 2 n, 2 n + 2): T_y, T_r, T_p; whole (2 n, 2 n + 2): all intervals'."""
+    """stages (m s n, 2 n + 2): S_y, S_r, S_p; transfer (m 2 n, 2 n + 2): T_y, T_r, T_p; span_transfer (2 n, 2 n + 2): of all intervals."""
 
     stages: np.ndarray
     transfer: np.ndarray
-    whole: np.ndarray
+    span_transfer: np.ndarray
 
 
 class Change(NamedTuple):
@@ -233,9 +233,9 @@ def transfer_of(equations, mesh, samples, k, local, report):
 @jit(void(LOCAL, int64, ELIMINATED, MATRIX))
 def carry_on(local, k, eliminated, product):
     """Keep what interval k leaves, and multiply the transfer of those before by its own; ``product`` is scratch."""
-    stages, transfer, whole = eliminated
+    stages, transfer, span_transfer = eliminated
     size = local.block.shape[0]
-    states, columns = whole.shape[0], whole.shape[1]
+    states, columns = span_transfer.shape[0], span_transfer.shape[1]
     for i in range(size):
         for j in range(columns):
             stages[k * size + i, j] = local.block[i, size + j]
@@ -244,15 +244,15 @@ def carry_on(local, k, eliminated, product):
             transfer[k * states + i, j] = local.transfer[i, j]
             total = local.transfer[i, j] if j >= states else 0.0
             for p in range(states):
-                total += local.transfer[i, p] * whole[p, j]
+                total += local.transfer[i, p] * span_transfer[p, j]
             product[i, j] = total
-    copy_matrix(product, whole)
+    copy_matrix(product, span_transfer)
 
 
 @jit(int64(EQUATIONS, MESH, SAMPLES, ELIMINATED, VECTOR), allocates=True)
 def condense(equations, mesh, samples, eliminated, report):
     """Linearise and eliminate interval by interval; the number of intervals done, less than m at a failure."""
-    forces, whole = equations.forces, eliminated.whole
+    forces, span_transfer = equations.forces, eliminated.span_transfer
     constants = forces.constants
     m, s, n = mesh.nodes.size - 1, mesh.rule.shape[1], equations.free.size
     size, columns = s * n, 2 * n + 2
@@ -264,7 +264,7 @@ def condense(equations, mesh, samples, eliminated, report):
     report[IMBALANCE], report[JUMP], report[FORCE] = 0.0, 0.0, 0.0
     for i in range(2 * n):
         for j in range(columns):
-            whole[i, j] = 1.0 if i == j else 0.0
+            span_transfer[i, j] = 1.0 if i == j else 0.0
     for k in range(m):
         for i in range(s):
             at = k * s + i
@@ -290,13 +290,13 @@ def imbalances(equations, mesh, samples, out):
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
     contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
-    q, v, place = np.empty(5), np.empty(5), np.empty((constants.table.shape[0], samples.ball.shape[2]))
+    q, v, ball = np.empty(5), np.empty(5), np.empty((constants.table.shape[0], samples.ball.shape[2]))
     for k in range(m):
         for i in range(s):
             at = k * s + i
             t = state_at(mesh, samples, k, i, equations.speed, q, v)
-            copy_matrix(samples.ball[at], place)
-            if forces.system(t, q, v, Balls(place, 0.0, samples.rate[at]), contacts, constants, response) != 0:
+            copy_matrix(samples.ball[at], ball)
+            if forces.system(t, q, v, Balls(ball, 0.0, samples.rate[at]), contacts, constants, response) != 0:
                 return k
             for c in range(5):
                 out[at, c] = left_over(equations, samples, at, c, q, v, response.f)
@@ -443,7 +443,7 @@ def try_between(equations, excitation, inverse, mesh, tried, samples, defect):
     response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
     contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
     q, v, push, acceleration = np.empty(5), np.empty(5), np.empty(5), np.empty(n)
-    place = np.empty((constants.table.shape[0], samples.ball.shape[2]))
+    ball = np.empty((constants.table.shape[0], samples.ball.shape[2]))
     for k in range(m):
         h = mesh.nodes[k + 1] - mesh.nodes[k]
         for i in range(2 * n):
@@ -456,8 +456,8 @@ def try_between(equations, excitation, inverse, mesh, tried, samples, defect):
         for i in range(e):
             u = tried[2 * e + 2, i]
             t = state_at(trial, samples, k, i, equations.speed, q, v)
-            copy_matrix(samples.ball[k * s + min(s - 1, int64(u * s))], place)
-            if forces.system(t, q, v, Balls(place, 0.0, samples.rate[k * e + i]), contacts, constants, response) != 0:
+            copy_matrix(samples.ball[k * s + min(s - 1, int64(u * s))], ball)
+            if forces.system(t, q, v, Balls(ball, 0.0, samples.rate[k * e + i]), contacts, constants, response) != 0:
                 return k
             excitation.force((mesh.nodes[k] + u * h) / excitation.clock, excitation.params, push)
             for c in range(5):
@@ -532,15 +532,15 @@ def move(samples, change, factor):
 
 
 @jit(boolean(EQUATIONS, MATRIX, MATRIX, SAMPLES, MATRIX, VECTOR))
-def first_state(equations, rotation, whole, samples, close, first):
+def first_state(equations, rotation, span_transfer, samples, close, first):
     """first (2 n,): correction of the state at the start with which the span closes; False where it has none."""
     free = equations.free
     n, m, q, v = free.size, samples.q.shape[0] - 1, samples.q, samples.v
     # A path that was put together from others may not end where it begins: that is corrected with the rest.
     for i in range(2 * n):
-        close[i, 2 * n] = whole[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
+        close[i, 2 * n] = span_transfer[i, 2 * n] + (q[m, free[i]] if i < n else v[m, free[i - n]])
         for j in range(2 * n):
-            close[i, j] = rotation[i, j] - whole[i, j]
+            close[i, j] = rotation[i, j] - span_transfer[i, j]
             close[i, 2 * n] -= rotation[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
     if not eliminate(close, 2 * n, 1):
         return False
@@ -552,13 +552,13 @@ def first_state(equations, rotation, whole, samples, close, first):
 @jit(types.UniTuple(float64, 3)(VECTOR, SAMPLES, CHANGE))
 def sizes(weight, samples, change):
     """Largest correction of a displacement, derivative by the angle, and displacement [m]; tilts as lengths."""
-    correction, size, place = 0.0, 0.0, 0.0
+    correction, size, displacement = 0.0, 0.0, 0.0
     for k in range(samples.q.shape[0]):
         for c in range(5):
             correction = max(correction, abs(change.q[k, c]) / weight[c])
             size = max(size, abs(samples.v[k, c]) / weight[c])
-            place = max(place, abs(samples.q[k, c]) / weight[c])
-    return correction, size, place
+            displacement = max(displacement, abs(samples.q[k, c]) / weight[c])
+    return correction, size, displacement
 
 
 @jit(void(MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
@@ -596,26 +596,26 @@ def newton(equations, closure, mesh, samples, limits, eliminated, report):
     factor, worst, halvings, fine = 1.0, np.inf, 0, 0
     for sweep in range(1, limits.sweeps + 1):
         report[SWEEPS] = sweep
-        done = condense(equations, mesh, samples, eliminated, noted)
+        condensed = condense(equations, mesh, samples, eliminated, noted)
         # The accelerations of a first guess are rough: its imbalance tells nothing.
-        if done < m or (sweep > 2 and noted[IMBALANCE] > 2.0 * worst and noted[IMBALANCE] > 1e-9 * noted[FORCE]):
+        if condensed < m or (sweep > 2 and noted[IMBALANCE] > 2.0 * worst and noted[IMBALANCE] > 1e-9 * noted[FORCE]):
             report[SHORTENED] = 1.0
             halvings += 1
             if sweep == 1 or halvings > limits.patience:
-                return BALLS_FAILED if done < m else STALLED
+                return BALLS_FAILED if condensed < m else STALLED
             factor *= 0.5
             move(samples, change, -factor)
             copy_cube(safe, samples.ball)
             continue
         worst, halvings = noted[IMBALANCE], 0
         report[WORST_IMBALANCE] = worst
-        if not first_state(equations, closure.rotation, eliminated.whole, samples, close, first):
+        if not first_state(equations, closure.rotation, eliminated.span_transfer, samples, close, first):
             return SINGULAR
         spread(equations.free, eliminated, first, 0.0, change)
         if sweep > 1:
             factor = min(1.0, 2.0 * factor)
         move(samples, change, factor)
-        correction, size, place = sizes(equations.weight, samples, change)
+        correction, size, displacement = sizes(equations.weight, samples, change)
         report[CORRECTION], report[SIZE] = correction, size
         if not np.isfinite(correction):
             return SINGULAR
@@ -624,6 +624,6 @@ def newton(equations, closure, mesh, samples, limits, eliminated, report):
         if factor < 1.0 or sweep == 1:
             continue
         fine = fine + 1 if correction <= 1e-8 * size else 0
-        if correction <= limits.tolerance * size + ROUNDING * place or worst <= limits.rounding or fine > _FINE:
+        if correction <= limits.tolerance * size + ROUNDING * displacement or worst <= limits.rounding or fine > _FINE:
             return SOLVED
     return STALLED

@@ -66,26 +66,26 @@ def estimate(solved: Solved, closed: Callable[[np.ndarray], np.ndarray] | None =
     defect = np.empty((m, 2 * n))
     excitation = Excitation(system.force, system.force_params, problem.share, problem.clock)
     tried = attrs.evolve(path, rate=between(problem, path)).samples(np.empty((0, 5)))
-    done = try_between(
+    evaluated = try_between(
         problem.equations, excitation, inverse, problem.mesh(path.nodes), problem.rule.try_packed, tried, defect
     )
-    if done < m or not np.isfinite(defect).all():
+    if evaluated < m or not np.isfinite(defect).all():
         raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
     dq, dv = np.zeros_like(path.q), np.zeros_like(path.v)
-    transfer, whole = solved.eliminated.transfer, solved.eliminated.whole
+    transfer, span_transfer = solved.eliminated.transfer, solved.eliminated.span_transfer
     carry(free, transfer, np.zeros(2 * n), defect, dq, dv)
     end = np.concatenate([dq[-1, free], dv[-1, free]])
-    first = np.linalg.solve(problem.closing - whole[:, : 2 * n], end) if closed is None else closed(end)
+    first = np.linalg.solve(problem.closing - span_transfer[:, : 2 * n], end) if closed is None else closed(end)
     carry(free, transfer, first, defect, dq, dv)
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)
     beyond = last * np.sqrt(last / np.maximum(lower, 1e-300))
     tails = _BETWEEN * h**2 * beyond.max(axis=1)
-    made = np.maximum(np.abs(defect[:, :n]), np.abs(defect[:, n:])) / weight[free]
+    defects = np.maximum(np.abs(defect[:, :n]), np.abs(defect[:, n:])) / weight[free]
     floor = max(solved.size, 1e-300)
     error = (float(np.abs(dq / weight).max()) + float(tails.max())) / floor
-    return Estimate(error, made.max(axis=1), tails, dq)
+    return Estimate(error, defects.max(axis=1), tails, dq)
 
 
 def divided(nodes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -102,9 +102,9 @@ def resampled(problem: Problem, path: Path, nodes: np.ndarray, parent: np.ndarra
     a = path.a.reshape(path.intervals, s, 5)
     where = (nodes[:-1] - path.nodes[parent]) / h[parent]
     _, once, twice = integrals(problem.rule.points, where)
-    step, own = h[parent, None], a[parent]
-    v = path.v[parent] + step * np.einsum("ms,msc->mc", once, own)
-    q = path.q[parent] + (where[:, None] * step) * path.v[parent] + step**2 * np.einsum("ms,msc->mc", twice, own)
+    step, accelerations = h[parent, None], a[parent]
+    v = path.v[parent] + step * np.einsum("ms,msc->mc", once, accelerations)
+    q = path.q[parent] + (where[:, None] * step) * path.v[parent] + step**2 * np.einsum("ms,msc->mc", twice, accelerations)
     points = (where[:, None] + (np.diff(nodes) / h[parent])[:, None] * problem.rule.points).ravel()
     values, _, _ = integrals(problem.rule.points, points)
     of = np.repeat(parent, s)
@@ -149,17 +149,17 @@ def refine(solved: Solved, tolerance: float) -> Refined:
     extra = problem.rule.try_packed.shape[1] - s
     sweeps, evaluations = solved.sweeps, solved.sweeps * solved.path.intervals * s
     for rounds in range(_ROUNDS):
-        found = estimate(solved)
+        estimated = estimate(solved)
         m = solved.path.intervals
         evaluations += m * extra
-        if found.error <= max(tolerance, solved.rounding) or rounds == _ROUNDS - 1:
+        if estimated.error <= max(tolerance, solved.rounding) or rounds == _ROUNDS - 1:
             break
-        wanted = tolerance * solved.size
-        carried = float(np.abs(found.field / problem.weight).max())
+        target = tolerance * solved.size
+        carried = float(np.abs(estimated.field / problem.weight).max())
         # Defects add up; each of the important ones may make its share.
-        important = max(int((found.defect > 0.1 * found.defect.max()).sum()), 1)
-        allowed = 0.5 * wanted / max(carried, 1e-300) * found.defect.sum() / important
-        too_much = np.maximum(found.defect / max(allowed, 1e-300), found.between / (0.5 * wanted))
+        important = max(int((estimated.defect > 0.1 * estimated.defect.max()).sum()), 1)
+        allowed = 0.5 * target / max(carried, 1e-300) * estimated.defect.sum() / important
+        too_much = np.maximum(estimated.defect / max(allowed, 1e-300), estimated.between / (0.5 * target))
         # Where a contact opens, halving takes a defect down by 2^2.5 to 2^3.5.
         parts = np.minimum(2 ** np.ceil(np.log2(np.maximum(too_much, 1.0)) / 3.0).astype(int), _PARTS)
         if parts.max() == 1:
@@ -171,7 +171,7 @@ def refine(solved: Solved, tolerance: float) -> Refined:
         solved = solve(problem, resampled(problem, solved.path, nodes, parent), _NEWTON * tolerance)
         sweeps += solved.sweeps
         evaluations += solved.sweeps * solved.path.intervals * s
-    return Refined(solved, found.error, rounds, sweeps, evaluations)
+    return Refined(solved, estimated.error, rounds, sweeps, evaluations)
 
 
 def motion_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -281,9 +281,9 @@ def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]
     q, v, a, ball, rate = states(solved, angles)
     gap, force = np.empty((2, len(angles), 2 * system.ball_count))
     at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
-    done = contacts(system.compiled_forces, system.law_state, at, gap, force)
-    if done < len(angles):
-        raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
+    evaluated = contacts(system.compiled_forces, system.law_state, at, gap, force)
+    if evaluated < len(angles):
+        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
     return q, v, a, ball, rate, gap, force
 
 

@@ -41,10 +41,10 @@ def response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndar
     orders = np.flatnonzero(np.abs(lines).max(axis=1) > 1e-9 * np.abs(lines).max(initial=0.0))
     part = np.ix_(free, free)
     mass, damping, stiffness = system.mass[part], system.damping[part], (tangent + system.stiffness)[part]
-    found = np.zeros((len(orders), 5), dtype=complex)
+    amplitudes = np.zeros((len(orders), 5), dtype=complex)
     for row, k in enumerate(orders):
-        found[row, free] = np.linalg.solve(stiffness - (k * w) ** 2 * mass + 1j * k * w * damping, lines[k])
-    return orders, found
+        amplitudes[row, free] = np.linalg.solve(stiffness - (k * w) ** 2 * mass + 1j * k * w * damping, lines[k])
+    return orders, amplitudes
 
 
 def guess(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
@@ -122,7 +122,7 @@ def full_steps(problem: Problem, first: Path, tolerance: float) -> Solved:
     return solve(problem, first, tolerance, 0, _LIMIT)
 
 
-def grown(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
+def by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
     nodes = mesh_of(problem, highest_order(problem, tangent), 2)
 
@@ -197,9 +197,9 @@ class Neighbour:
         return self.share <= MOST_NONLINEAR
 
     def _alike(self, problem: Problem) -> bool:
-        mine, other = self.problem, problem
-        same = (mine.system.ball_count, mine.system.ball_columns) == (other.system.ball_count, other.system.ball_columns)
-        return same and mine.symmetry.span == other.symmetry.span and np.array_equal(mine.free, other.free)
+        mine, theirs = self.problem, problem
+        same = (mine.system.ball_count, mine.system.ball_columns) == (theirs.system.ball_count, theirs.system.ball_columns)
+        return same and mine.symmetry.span == theirs.symmetry.span and np.array_equal(mine.free, theirs.free)
 
 
 @attrs.frozen(eq=False)
@@ -258,7 +258,7 @@ _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 
 
 @attrs.frozen(eq=False)
-class Trail:
+class ForceBranch:
     """Points of a branch over the share of the force.
 
     Attributes
@@ -277,17 +277,17 @@ class Trail:
         return self.largest >= 1.0
 
     @classmethod
-    def of(cls, points: Iterable[Point]) -> Trail:
+    def of(cls, points: Iterable[Point]) -> ForceBranch:
         """Of points that come one by one."""
         largest, folds, crossings = 0.0, False, []
-        for one, two in pairwise(points):
-            largest, folds = max(largest, one.parameter, two.parameter), folds or two.folded
-            if any((one.parameter - whole) * (two.parameter - whole) <= 0.0 for whole in (1.0, -1.0)):
-                crossings.append((one, two))
+        for before, after in pairwise(points):
+            largest, folds = max(largest, before.parameter, after.parameter), folds or after.folded
+            if any((before.parameter - share) * (after.parameter - share) <= 0.0 for share in (1.0, -1.0)):
+                crossings.append((before, after))
         return cls(largest, folds, tuple(crossings))
 
 
-def trail(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Trail:
+def force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> ForceBranch:
     """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
 
     Raises
@@ -295,10 +295,10 @@ def trail(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarra
     ConvergenceError
         It has no first point.
     """
-    return Trail.of(from_rest(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+    return ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
 
 
-def from_rest(
+def force_continuation(
     problem: Problem,
     q: np.ndarray,
     tangent: np.ndarray,
@@ -328,8 +328,8 @@ def from_rest(
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
     linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
-    rest = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
-    first, small = branch.start(rest, 0.0), 0
+    equilibrium = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
+    first, small = branch.start(equilibrium, 0.0), 0
     try:
         for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
             yield point
@@ -340,17 +340,17 @@ def from_rest(
         return
 
 
-def at_whole_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
+def at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
     """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
     opposite = _reverses(problem) and problem.system.scalars[CAGE] == 0.0
-    for one, two in crossings:
-        for wanted in (1.0, -1.0):
-            if (one.parameter - wanted) * (two.parameter - wanted) > 0.0 or (wanted < 0.0 and not opposite):
+    for before, after in crossings:
+        for share in (1.0, -1.0):
+            if (before.parameter - share) * (after.parameter - share) > 0.0 or (share < 0.0 and not opposite):
                 continue
-            path = towards(one, two, wanted)
+            path = towards(before, after, share)
             try:
-                if wanted < 0.0:
-                    path = half_a_turn_later(attrs.evolve(two.solved, path=path), problem)
+                if share < 0.0:
+                    path = half_a_turn_later(attrs.evolve(after.solved, path=path), problem)
                 yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
             except ConvergenceError:
                 continue
@@ -372,7 +372,7 @@ _RATIOS, _LOADS = (1.15, 1.3, 1.6, 0.85, 0.7), (1.5, 2.5)
 _NEAR = (1.02, 1.05, 0.97)
 
 
-def from_elsewhere(
+def by_homotopy(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, lost: bool
 ) -> tuple[Refined, str] | None:
     """The first motion that leads here from another speed or load, and from where; None where none does.
@@ -386,8 +386,8 @@ def from_elsewhere(
         problem.watch()
         at = partial(_at_speed, problem)
         with suppress(ConvergenceError):
-            found = _followed_to(at, q, tangent, tolerance, ratio, lost and ratio in _NEAR)
-            return found, "from a higher speed" if ratio > 1.0 else "from a lower speed"
+            refined = _continued_to(at, q, tangent, tolerance, ratio, lost and ratio in _NEAR)
+            return refined, "from a higher speed" if ratio > 1.0 else "from a lower speed"
     if problem.system.load[0] == 0.0 or problem.system.free[0] == 0.0:
         return None
     for ratio in _LOADS:
@@ -395,9 +395,9 @@ def from_elsewhere(
         at = partial(_at_load, problem)
         with suppress(ConvergenceError):
             system = at(ratio).system
-            there, ball, _ = system.settle(q)
-            stiff = system.evaluate(there, ball=ball).stiffness
-            return _followed_to(at, there, stiff, tolerance, ratio, False), "from a heavier axial load"
+            q_loaded, ball, _ = system.settle(q)
+            stiff = system.evaluate(q_loaded, ball=ball).stiffness
+            return _continued_to(at, q_loaded, stiff, tolerance, ratio, False), "from a heavier axial load"
     return None
 
 
@@ -418,7 +418,7 @@ def from_undamped(
     still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
     problem.watch()
     with suppress(ConvergenceError):
-        for motion in at_whole_force(still, trail(still, q, tangent, nodes).crossings, ROUGH):
+        for motion in at_full_force(still, force_branch(still, q, tangent, nodes).crossings, ROUGH):
             problem.watch()
             with suppress(ConvergenceError):
                 yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
@@ -435,7 +435,7 @@ def _at_load(problem: Problem, ratio: float) -> Problem:
     return attrs.evolve(problem, system=attrs.evolve(problem.system, load=load))
 
 
-def _followed_to(
+def _continued_to(
     at: Callable[[float], Problem], q: np.ndarray, tangent: np.ndarray, tolerance: float, ratio: float, through: bool
 ) -> Refined:
     """From the motion about an equilibrium at a ratio to that at 1; ``through`` folds, too.
@@ -449,13 +449,13 @@ def _followed_to(
     try:
         begin = directly(far, q, tangent, ROUGH)
     except ConvergenceError:
-        begin = grown(far, q, tangent, ROUGH)
+        begin = by_force_steps(far, q, tangent, ROUGH)
     branch = Branch(at, abs(ratio - 1.0), begin.solved.size, ROUGH, MOST)
     points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
-    for one, two in pairwise(islice(points, POINTS)):
-        if (two.parameter - 1.0) * sense >= 0.0:
-            return refine(solve(at(1.0), towards(one, two, 1.0), 1e-2 * tolerance), tolerance)
-        if (two.folded and not through) or (two.parameter - ratio) * sense < 0.0:
+    for before, after in pairwise(islice(points, POINTS)):
+        if (after.parameter - 1.0) * sense >= 0.0:
+            return refine(solve(at(1.0), towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
+        if (after.folded and not through) or (after.parameter - ratio) * sense < 0.0:
             break
     raise ConvergenceError("the branch turns back")
 
@@ -469,7 +469,7 @@ _COMPARED = 2.0 * np.pi * np.arange(17) / 17
 
 
 @attrs.frozen(eq=False)
-class Found:
+class PeriodicMotion:
     """A periodic motion.
 
     Attributes
@@ -478,29 +478,29 @@ class Found:
     highest : order of the highest natural frequency at the equilibrium
     how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load", "from no
         damping" or "by Fourier collocation"
-    fate : its multipliers
+    floquet : its multipliers
     fold : share of the force at which the branch from rest turns back for good; None where it leads to the whole force
-    others : further motions under the same force that were met in the search
+    coexisting : further motions under the same force that were met in the search
     """
 
     refined: Refined
     highest: float
     how: str
-    fate: Floquet
+    floquet: Floquet
     fold: float | None = None
-    others: tuple[Found, ...] = ()
-    _lent: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
+    coexisting: tuple[PeriodicMotion, ...] = ()
+    _neighbour: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
 
     def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
         """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
-        if not self._lent:
-            self._lent.append(neighbour_of(self.refined.solved, q, tangent))
-        return self._lent[0]
+        if not self._neighbour:
+            self._neighbour.append(neighbour_of(self.refined.solved, q, tangent))
+        return self._neighbour[0]
 
     @property
-    def all(self) -> tuple[Found, ...]:
+    def all(self) -> tuple[PeriodicMotion, ...]:
         """This one first."""
-        return (self, *self.others)
+        return (self, *self.coexisting)
 
 
 def find(
@@ -510,7 +510,7 @@ def find(
     tolerance: float,
     near: Neighbour | Recorded | None = None,
     stay: bool = False,
-) -> Found:
+) -> PeriodicMotion:
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
 
     Parameters
@@ -535,29 +535,31 @@ def find(
     """
     highest = highest_order(problem, tangent)
     if near is not None and (stay or near.near_linear):
-        followed = _followed(problem, q, tangent, tolerance, highest, near)
+        followed = _continued(problem, q, tangent, tolerance, highest, near)
         # Far from the linear response there may be other motions: then the search without a neighbour decides.
-        if followed is not None and (stay or not may_have_others(followed, q, tangent)):
+        if followed is not None and (stay or not may_coexist(followed, q, tangent)):
             return followed
     direct = None
     try:
-        direct = found_by(directly(problem, q, tangent, tolerance), highest, "directly")
+        direct = with_multipliers(directly(problem, q, tangent, tolerance), highest, "directly")
     except ConvergenceError:
         pass
     else:
-        if not may_have_others(direct, q, tangent):
+        if not may_coexist(direct, q, tangent):
             return direct
-    if not can_follow(problem, q, tangent):
+    if not can_continue(problem, q, tangent):
         # Each point would take seconds.
         if direct is None and stay:
             raise ConvergenceError("no motion of the period of the force was found directly", {"q": q.copy()})
-        return direct or found_by(_grown_only(problem, q, tangent, tolerance, highest), highest, "from rest")
+        return direct or with_multipliers(
+            _by_force_steps_only(problem, q, tangent, tolerance, highest), highest, "from rest"
+        )
     return _chosen(problem, q, tangent, tolerance, direct)
 
 
-def _followed(
+def _continued(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
-) -> Found | None:
+) -> PeriodicMotion | None:
     """The motion that continues a neighbour, if it is close to it and not unstable."""
     first = near.first_guess(problem, q, tangent, mesh_of(problem, highest))
     if first is None:
@@ -566,31 +568,31 @@ def _followed(
         solved = full_steps(problem, first, 1e-2 * tolerance)
         if np.abs((solved.path.q - first.q) / problem.weight).max() > _STAYS * solved.size:
             return None
-        found = found_by(refine(solved, tolerance), highest, "directly")
+        motion = with_multipliers(refine(solved, tolerance), highest, "directly")
     except ConvergenceError:
         return None
-    return None if found.fate.verdict == "unstable" else found
+    return None if motion.floquet.verdict == "unstable" else motion
 
 
-def may_have_others(found: Found, q: np.ndarray, tangent: np.ndarray) -> bool:
+def may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether a motion is unstable or so far from its linear response about q (5,) that other ones may exist beside it."""
-    return found.fate.verdict == "unstable" or not found.neighbour(q, tangent).near_linear
+    return motion.floquet.verdict == "unstable" or not motion.neighbour(q, tangent).near_linear
 
 
-def can_follow(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> bool:
+def can_continue(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether branches are followed: meshes for the natural frequencies are small, and dashpots in the contacts weak."""
     nodes = mesh_of(problem, highest_order(problem, tangent))
     return len(nodes) <= MOST and not stiff(problem, standing(problem, q, nodes))
 
 
-def found_by(refined: Refined, highest: float, how: str, fold: float | None = None) -> Found:
+def with_multipliers(refined: Refined, highest: float, how: str, fold: float | None = None) -> PeriodicMotion:
     """A motion with its multipliers."""
-    return Found(refined, highest, how, floquet(refined.solved, highest), fold)
+    return PeriodicMotion(refined, highest, how, floquet(refined.solved, highest), fold)
 
 
-def _grown_only(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
+def _by_force_steps_only(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
     try:
-        return grown(problem, q, tangent, tolerance)
+        return by_force_steps(problem, q, tangent, tolerance)
     except ConvergenceError as why:
         raise ConvergenceError(
             "no motion of the period of the force was found from rest, and it is not looked for along branches: natural "
@@ -600,61 +602,67 @@ def _grown_only(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance:
         ) from why
 
 
-def _chosen(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, direct: Found | None) -> Found:
+def _chosen(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, direct: PeriodicMotion | None
+) -> PeriodicMotion:
     """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
     highest = highest_order(problem, tangent)
-    lost, branch = None, Trail()
+    lost, branch = None, ForceBranch()
     try:
-        branch = trail(problem, q, tangent, mesh_of(problem, highest))
+        branch = force_branch(problem, q, tangent, mesh_of(problem, highest))
     except ConvergenceError as why:
         lost = why
-    found: list[Found] = []
-    for refined in at_whole_force(problem, branch.crossings, tolerance):
-        if not any(_alike(refined, one.refined) for one in found):
-            found.append(found_by(refined, highest, "from rest"))
+    motions: list[PeriodicMotion] = []
+    for refined in at_full_force(problem, branch.crossings, tolerance):
+        if not any(_alike(refined, motion.refined) for motion in motions):
+            motions.append(with_multipliers(refined, highest, "from rest"))
     fold = None if branch.reaches else branch.largest
     if direct is not None:
-        # Where both ways lead to one motion, the shorter one is told.
-        same = [k for k, one in enumerate(found) if _alike(direct.refined, one.refined)]
+        # Where both ways lead to motion motion, the shorter motion is told.
+        same = [k for k, motion in enumerate(motions) if _alike(direct.refined, motion.refined)]
         if same:
-            found[same[0]] = direct
+            motions[same[0]] = direct
         else:
-            found.append(attrs.evolve(direct, fold=fold))
-    if not found:
+            motions.append(attrs.evolve(direct, fold=fold))
+    if not motions:
         try:
-            found = [found_by(grown(problem, q, tangent, tolerance), highest, "from rest")]
+            motions = [with_multipliers(by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
         except ConvergenceError:
             if lost is not None:
                 raise lost from None
-    if all(one.fate.verdict == "unstable" for one in found):
+    if all(motion.floquet.verdict == "unstable" for motion in motions):
         for refined in from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
-            if not any(_alike(refined, known.refined) for known in found):
-                found.append(found_by(refined, highest, "from no damping", fold))
-    if fold is not None and problem.system.scalars[CAGE] == 0.0 and all(one.fate.verdict == "unstable" for one in found):
-        reached = from_elsewhere(problem, q, tangent, tolerance, not found)
-        if reached is not None and not any(_alike(reached[0], known.refined) for known in found):
-            found.append(found_by(reached[0], highest, reached[1], fold))
-    if not found:
+            if not any(_alike(refined, other_motion.refined) for other_motion in motions):
+                motions.append(with_multipliers(refined, highest, "from no damping", fold))
+    if (
+        fold is not None
+        and problem.system.scalars[CAGE] == 0.0
+        and all(motion.floquet.verdict == "unstable" for motion in motions)
+    ):
+        reached = by_homotopy(problem, q, tangent, tolerance, not motions)
+        if reached is not None and not any(_alike(reached[0], other_motion.refined) for other_motion in motions):
+            motions.append(with_multipliers(reached[0], highest, reached[1], fold))
+    if not motions:
         back = "where its branch turns back (an internal resonance)"
         end = back if branch.folds else "beyond which it could not be followed"
         raise ConvergenceError(
-            f"no motion of the period of the force was found: the one that grows out of rest ends at {100 * (fold or 0.0):.3g} % "
+            f"no motion of the period of the force was found: the motion that grows out of rest ends at {100 * (fold or 0.0):.3g} % "
             f"of the force, {end}, and none leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
             "what the ring does instead.",
             {"q": q.copy()},
         )
-    first, *others = taken(found)
-    return attrs.evolve(first, others=tuple(others))
+    first, *coexisting = attractor_first(motions)
+    return attrs.evolve(first, coexisting=tuple(coexisting))
 
 
-def taken(found: list[Found]) -> list[Found]:
+def attractor_first(motions: list[PeriodicMotion]) -> list[PeriodicMotion]:
     """The same motions, that one first which is taken: the first that is not unstable, else the one that is left slowest."""
-    slowest = min(found, key=lambda one: one.fate.largest)
-    first = next((one for one in found if one.fate.verdict != "unstable"), slowest)
-    return [first, *(one for one in found if one is not first)]
+    slowest = min(motions, key=lambda motion: motion.floquet.largest)
+    first = next((motion for motion in motions if motion.floquet.verdict != "unstable"), slowest)
+    return [first, *(motion for motion in motions if motion is not first)]
 
 
-def _alike(one: Refined, two: Refined) -> bool:
+def _alike(first: Refined, second: Refined) -> bool:
     """Whether two motions of one problem are the same."""
-    pair = [displacements(found.solved, _COMPARED) / found.solved.problem.weight for found in (one, two)]
-    return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(one.solved.size, two.solved.size))
+    pair = [displacements(refined.solved, _COMPARED) / refined.solved.problem.weight for refined in (first, second)]
+    return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(first.solved.size, second.solved.size))

@@ -12,14 +12,14 @@ from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import (
     HIGHEST,
-    Found,
+    PeriodicMotion,
     Recorded,
-    can_follow,
+    can_continue,
     find,
-    found_by,
     highest_order,
     mesh_of,
     problem_of,
+    with_multipliers,
 )
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
@@ -40,24 +40,24 @@ _WAYS = {
 }
 
 
-def orbits(found: Sequence[Found]) -> list[Tables]:
+def orbit_tables(motions: Sequence[PeriodicMotion]) -> list[Tables]:
     """``motion.orbits`` of result.json: every motion that was found, the one that is taken first."""
-    return [_orbit(one, one is found[0]) for one in found]
+    return [_orbit(motion, motion is motions[0]) for motion in motions]
 
 
-def _orbit(found: Found, taken: bool) -> Tables:
+def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
     """Z [N/m] and amplitude [m] of the 1x line of one motion, and what becomes of disturbances."""
-    fate = found.fate
-    z, amplitude = first_line(found.refined.solved)
+    floquet = motion.floquet
+    z, amplitude = first_line(motion.refined.solved)
     return {
         "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
         "amplitude_m": amplitude,
-        "multiplier": fate.largest,
-        "verdict": fate.verdict,
-        "leaves_by": fate.leaves_by or None,
-        "stable": fate.verdict != "unstable",
-        "found": found.how,
-        "taken": taken,
+        "multiplier": floquet.largest,
+        "verdict": floquet.verdict,
+        "leaves_by": floquet.leaves_by or None,
+        "stable": floquet.verdict != "unstable",
+        "found": motion.how,
+        "taken": reported,
     }
 
 
@@ -73,25 +73,25 @@ def first_line(solved: Solved) -> tuple[complex, float]:
     return complex(stiffness(force, line)), float(forward + backward)
 
 
-def several(told: list[Tables]) -> tuple[str, ...]:
+def coexistence(tables: list[Tables]) -> tuple[str, ...]:
     """What a user should know where more than one motion exists that a ring can stay on."""
-    lasting = [one for one in told if one["stable"]]
+    lasting = [table for table in tables if table["stable"]]
     if len(lasting) < 2:
         return ()
-    values = " and ".join(_complex(one) for one in lasting)
+    values = " and ".join(_complex(table) for table in lasting)
     return (
         f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: which one a ring takes depends on "
         "how it came here. The first is reported; motion.orbits lists all that were found, others may exist",
     )
 
 
-def unstable(one: Tables) -> str:
+def growth_of_disturbances(table: Tables) -> str:
     """Growth of disturbances of a motion, in words."""
-    return f"disturbances grow {one['multiplier']:.4g} times a turn, {_WAYS[one['leaves_by']]}"
+    return f"disturbances grow {table['multiplier']:.4g} times a turn, {_WAYS[table['leaves_by']]}"
 
 
-def _complex(one: Tables) -> str:
-    z = one["dynamic_stiffness"]
+def _complex(table: Tables) -> str:
+    z = table["dynamic_stiffness"]
     return f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j"
 
 
@@ -135,17 +135,17 @@ def steady(
         raise SceneError.at("integrator.kind", "periodic", why)
     if on_chunk is not None:
         problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
-    found = find(problem, q, tangent, tolerance, start.near, start.stay)
-    refined, told = found.refined, orbits(found.all)
+    motion = find(problem, q, tangent, tolerance, start.near, start.stay)
+    refined, tables = motion.refined, orbit_tables(motion.all)
     counts = {
         "steps": refined.solved.path.intervals,
         "evaluations": refined.evaluations,
         "error": refined.error,
-        "floquet": {**found.fate.to_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": found.how},
-        "orbits": told,
-        "warnings": warnings(found, told, tolerance),
+        "floquet": {**motion.floquet.to_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": motion.how},
+        "orbits": tables,
+        "warnings": warnings(motion, tables, tolerance),
     }
-    out = attrs.evolve(record(refined.solved, schedule, counts), solution=found.neighbour(q, tangent))
+    out = attrs.evolve(record(refined.solved, schedule, counts), solution=motion.neighbour(q, tangent))
     if on_chunk is not None:
         on_chunk(schedule.steps, schedule.steps)
     return out
@@ -154,9 +154,9 @@ def steady(
 def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]:
     """The static equilibrium (5,) that the start is at or near, and its tangent (5, 5)."""
     now = system.evaluate(start.q, ball=start.ball)
-    rest = np.abs((now.force + system.stiffness @ start.q - system.load) * system.free)
+    imbalance = np.abs((now.force + system.stiffness @ start.q - system.load) * system.free)
     largest = max(float(np.abs(now.contact_force).sum()), float(np.abs(system.load).max()))
-    if rest.max() <= _SETTLED * largest:
+    if imbalance.max() <= _SETTLED * largest:
         return start.q, now.stiffness
     q, ball, _ = system.settle(start.q)
     return q, system.evaluate(q, ball=ball).stiffness
@@ -175,23 +175,23 @@ def refuse(system: Ring, schedule: Schedule) -> None:
         raise SceneError.at("integrator.kind", "periodic", why)
     turn = schedule.dt * schedule.steps_per_turn
     pairs = [(system.outer_force(part * turn), system.outer_force((1.0 + part) * turn)) for part in (0.0, 0.31, 0.77)]
-    largest = max(float(np.abs(one).max()) for one, _ in pairs)
-    if any(np.abs(one - two).max() > 1e-9 * largest for one, two in pairs):
+    largest = max(float(np.abs(now).max()) for now, _ in pairs)
+    if any(np.abs(now - later).max() > 1e-9 * largest for now, later in pairs):
         raise SceneError.at("integrator.kind", "periodic", "the force does not repeat itself every turn. Use 'newmark'")
 
 
-def warnings(found: Found, told: list[Tables], tolerance: float) -> tuple[str, ...]:
+def warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) -> tuple[str, ...]:
     """What a user should know of a motion that was hard to find, is not stable or not alone, or not as exact as asked for."""
-    out = list(several(told))
-    if found.fold is not None:
+    out = list(coexistence(tables))
+    if motion.fold is not None:
         out.append(
-            f"no motion grows out of rest: its branch turns back at {100.0 * found.fold:.3g} % of the force (an internal "
-            f"resonance); this motion was reached {found.how}, and others may exist"
+            f"no motion grows out of rest: its branch turns back at {100.0 * motion.fold:.3g} % of the force (an internal "
+            f"resonance); this motion was reached {motion.how}, and others may exist"
         )
-    if found.fate.verdict == "unstable":
-        out.append(f"the periodic motion is unstable, {unstable(told[0])}; a real ring does not stay on it")
-    if found.refined.error > tolerance:
-        out.append(f"the mesh cannot follow the motion closer than {found.refined.error:.1e} of its amplitude")
+    if motion.floquet.verdict == "unstable":
+        out.append(f"the periodic motion is unstable, {growth_of_disturbances(tables[0])}; a real ring does not stay on it")
+    if motion.refined.error > tolerance:
+        out.append(f"the mesh cannot follow the motion closer than {motion.refined.error:.1e} of its amplitude")
     return tuple(out)
 
 
@@ -200,22 +200,24 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 
 
 @attrs.frozen(eq=False)
-class Beginning:
+class StartingOrbit:
     """The motion that a transient starts on.
 
     Attributes
     ----------
     orbit : periodic motion at equidistant times
-    told : every motion that was found, as ``raceway.core.periodic.steady`` tells them; empty where nothing could be said
+    orbits : every motion that was found, as ``raceway.core.periodic.steady`` tells them; empty where nothing could be said
     warnings : what a user should know
     """
 
     orbit: Orbit
-    told: list[Tables] = attrs.field(factory=list)
+    orbits: list[Tables] = attrs.field(factory=list)
     warnings: tuple[str, ...] = ()
 
 
-def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None) -> Beginning | None:
+def starting_orbit(
+    system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None
+) -> StartingOrbit | None:
     """The motion to start on; None where it is not searched for, because each try would take seconds.
 
     Parameters
@@ -237,48 +239,48 @@ def beginning(system: System, period: float, q: np.ndarray, watch: Callable[[], 
     system = by_address(system)
     tangent = system.evaluate(q).stiffness
     problem = problem_of(system, 2.0 * np.pi / period, q)
-    if not can_follow(problem, q, tangent):
+    if not can_continue(problem, q, tangent):
         return None
     if watch is not None:
         problem = attrs.evolve(problem, watch=watch)
     try:
-        found = find(problem, q, tangent, _TOLERANCE)
+        motion = find(problem, q, tangent, _TOLERANCE)
     except ConvergenceError:
         orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
         try:
-            found = _collocated(problem, orbit, highest)
+            motion = _collocated(problem, orbit, highest)
         except ConvergenceError:
             if highest <= HIGHEST:
                 raise
-            return Beginning(orbit)  # so slow that no mesh holds the vibrations that it has none of
-    told = orbits(found.all)
-    warnings = several(told)
-    if not told[0]["stable"]:
+            return StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
+    tables = orbit_tables(motion.all)
+    warnings = coexistence(tables)
+    if not tables[0]["stable"]:
         warnings += (
-            f"the motion starts on a steady orbit that is unstable, {unstable(told[0])}; no stable one was found, and a real "
+            f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(tables[0])}; no stable one was found, and a real "
             "ring does not stay on it",
         )
-    return Beginning(sampled(found, period), told, warnings)
+    return StartingOrbit(sampled(motion, period), tables, warnings)
 
 
-def _collocated(problem: Problem, orbit: Orbit, highest: float) -> Found:
+def _collocated(problem: Problem, orbit: Orbit, highest: float) -> PeriodicMotion:
     """The motion of Fourier collocation, solved for once more on a mesh."""
-    known = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
-    path = known.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
-    return found_by(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
+    recorded = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
+    path = recorded.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
+    return with_multipliers(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
 
 
-def sampled(found: Found, period: float) -> Orbit:
+def sampled(motion: PeriodicMotion, period: float) -> Orbit:
     """A motion at equidistant times of a turn."""
-    solved = found.refined.solved
+    solved = motion.refined.solved
     problem, system = solved.problem, solved.problem.system
     times = period / _SAMPLES * np.arange(_SAMPLES)
     q, v, a, ball, rate = states(solved, problem.speed * times)
     q, v = np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed)
     f, K, C = np.empty((_SAMPLES, 5)), np.empty((_SAMPLES, 5, 5)), np.empty((_SAMPLES, 5, 5))
-    done = evaluate_many(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
-    if done < _SAMPLES:
-        raise ConvergenceError("the balls find no place between the races", {"q": q[done].copy()})
+    evaluated = evaluate_many(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
+    if evaluated < _SAMPLES:
+        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
     force = np.array([system.outer_force(t) for t in times])
-    iterations = found.refined.sweeps
-    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, C, found.refined.error, iterations)
+    iterations = motion.refined.sweeps
+    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, C, motion.refined.error, iterations)

@@ -58,9 +58,9 @@ class Sector:
         sides = np.stack([_frame(-half)] * 4 + [_frame(half)] * 4)
         elements = operator.element_stiffness(slice(0, len(cells))).reshape(-1, 8, 3, 8, 3)
         k = np.einsum("iab,eiajc,jcd->eibjd", sides, elements, sides, optimize=True)
-        here, there = slice(0, 4), slice(4, 8)
-        near = k[:, here, :, here] + k[:, there, :, there]
-        far, back = k[:, here, :, there], np.einsum("eiajb->ejbia", k[:, here, :, there])
+        first, second = slice(0, 4), slice(4, 8)
+        near = k[:, first, :, first] + k[:, second, :, second]
+        far, back = k[:, first, :, second], np.einsum("eiajb->ejbia", k[:, first, :, second])
         alike = np.ones((3, 3), dtype=bool)
         alike[1, [0, 2]] = alike[[0, 2], 1] = False
         # conj(w_a) w_b with w = 1 for r and x, i for theta: +i couples r and x to theta, -i theta to r and x.
@@ -72,18 +72,18 @@ class Sector:
         masses = operator.element_masses
         self.mass = np.bincount(profile.quads.ravel(), weights=(masses[:, :4] + masses[:, 4:]).ravel(), minlength=count)
 
-    def assembled(self, quads: np.ndarray, place: np.ndarray) -> Pencil:
-        """The sector's matrices with the degree of freedom 3 node + component in row ``place`` (-1: held)."""
+    def assembled(self, quads: np.ndarray, row: np.ndarray) -> Pencil:
+        """The sector's matrices with the degree of freedom 3 node + component in row ``row`` (-1: held)."""
         from scipy.sparse import coo_matrix
 
-        number = place[(3 * quads[:, :, None] + np.arange(3)).reshape(len(quads), 12)]
+        number = row[(3 * quads[:, :, None] + np.arange(3)).reshape(len(quads), 12)]
         rows = np.broadcast_to(number[:, :, None], self.even.shape).ravel()
         columns = np.broadcast_to(number[:, None, :], self.even.shape).ravel()
-        kept = (rows >= 0) & (columns >= 0)
-        rows, columns, size = rows[kept], columns[kept], int(place.max()) + 1
+        free = (rows >= 0) & (columns >= 0)
+        rows, columns, size = rows[free], columns[free], int(row.max()) + 1
 
         def total(part: np.ndarray) -> csr_matrix:
-            return coo_matrix((part.ravel()[kept], (rows, columns)), shape=(size, size)).tocsc()
+            return coo_matrix((part.ravel()[free], (rows, columns)), shape=(size, size)).tocsc()
 
         return Pencil(total(self.even), total(self.cosine).data, total(self.sine).data)
 
@@ -130,7 +130,7 @@ def elimination_order(matrix: csr_matrix) -> np.ndarray:
     return np.argsort(factorised(matrix, ordered=False).perm_c)
 
 
-def condensed(factor: SuperLU, kept: np.ndarray) -> np.ndarray:
+def condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
     """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
 
     Notes
@@ -138,25 +138,25 @@ def condensed(factor: SuperLU, kept: np.ndarray) -> np.ndarray:
     With K = L D L^T the last block of L D L^T is the condensed stiffness, and its inverse that block of K^-1.  SuperLU may
     renumber along the elimination tree, which changes no entry of the factors.
     """
-    place = factor.perm_c[kept]
-    by_place = np.argsort(place)
+    position = factor.perm_c[retained]
+    by_place = np.argsort(position)
     lower, upper = factor.L, factor.U
     row = np.full(lower.shape[0], -1)
-    row[place[by_place]] = np.arange(len(kept))
-    block = np.zeros((len(kept), len(kept)))
-    for column, at in enumerate(place[by_place]):
+    row[position[by_place]] = np.arange(len(retained))
+    block = np.zeros((len(retained), len(retained)))
+    for column, at in enumerate(position[by_place]):
         part = slice(lower.indptr[at], lower.indptr[at + 1])
         rows = row[lower.indices[part]]
         block[rows[rows >= 0], column] = lower.data[part][rows >= 0]
     from scipy.linalg import solve_triangular
 
     inverse = solve_triangular(
-        block, np.eye(len(kept)), lower=True, unit_diagonal=True, overwrite_b=True, check_finite=False
+        block, np.eye(len(retained)), lower=True, unit_diagonal=True, overwrite_b=True, check_finite=False
     )
-    pivots = upper.diagonal()[place[by_place]]
-    found = inverse.T @ (inverse / pivots[:, None])
-    out = np.empty_like(found)
-    out[np.ix_(by_place, by_place)] = found
+    pivots = upper.diagonal()[position[by_place]]
+    compliance = inverse.T @ (inverse / pivots[:, None])
+    out = np.empty_like(compliance)
+    out[np.ix_(by_place, by_place)] = compliance
     return out
 
 
@@ -172,11 +172,11 @@ def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
         return np.arange(last + 1)
     if harmonics != "sampled":
         raise ValueError(f"harmonics {harmonics!r} is neither 'sampled' nor 'all'")
-    chosen = list(range(min(DENSE, last) + 1))
-    while chosen[-1] < last:
-        step = int(min((RATIO - 1.0) * chosen[-1], last / STEPS))
-        chosen.append(min(last, chosen[-1] + max(step, 1)))
-    return np.array(chosen)
+    orders = list(range(min(DENSE, last) + 1))
+    while orders[-1] < last:
+        step = int(min((RATIO - 1.0) * orders[-1], last / STEPS))
+        orders.append(min(last, orders[-1] + max(step, 1)))
+    return np.array(orders)
 
 
 def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -211,12 +211,12 @@ def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> t
     return even @ spread, odd @ spread
 
 
-def _spline(solved: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+def _spline(solved: np.ndarray, orders: np.ndarray) -> np.ndarray:
     """(wanted, solved) Values of the interpolating spline for unit data."""
     from scipy.interpolate import make_interp_spline
 
-    unit = make_interp_spline(np.log1p(solved / 8.0), np.eye(len(solved)), k=5)(np.log1p(wanted / 8.0))
-    return np.asarray(unit * (1.0 + solved)[None, :] / (1.0 + wanted)[:, None])
+    unit = make_interp_spline(np.log1p(solved / 8.0), np.eye(len(solved)), k=5)(np.log1p(orders / 8.0))
+    return np.asarray(unit * (1.0 + solved)[None, :] / (1.0 + orders)[:, None])
 
 
 def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -243,7 +243,7 @@ def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarr
     return np.asarray(np.linalg.lstsq(columns.reshape(3, -1).T, values, rcond=None)[0].T)
 
 
-def own_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
+def direct_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """M (3,) of a contact on itself, from response (n,) at the angle of the force itself; else as ``groove_compliance``."""
     columns = _columns(angles, angles) * weight
     return np.asarray(np.linalg.lstsq(columns.T, response * weight, rcond=None)[0])
@@ -254,9 +254,9 @@ def along_normal(angles: np.ndarray, compliance: np.ndarray) -> np.ndarray:
     return np.asarray(compliance @ _columns(angles, angles))
 
 
-def _columns(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def _columns(angle: np.ndarray, load_angle: np.ndarray) -> np.ndarray:
     """(3, ...) what the three numbers of M are multiplied by in n.M n'."""
-    return np.stack([np.sin(one) * np.sin(other), np.sin(one + other), np.cos(one) * np.cos(other)])
+    return np.stack([np.sin(angle) * np.sin(load_angle), np.sin(angle + load_angle), np.cos(angle) * np.cos(load_angle)])
 
 
 #: Hourglass stiffness of "one_point": in the flat elements of a patch ten times more spoils the answer by percents.
@@ -335,8 +335,8 @@ class Revolution:
 
     def harmonic(self, n: int) -> Any:
         """(m, m) csc_matrix, the real symmetric system of harmonic n; rows in the order of ``unknowns`` [N/m]."""
-        place = self._places(self.unknowns)
-        return self._pencil(place).at(2.0 * np.pi * n / self.divisions)
+        row = self._places(self.unknowns)
+        return self._pencil(row).at(2.0 * np.pi * n / self.divisions)
 
     @property
     def unknowns(self) -> np.ndarray:
@@ -368,18 +368,18 @@ class Revolution:
         compliance : (o, observed, loads) float [m/N]
             Reversing the offset changes the sign where one of the two components is theta and the other is not.
         """
-        load, seen = _flat(load_dofs), _flat(observed_dofs)
+        load, observed = _flat(load_dofs), _flat(observed_dofs)
         steps = np.arange(self.divisions) if offsets is None else np.atleast_1d(np.asarray(offsets, dtype=np.int64))
-        if self._held[load].all() or self._held[seen].all():
-            return np.zeros((len(steps), len(seen), len(load)))
+        if self._held[load].all() or self._held[observed].all():
+            return np.zeros((len(steps), len(observed), len(load)))
         solved = solved_harmonics(self.divisions, harmonics)
         even, odd = offset_weights(self.divisions, solved, steps)
         # u_theta is counted in units of i: i exp(i phase) has the real part -sin, -i exp(i phase) has +sin.
-        turn = (load % 3 == 1).astype(float)[None, :] - (seen % 3 == 1).astype(float)[:, None]
+        turn = (load % 3 == 1).astype(float)[None, :] - (observed % 3 == 1).astype(float)[:, None]
         straight = turn == 0.0
         plain = bool(straight.all())
-        out = np.zeros((len(steps), len(seen) * len(load)))
-        responses = self._responses(load, seen, solved)
+        out = np.zeros((len(steps), len(observed) * len(load)))
+        responses = self._responses(load, observed, solved)
         for first in range(0, len(solved), _BATCH):
             part = slice(first, first + _BATCH)
             block = np.stack([next(responses) for _ in solved[part]])
@@ -388,7 +388,7 @@ class Revolution:
             else:
                 out += even[:, part] @ (block * straight).reshape(len(block), -1)
                 out += odd[:, part] @ (block * turn).reshape(len(block), -1)
-        return out.reshape(len(steps), len(seen), len(load))
+        return out.reshape(len(steps), len(observed), len(load))
 
     def frequencies(self, harmonics: Iterable[int], count: int) -> np.ndarray:
         """Natural frequencies.
@@ -419,35 +419,40 @@ class Revolution:
             factor = factorised(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
             inverse = LinearOperator(scaled.shape, matvec=factor.solve, dtype=float)
             start = np.random.default_rng(0).standard_normal(len(mass))
-            found = eigsh(inverse, count + rigid + 2, which="LM", v0=start, return_eigenvectors=False)
-            squares = np.sort(1.0 / found - shift)[rigid : rigid + count]
+            eigenvalues = eigsh(inverse, count + rigid + 2, which="LM", v0=start, return_eigenvectors=False)
+            squares = np.sort(1.0 / eigenvalues - shift)[rigid : rigid + count]
             out.append(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
         return np.array(out)
 
-    def _responses(self, load: np.ndarray, seen: np.ndarray, solved: np.ndarray) -> Any:
+    def _responses(self, load: np.ndarray, observed: np.ndarray, solved: np.ndarray) -> Any:
         """For each harmonic in turn the (seen, loads) compliance between degrees of freedom 3 node + component [m/N]."""
-        both = np.unique(np.concatenate([load, seen]))
+        both = np.unique(np.concatenate([load, observed]))
         # Condensing costs the cube of the degrees of freedom that stay, solving the number of loads times the whole body.
-        small = len(both) <= _CONDENSED * min(len(load), len(seen))
-        place = self._places(self._order(both if small else both[:0]))
-        pencil = self._pencil(place)
-        row_load, row_seen, row_both = place[load], place[seen], place[both]
+        small = len(both) <= _CONDENSED * min(len(load), len(observed))
+        row = self._places(self._order(both if small else both[:0]))
+        pencil = self._pencil(row)
+        row_load, row_seen, row_both = row[load], row[observed], row[both]
         held = (row_seen < 0)[:, None] | (row_load < 0)[None, :]
-        kept = row_both[row_both >= 0]
-        at_load, at_seen = (np.searchsorted(kept, np.maximum(rows, kept[0])) for rows in (row_load, row_seen))
+        retained = row_both[row_both >= 0]
+        at_load, at_seen = (np.searchsorted(retained, np.maximum(rows, retained[0])) for rows in (row_load, row_seen))
         for n in solved:
             matrix = pencil.at(2.0 * np.pi * n / self.divisions)
             rigid = self._rigid_motions(int(n)) if self.seat == "free" else None
             if rigid is not None and len(rigid[0]):
-                found = self._relieved(matrix, rigid, place, row_load, row_seen)
+                response = self._relieved(matrix, rigid, row, row_load, row_seen)
             elif small:
-                found = condensed(factorised(matrix), kept)[np.ix_(at_seen, at_load)]
+                response = condensed(factorised(matrix), retained)[np.ix_(at_seen, at_load)]
             else:
-                found = factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
-            yield np.where(held, 0.0, found) if held.any() else found
+                response = factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
+            yield np.where(held, 0.0, response) if held.any() else response
 
     def _relieved(
-        self, matrix: csr_matrix, rigid: tuple[np.ndarray, np.ndarray], place: np.ndarray, load: np.ndarray, seen: np.ndarray
+        self,
+        matrix: csr_matrix,
+        rigid: tuple[np.ndarray, np.ndarray],
+        row: np.ndarray,
+        load: np.ndarray,
+        observed: np.ndarray,
     ) -> np.ndarray:
         """Compliance of a free body's harmonic 0 or 1: loads balanced by inertia, no rigid motion of the masses.
 
@@ -459,28 +464,28 @@ class Revolution:
         from scipy.sparse import diags_array
 
         motions, pins = rigid
-        order = np.empty(len(place), dtype=np.int64)
-        order[place] = np.arange(len(place))
+        order = np.empty(len(row), dtype=np.int64)
+        order[row] = np.arange(len(row))
         r = motions[:, order].T
         inertia = np.repeat(self.sector.mass, 3)[order][:, None] * r
         springs = np.zeros(len(order))
-        springs[place[pins]] = matrix.diagonal().mean()
+        springs[row[pins]] = matrix.diagonal().mean()
         factor = factorised((matrix + diags_array(springs)).tocsc())
         small = np.linalg.inv(r.T @ inertia)
         moved = factor.solve(inertia)
-        far, near = r[seen] @ small, r[load] @ small
-        answer = factor.solve(_unit(load, len(order)))[seen]
-        return np.asarray(answer - moved[seen] @ near.T - far @ moved[load].T + far @ (inertia.T @ moved) @ near.T)
+        far, near = r[observed] @ small, r[load] @ small
+        answer = factor.solve(_unit(load, len(order)))[observed]
+        return np.asarray(answer - moved[observed] @ near.T - far @ moved[load].T + far @ (inertia.T @ moved) @ near.T)
 
     def _rigid_motions(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """(q, 3 N) Rigid motions of a harmonic, theta in units of i, and (q,) degrees of freedom that determine them."""
         r, x = self.profile.points.T
-        zero, one = np.zeros_like(r), np.ones_like(r)
+        zero, unit = np.zeros_like(r), np.ones_like(r)
         pin = 3 * int(np.argmax(r))
         if n == 0:
-            return np.stack([_field(zero, zero, one), _field(zero, r, zero)]), np.array([pin + 2, pin + 1])
+            return np.stack([_field(zero, zero, unit), _field(zero, r, zero)]), np.array([pin + 2, pin + 1])
         if n == 1:
-            return np.stack([_field(one, one, zero), _field(x, x, -r)]), np.array([pin, pin + 2])
+            return np.stack([_field(unit, unit, zero), _field(x, x, -r)]), np.array([pin, pin + 2])
         return np.empty((0, 3 * len(r))), np.empty(0, dtype=np.int64)
 
     def _order(self, last: np.ndarray) -> np.ndarray:
@@ -491,15 +496,15 @@ class Revolution:
 
     def _places(self, order: np.ndarray) -> np.ndarray:
         """(3 N,) Row of each degree of freedom when ``order`` lists them by rows; -1: held."""
-        place = np.full(len(self._held), -1, dtype=np.int64)
-        place[order] = np.arange(len(order))
-        return place
+        row = np.full(len(self._held), -1, dtype=np.int64)
+        row[order] = np.arange(len(order))
+        return row
 
-    def _pencil(self, place: np.ndarray) -> Pencil:
-        pencil = self.sector.assembled(self.profile.quads, place)
+    def _pencil(self, row: np.ndarray) -> Pencil:
+        pencil = self.sector.assembled(self.profile.quads, row)
         if self._springs.any():
             springs = np.zeros(pencil.even.shape[0])
-            springs[place[place >= 0]] = self._springs[place >= 0]
+            springs[row[row >= 0]] = self._springs[row >= 0]
             pencil.add_to_diagonal(springs)
         return pencil
 
@@ -539,7 +544,7 @@ SOURCES = ("core/revolution", "core/hexahedron")
 
 
 def cached_compliance(
-    what: str,
+    label: str,
     profile: Profile,
     divisions: int,
     young: float,
@@ -556,7 +561,7 @@ def cached_compliance(
 
     Parameters
     ----------
-    what : what `raceway cache` says of it, for instance "inner ring of B7206C, 4 nodes per semi-axis"
+    label : in `raceway cache`, for instance "inner ring of B7206C, 4 nodes per semi-axis"
     """
     inputs = {
         "points": profile.points,
@@ -578,7 +583,7 @@ def cached_compliance(
         body = Revolution(profile, divisions, young, poisson, 1.0, formulation, seat, hourglass)
         return {"compliance": body.compliance(load_dofs, observed_dofs, offsets, harmonics)}
 
-    return kept("compliance", what, inputs, SOURCES, make)["compliance"]
+    return kept("compliance", label, inputs, SOURCES, make)["compliance"]
 
 
 #: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
@@ -651,7 +656,7 @@ def free_ball(
     degrees = dofs(profile.race, components)
     steps = np.asarray(offsets, dtype=np.int64)
     elements = len(profile.quads) * divisions
-    found = cached_compliance(
+    compliance = cached_compliance(
         f"ball, {divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}",
         profile,
         divisions,
@@ -664,4 +669,4 @@ def free_ball(
         "free",
         harmonics,
     )
-    return FreeBall(divisions, profile.angles, steps, tuple(components), found, elements)
+    return FreeBall(divisions, profile.angles, steps, tuple(components), compliance, elements)

@@ -207,16 +207,16 @@ def _onto(lines: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """Ends of lines (m,) moved along x, so that one of them meets each corner (k,), ascending."""
     if not len(corners):
         return lines
-    taken: list[int] = []
+    corner_lines: list[int] = []
     for i, corner in enumerate(corners):
-        low, high = (taken[-1] + 1 if taken else 1), len(lines) - 1 - (len(corners) - i)
+        low, high = (corner_lines[-1] + 1 if corner_lines else 1), len(lines) - 1 - (len(corners) - i)
         if high < low:
             raise MeshError(
                 f"the outline has {len(corners)} corners on its seat side, the mesh {len(lines)} lines: too coarse"
             )
-        taken.append(low + int(np.argmin(np.abs(lines[low : high + 1] - corner))))
+        corner_lines.append(low + int(np.argmin(np.abs(lines[low : high + 1] - corner))))
     ends = [0, len(lines) - 1]
-    old, new = lines[[ends[0], *taken, ends[1]]], np.concatenate([lines[:1], corners, lines[-1:]])
+    old, new = lines[[ends[0], *corner_lines, ends[1]]], np.concatenate([lines[:1], corners, lines[-1:]])
     return np.asarray(np.interp(lines, old, new))
 
 

@@ -58,10 +58,10 @@ def friction_energy(system: System, record: Record) -> FrictionEnergy:
 def _place(system: System, record: Record) -> np.ndarray:
     """(n, Z, 2) tangential place of the inner and the outer contact [m]; the slip is the place at which nothing pulls."""
     scalars, table = system.scalars, system.table
-    travelled, rest = scalars[CAGE] * record.time, scalars[REST_RADIAL]
+    travelled, rest_radial = scalars[CAGE] * record.time, scalars[REST_RADIAL]
     if system.spin is not None:
         travelled = system.spin.cage_angle(scalars[CAGE], record.time)
-        rest = rest + system.spin.grown(system.spin.speed(record.time))[:, None]
+        rest_radial = rest_radial + system.spin.grown(system.spin.speed(record.time))[:, None]
     azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + travelled[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
     shift = np.broadcast_to(table[:, SHIFT], azimuth.shape)
@@ -73,7 +73,7 @@ def _place(system: System, record: Record) -> np.ndarray:
     side, lever = table[:, SIDE], table[:, LEVER]
     turn = side * (tilt_y * s - tilt_z * c)
     axial = scalars[REST_AXIAL] + shift + side * x + scalars[TILT_ARM] * turn
-    radial = rest + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
+    radial = rest_radial + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
     p, moved = record.ball, system.groove_displacement(record.ball)
     groove = scalars[OFFSET_INNER] + 0.5 * scalars[DIAMETER]
     inner = (
@@ -151,10 +151,10 @@ def _lost_in_contacts(system: System, record: Record, speed: np.ndarray) -> np.n
 
 def rate(values: np.ndarray, dt: float) -> np.ndarray:
     """Derivative by time of samples (n, k), of fourth order inside and of second at both ends."""
-    found = np.gradient(values, dt, axis=0, edge_order=2 if len(values) > 2 else 1)
+    slope = np.gradient(values, dt, axis=0, edge_order=2 if len(values) > 2 else 1)
     if len(values) > 4:
-        found[2:-2] = (8.0 * (values[3:-1] - values[1:-3]) - values[4:] + values[:-4]) / (12.0 * dt)
-    return np.asarray(found)
+        slope[2:-2] = (8.0 * (values[3:-1] - values[1:-3]) - values[4:] + values[:-4]) / (12.0 * dt)
+    return np.asarray(slope)
 
 
 def cumulative(values: np.ndarray, dt: float) -> np.ndarray:

@@ -252,7 +252,7 @@ def copy_vector(source, target):
 
 
 @jit(SETTLE, allocates=True)
-def settle(forces, linear, tolerance, t, rest, response, report):
+def settle(forces, linear, tolerance, t, state, response, report):
     """Move a state at rest to the equilibrium of ``linear.load`` (5,); the response is the contacts' there.
 
     Parameters
@@ -267,7 +267,7 @@ def settle(forces, linear, tolerance, t, rest, response, report):
     int
         ``CONVERGED``, ``NOT_CONVERGED``, ``BALLS_FAILED``, ``NOT_FINITE`` or ``RUN_AWAY`` (nothing holds the ring).
     """
-    constants, q, ball, work = forces.constants, rest.q, rest.ball, response.work
+    constants, q, ball, work = forces.constants, state.q, state.ball, response.work
     if constants.scalars[CAGE] != 0.0:
         constants = Constants(constants.scalars.copy(), constants.table.copy())
         stop(t, constants.scalars, constants.table)
@@ -276,7 +276,7 @@ def settle(forces, linear, tolerance, t, rest, response, report):
     scale[3] = 1.0 / arm
     scale[4] = 1.0 / arm
     still, zeros = np.zeros(5), np.zeros_like(ball)
-    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
+    contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), 0.0)
     now = Response(response.f, response.K, np.empty((5, 5)), work)
     new = Response(np.empty(5), np.empty((5, 5)), now.C, work)
     g, g_new, step, trial = np.zeros(5), np.zeros(5), np.empty(5), np.empty(5)
@@ -348,23 +348,23 @@ _HALVINGS = 30
 
 
 @jit(SETTLE, allocates=True)
-def find_root(forces, linear, tolerance, t, rest, response, report):
-    """Same arguments and result as ``raceway.core.ring.equilibrium.settle``; slips are taken from ``rest`` as committed."""
-    constants, q, ball, work = forces.constants, rest.q, rest.ball, response.work
+def find_root(forces, linear, tolerance, t, state, response, report):
+    """Same arguments and result as ``raceway.core.ring.equilibrium.settle``; slips are taken from ``state`` as committed."""
+    constants, q, ball, work = forces.constants, state.q, state.ball, response.work
     if constants.scalars[CAGE] != 0.0:
         constants = Constants(constants.scalars.copy(), constants.table.copy())
         stop(t, constants.scalars, constants.table)
     # No rates; the columns of slips hold the committed ones.
-    still, known = np.zeros(5), np.empty_like(ball)
-    keep_slips(constants.scalars, ball, known)
-    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
+    still, history = np.zeros(5), np.empty_like(ball)
+    keep_slips(constants.scalars, ball, history)
+    contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), 0.0)
     now = Response(response.f, response.K, np.empty((5, 5)), work)
     J, r, step, weight = np.empty((5, 5)), np.empty(5), np.zeros(5), np.ones(5)
     weight[3] = 1.0 / constants.scalars[TILT_ARM]
     weight[4] = 1.0 / constants.scalars[TILT_ARM]
     before, cuts = np.inf, 0
     for iteration in range(_ROOT_LIMIT):
-        status = forces.system(t, q, still, Balls(ball, 0.0, known), contacts, constants, now)
+        status = forces.system(t, q, still, Balls(ball, 0.0, history), contacts, constants, now)
         norm, scale = np.inf, 0.0
         if status == 0:
             for i in range(work.shape[1]):

@@ -143,11 +143,11 @@ def orbit_near(
     force = np.array([system.outer_force(t) for t in times])
     first = differentiation(samples, period)
     second = first @ first
-    chosen = np.flatnonzero(system.free > 0.0)
-    n = len(chosen)
-    part = np.ix_(chosen, chosen)
+    free = np.flatnonzero(system.free > 0.0)
+    n = len(free)
+    part = np.ix_(free, free)
     mass, damping, stiffness = system.mass[part], system.damping[part], system.stiffness[part]
-    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[chosen]
+    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[free]
     q = start.copy()
     ball = np.zeros((samples, z, system.ball_columns))
     rate = np.zeros_like(ball)
@@ -168,14 +168,14 @@ def orbit_near(
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
         if ring is not None:
-            done = evaluate_many(ring.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
+            evaluated = evaluate_many(ring.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
         else:
-            done = _evaluate_each(system, States(times, q, v, ball, rate), f, K, C)
+            evaluated = _evaluate_each(system, States(times, q, v, ball, rate), f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
-        r = imbalance[:, chosen]
-        residual = float(np.abs(r * weight).max() / scale) if done == samples and np.isfinite(r).all() else np.inf
+        r = imbalance[:, free]
+        residual = float(np.abs(r * weight).max() / scale) if evaluated == samples and np.isfinite(r).all() else np.inf
         if residual <= tolerance and iterations > 2:
             break
         if residual > 2.0 * worst and damping_factor > 1e-3:
@@ -185,20 +185,20 @@ def orbit_near(
             continue
         worst, damping_factor = residual, min(1.0, 2.0 * damping_factor)
         matrix = linear.copy()
-        matrix[diagonal, :, diagonal, :] += K[:, chosen[:, None], chosen[None, :]]
+        matrix[diagonal, :, diagonal, :] += K[:, free[:, None], free[None, :]]
         if inertial:
-            matrix += np.einsum("iab,ij->iajb", C[:, chosen[:, None], chosen[None, :]], first)
+            matrix += np.einsum("iab,ij->iajb", C[:, free[:, None], free[None, :]], first)
         size = samples * n
         try:
             delta = -np.linalg.solve(matrix.reshape(size, size), r.reshape(size)).reshape(samples, n)
         except np.linalg.LinAlgError:  # nothing is in contact, or a resonance is met
             raise ConvergenceError("no periodic orbit found: its equations are singular", {"q": q}) from None
         step = np.zeros_like(q)
-        step[:, chosen] = damping_factor * delta
+        step[:, free] = damping_factor * delta
         q = q + step
     else:
-        left = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
-        raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {left}", {"q": q})
+        remainder = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
+        raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {remainder}", {"q": q})
     return Orbit(period, q, first @ q, second @ q, force, ball, K, C, residual, iterations)
 
 

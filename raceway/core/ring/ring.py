@@ -91,13 +91,13 @@ class SteppedBearing:
         self._ball, self._before = motion.ball.copy(), motion.ball_before.copy()
         self._memory = (self.system.law_state if motion.memory is None else motion.memory).copy()
         self.rollback()
-        rest = -self.mass_times(motion.a) if motion.rest is None else motion.rest.copy()
-        return State(motion.q.copy(), motion.v.copy(), motion.a.copy(), rest)
+        net_force = -self.mass_times(motion.a) if motion.net_force is None else motion.net_force.copy()
+        return State(motion.q.copy(), motion.v.copy(), motion.a.copy(), net_force)
 
     def motion(self, state: State) -> Motion:
         s = state.copy()
-        rest = -self.mass_times(s.a) if s.rest is None else s.rest
-        return Motion(s.u, s.v, s.a, self._ball.copy(), self._before.copy(), rest, self._memory.copy())
+        net_force = -self.mass_times(s.a) if s.net_force is None else s.net_force
+        return Motion(s.u, s.v, s.a, self._ball.copy(), self._before.copy(), net_force, self._memory.copy())
 
     def outer_force(self, t: float) -> np.ndarray:
         return np.asarray(self.system.outer_force(t))
@@ -158,12 +158,12 @@ class SteppedBearing:
         return Observation(u.copy(), v.copy(), self._now.gap, self._now.contact_force, self._ball.copy())
 
     def _free_solve(self, matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-        chosen = self.system.free > 0.0
+        free = self.system.free > 0.0
         out = np.zeros(5)
         try:
-            out[chosen] = np.linalg.solve(self.system.reduced(matrix), right[chosen])
+            out[free] = np.linalg.solve(self.system.reduced(matrix), right[free])
         except np.linalg.LinAlgError:
-            out[chosen] = np.nan  # the next residual is not a number, which the loops report
+            out[free] = np.nan  # the next residual is not a number, which the loops report
         return out
 
 
@@ -203,11 +203,11 @@ class Growth:
     Attributes
     ----------
     common : (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
-    own : (Z, 5) of the rows' own columns of the same, beyond that
+    by_ball : (Z, 5) of the rows' own columns of the same, beyond that
     """
 
     common: np.ndarray
-    own: np.ndarray
+    by_ball: np.ndarray
 
     @classmethod
     def of_inner_raceways(cls, growth: float, balls: int) -> Growth:
@@ -311,9 +311,9 @@ class Ring(ABC):
 
         return SteppedBearing(self)
 
-    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> Self:
+    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> Self:
         """A copy with some of the balls, by their indices (n,), which have the table (n, COLUMNS)."""
-        return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(chosen)].copy(), sliding=None)
+        return attrs.evolve(self, table=table, law_state=self.law_state[self.contacts_of(balls)].copy(), sliding=None)
 
     def contacts_of(self, balls: np.ndarray) -> np.ndarray:
         """Rows of the contacts of some balls: inner races first."""
@@ -333,8 +333,8 @@ class Ring(ABC):
         """With the speed of a time: itself where the speed is steady."""
         if self.spin is None:
             return self
-        found: Self = self.spin.at(self, t)
-        return found
+        ring: Self = self.spin.at(self, t)
+        return ring
 
     @property
     def ball_count(self) -> int:
@@ -368,7 +368,7 @@ class Ring(ABC):
         scalars, table = self.scalars.copy(), self.table.copy()
         scalars[[GYROSCOPIC, CAGE]] = 0.0
         scalars[REST_AXIAL : TILT_ARM + 1] -= growth.common
-        table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] -= growth.own
+        table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] -= growth.by_ball
         table[:, CENTRIFUGAL] = 0.0
         return attrs.evolve(self, scalars=scalars, table=table)
 
@@ -403,15 +403,15 @@ class Ring(ABC):
 
     def reduced(self, matrix: np.ndarray) -> np.ndarray:
         """The part of a (5, 5) matrix that belongs to the unknowns."""
-        chosen = self.free > 0.0
-        return matrix[np.ix_(chosen, chosen)]
+        free = self.free > 0.0
+        return matrix[np.ix_(free, free)]
 
     def acceleration(self, q: np.ndarray, v: np.ndarray, outer: np.ndarray, now: Evaluation) -> np.ndarray:
         """(5,) acceleration from the balance of forces at one state."""
-        chosen = self.free > 0.0
-        rest = self.load + outer - now.force - self.damping @ v - self.stiffness @ q
+        free = self.free > 0.0
+        net_force = self.load + outer - now.force - self.damping @ v - self.stiffness @ q
         a = np.zeros(5)
-        a[chosen] = np.linalg.solve(self.reduced(self.mass), rest[chosen])
+        a[free] = np.linalg.solve(self.reduced(self.mass), net_force[free])
         return a
 
     def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
@@ -437,8 +437,8 @@ class Ring(ABC):
         if not damping.any():
             return undamped
         k, c = self._per_mass(tangent, self.stiffness), self._per_mass(damping)
-        one = np.eye(len(k))
-        fastest = float(np.linalg.eigvals(np.block([[0.0 * one, one], [k, 2.0 * c]])).real.max())
+        identity = np.eye(len(k))
+        fastest = float(np.linalg.eigvals(np.block([[0.0 * identity, identity], [k, 2.0 * c]])).real.max())
         return min(undamped, 2.0 / fastest) if fastest > 0.0 else undamped
 
     def _per_mass(self, matrix: np.ndarray, further: np.ndarray | float = 0.0) -> np.ndarray:
@@ -468,9 +468,9 @@ class Ring(ABC):
         if self.sliding is None:
             return stiffness, damping
         rows = self.of_balls(self.sliding, self.table[self.sliding].copy())
-        there = rows.evaluate(q, ball=now.ball[self.sliding])
-        own = rows.stiffness_at(q, there) + 1j * _INFINITESIMAL * rows.damping_at(q, there)
-        met = stiffness + 1j * _INFINITESIMAL * damping - np.outer(own[:, 0], own[0]) / own[0, 0]
+        evaluation = rows.evaluate(q, ball=now.ball[self.sliding])
+        impedance = rows.stiffness_at(q, evaluation) + 1j * _INFINITESIMAL * rows.damping_at(q, evaluation)
+        met = stiffness + 1j * _INFINITESIMAL * damping - np.outer(impedance[:, 0], impedance[0]) / impedance[0, 0]
         return met.real.copy(), met.imag / _INFINITESIMAL
 
     def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:

@@ -89,13 +89,13 @@ class System(Ring):
         """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
         return self.base_kernel is self.kernel
 
-    def of_balls(self, chosen: np.ndarray, table: np.ndarray) -> System:
+    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> System:
         """With the law's parameters of their contacts."""
-        found, contacts = super().of_balls(chosen, table), self.contacts_of(chosen)
-        found.law_params = np.ascontiguousarray(self.law_params[contacts])
+        ring, contacts = super().of_balls(balls, table), self.contacts_of(balls)
+        ring.law_params = np.ascontiguousarray(self.law_params[contacts])
         if self.mounted_params is not None and self.reach is not None:
-            found.mounted_params, found.reach = self.mounted_params[contacts].copy(), self.reach[contacts].copy()
-        return found
+            ring.mounted_params, ring.reach = self.mounted_params[contacts].copy(), self.reach[contacts].copy()
+        return ring
 
     def running(self, law_params: np.ndarray, reach: np.ndarray) -> System:
         """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
@@ -106,10 +106,10 @@ class System(Ring):
 
     def standing(self, growth: Growth) -> System:
         """At standstill, where laws have the parameters of standstill."""
-        found = super().standing(growth)
-        if found.mounted_params is None or found.reach is None:
-            return found
-        return found.running(found.mounted_params, np.zeros_like(found.reach))
+        ring = super().standing(growth)
+        if ring.mounted_params is None or ring.reach is None:
+            return ring
+        return ring.running(ring.mounted_params, np.zeros_like(ring.reach))
 
     @property
     def ball_columns(self) -> int:
@@ -151,8 +151,8 @@ class System(Ring):
         if not self.condensed:
             return np.zeros(0)
         centre, _ = self.centre_vectors(q, ball=ball)
-        place = (np.arctan2(centre[:, 0], centre[:, 1]) - self.scalars[FIRST]) / self.scalars[DISTANCE]
-        return np.asarray(np.clip(place, 0.0, self.scalars[KNOTS] - 1.0))
+        position = (np.arctan2(centre[:, 0], centre[:, 1]) - self.scalars[FIRST]) / self.scalars[DISTANCE]
+        return np.asarray(np.clip(position, 0.0, self.scalars[KNOTS] - 1.0))
 
     def between_balls(self) -> tuple[np.ndarray, np.ndarray]:
         """M and M_o (2 Z, 2 Z) between groove centres, axial and radial ball by ball [m/N]; see ``raceway.core.ring.kernels.between``.
@@ -245,8 +245,8 @@ class System(Ring):
 
     def stiffness_at_rate(self, q: np.ndarray, now: Evaluation, rate: float) -> np.ndarray:
         """K(g) + g C(g) (5, 5) of motions with exp(g t), g = rate [1/s], about an equilibrium: the balls move with the ring."""
-        there = self.evaluate(q, ball=now.ball, ball_rate=-rate * now.ball, step=Increment(gain=rate))
-        return there.stiffness + rate * there.damping
+        evaluation = self.evaluate(q, ball=now.ball, ball_rate=-rate * now.ball, step=Increment(gain=rate))
+        return evaluation.stiffness + rate * evaluation.damping
 
     def force_rounding(self, q: np.ndarray, ball: np.ndarray | None = None) -> float:
         """What rounding leaves of an imbalance of forces near a state [N]: that of gaps, times the stiffness."""
@@ -302,12 +302,12 @@ class System(Ring):
             return q_now, ball_now, total
         from raceway.core.ring.equilibrium import find_root
 
-        whole = self.without(FRICTION, CAGE)
+        frictionless = self.without(FRICTION, CAGE)
         guess = np.zeros((self.ball_count, self.ball_columns))
         if self.scalars[GYROSCOPIC] != 0.0:
-            q_now, guess, more = whole._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
+            q_now, guess, more = frictionless._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
             total += more
-        guess = whole.evaluate(q_now, ball=guess).ball
+        guess = frictionless.evaluate(q_now, ball=guess).ball
         guess[:, 2:4] = self.stress_free_slip(q_now, guess)
         return q_now, guess, total
 
@@ -342,12 +342,12 @@ class System(Ring):
                     "more balls.",
                     {"q": np.array(q, dtype=float), "ball": ball_now},
                 )
-        what = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
-        left = f"relative residual {report[RESIDUAL]:.1e}"
+        cause = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
+        remainder = f"relative residual {report[RESIDUAL]:.1e}"
         if not np.isfinite(report[RESIDUAL]):
-            left = "the forces leave what can be computed with: check the units of loads and materials"
+            remainder = "the forces leave what can be computed with: check the units of loads and materials"
         raise ConvergenceError(
-            f"no static equilibrium found after {total} iterations: {what}, {left}",
+            f"no static equilibrium found after {total} iterations: {cause}, {remainder}",
             {"q": q_now, "ball": ball_now},
         )
 
@@ -402,15 +402,15 @@ class ChangingSpeed:
         from which balls at the speed of now would have come to their places of now."""
         now = np.array([t])
         speed = float(self.speed(now)[0])
-        found = self.constants(system, speed)
+        ring = self.constants(system, speed)
         if system.scalars[CAGE] != 0.0:
-            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - found.scalars[CAGE] * t
+            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - ring.scalars[CAGE] * t
             c, s = np.cos(ahead), np.sin(ahead)
-            found.table[:, COSINE], found.table[:, SINE] = (
+            ring.table[:, COSINE], ring.table[:, SINE] = (
                 system.table[:, COSINE] * c - system.table[:, SINE] * s,
                 system.table[:, SINE] * c + system.table[:, COSINE] * s,
             )
-        return found
+        return ring
 
     def constants(self, system: R, speed: float) -> R:
         """The system at a steady speed [rad/s]."""

@@ -42,12 +42,12 @@ def viscous_stiffness(
     Orbiting balls see a forward motion (z = -j y) at w less the cage speed, and a backward one at w plus it; axial motions at w.
     That is exact where balls are loaded alike; where they are not, parts that couple these motions are left out.
     """
-    rest, fastest = stiffness(0.0), abs(frequency) + abs(cage)
-    size = np.sqrt(np.abs(np.diag(rest)))
-    linear = (np.abs(stiffness(fastest) - rest - fastest * damping) <= _LINEAR * np.outer(size, size)).all()
+    static, fastest = stiffness(0.0), abs(frequency) + abs(cage)
+    size = np.sqrt(np.abs(np.diag(static)))
+    linear = (np.abs(stiffness(fastest) - static - fastest * damping) <= _LINEAR * np.outer(size, size)).all()
 
     def change(w: float) -> np.ndarray:
-        return 1j * w * damping if linear else _continued(stiffness, w) - rest
+        return 1j * w * damping if linear else _continued(stiffness, w) - static
 
     if cage == 0.0:
         return change(frequency)
@@ -64,8 +64,8 @@ def _continued(stiffness: Callable[[float], np.ndarray], frequency: float) -> np
     size = np.sqrt(np.abs(np.diagonal(values, axis1=1, axis2=2)).max(axis=0))
     size[size == 0.0] = 1.0
     scaled = values / np.outer(size, size)
-    support, others = _RATES[::2], _RATES[1::2]
-    loewner = (scaled[1::2, None] - scaled[::2]) / np.subtract.outer(others, support)[:, :, None, None]
+    support, fitted = _RATES[::2], _RATES[1::2]
+    loewner = (scaled[1::2, None] - scaled[::2]) / np.subtract.outer(fitted, support)[:, :, None, None]
     _, singular, rows = np.linalg.svd(np.moveaxis(loewner, 1, -1).reshape(-1, len(support)), full_matrices=False)
     # Of all weights that interpolate to rounding those whose denominator is largest.
     null = rows[min(int((singular > _ROUNDING * max(singular[0], 1.0)).sum()), len(rows) - 1) :]

@@ -53,31 +53,33 @@ def advance(
     counters = np.zeros(COUNTERS)
     motion = np.zeros((4, 5))
     motion[0], motion[1], motion[2] = start.q, start.v, start.a
-    motion[3] = -system.mass @ start.a if start.rest is None else start.rest
+    motion[3] = -system.mass @ start.a if start.net_force is None else start.net_force
     ball, before, memory = start.ball.copy(), start.ball_before.copy(), system.law_state.copy()
     if start.memory is not None:
         memory[:] = start.memory
     state, recording = State(motion, ball, before, memory), Recording(schedule.stride, rows, probes, counters)
-    done, last = schedule.first, schedule.first + schedule.steps
+    step, last = schedule.first, schedule.first + schedule.steps
     # A speed that changes is another one in every step, which ends at its time.
     addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
-    while done < last:
-        count = min(longest, last - done)
-        now = addressed.at_speed((done + count) * schedule.dt)
-        outer, steps = Outer(now.force, now.force_params, schedule.ramp), Steps(schedule.dt, done, count)
-        taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
-        done += taken
-        if taken < count:
-            raise _failure(system, schedule, done, motion, ball, counters)
-        if on_chunk is not None and (longest == _CHUNK or done == last or done % _CHUNK == 0):
+    while step < last:
+        count = min(longest, last - step)
+        now = addressed.at_speed((step + count) * schedule.dt)
+        outer, steps = Outer(now.force, now.force_params, schedule.ramp), Steps(schedule.dt, step, count)
+        count_taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
+        step += count_taken
+        if count_taken < count:
+            raise _failure(system, schedule, step, motion, ball, counters)
+        if on_chunk is not None and (longest == _CHUNK or step == last or step % _CHUNK == 0):
             try:
-                on_chunk(done - schedule.first, schedule.steps)
+                on_chunk(step - schedule.first, schedule.steps)
             except RacewayError as why:
-                why.state = {**_state(schedule, done, motion, ball), **why.state}
+                why.state = {**_state(schedule, step, motion, ball), **why.state}
                 raise
-    kept = int(counters[ROWS])
-    rows, probes = rows[:kept], probes[:kept]
-    places = [part.reshape(kept, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
+    recorded = int(counters[ROWS])
+    rows, probes = rows[:recorded], probes[:recorded]
+    places = [
+        part.reshape(recorded, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)
+    ]  # positions and, with friction, slips
     return Record(
         time=rows[:, 0],
         displacement=rows[:, 1:6],
@@ -97,10 +99,10 @@ def advance(
     )
 
 
-def _state(schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
+def _state(schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
     """What a run that ends early leaves, by name."""
     return {
-        "t": done * schedule.dt,
+        "t": step * schedule.dt,
         "q": motion[0].copy(),
         "v": motion[1].copy(),
         "a": motion[2].copy(),
@@ -109,11 +111,11 @@ def _state(schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray) 
 
 
 def _failure(
-    system: System, schedule: Schedule, done: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
+    system: System, schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
-    turn = done // schedule.steps_per_turn + 1
-    when = f"after {done - schedule.first} of {schedule.steps} steps (t = {done * schedule.dt:.6g} s, turn {turn})"
-    state = _state(schedule, done, motion, ball)
+    turn = step // schedule.steps_per_turn + 1
+    when = f"after {step - schedule.first} of {schedule.steps} steps (t = {step * schedule.dt:.6g} s, turn {turn})"
+    state = _state(schedule, step, motion, ball)
     if counters[REASON] == UNBOUNDED:
         limit = None
         if np.isfinite(motion).all():
@@ -128,7 +130,7 @@ def _failure(
     if counters[REASON] == BALLS:
         return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
     residual = counters[RESIDUAL]
-    left = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
+    remainder = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
     return ConvergenceError(
-        f"the iteration of a step did not converge {when}, {left}. Take more `integrator.steps_per_turn`.", state
+        f"the iteration of a step did not converge {when}, {remainder}. Take more `integrator.steps_per_turn`.", state
     )

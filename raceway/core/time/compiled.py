@@ -116,7 +116,7 @@ class Trial(NamedTuple):
     q: np.ndarray
     v: np.ndarray
     a: np.ndarray
-    rest: np.ndarray
+    net_force: np.ndarray
     residual: np.ndarray
 
 
@@ -136,21 +136,21 @@ def differences(formula, free, motion, trial):
 
 @jit(types.UniTuple(float64, 3)(FORMULA, LINEAR, MATRIX, TRIAL, RESPONSE, VECTOR, float64), inline=True)
 def imbalance(formula, linear, motion, trial, response, push, arm):
-    """Largest imbalance [N], inertia force and force of all; fills ``rest`` and ``residual``.  Tilts count by the arm [m]."""
+    """Largest imbalance [N], inertia force and force of all; fills ``net_force`` and ``residual``.  Tilts count by the arm [m]."""
     mass, damping, stiffness, free, load = linear
-    q, v, a, rests, residual = trial
+    q, v, a, net_forces, residual = trial
     norm, moving, scale = 0.0, 0.0, 0.0
     for i in range(response.work.shape[1]):
         scale += abs(response.work[CONTACT_FORCE_ROW, i])
     for i in range(5):
         weight = 1.0 if i < 3 else 1.0 / arm
-        rest, inertia, held = response.f[i] - load[i] - push[i], 0.0, 0.0
+        net_force, inertia, held = response.f[i] - load[i] - push[i], 0.0, 0.0
         for j in range(5):
-            rest += damping[i, j] * v[j] + stiffness[i, j] * q[j]
+            net_force += damping[i, j] * v[j] + stiffness[i, j] * q[j]
             inertia += mass[i, j] * ((1.0 - formula.am) * a[j] + formula.am * motion[2, j])
             held += mass[i, j] * abs(q[j])
-        rests[i] = rest
-        residual[i] = (inertia + (1.0 - formula.af) * rest + formula.af * motion[3, i]) * free[i]
+        net_forces[i] = net_force
+        residual[i] = (inertia + (1.0 - formula.af) * net_force + formula.af * motion[3, i]) * free[i]
         norm = max(norm, abs(residual[i]) * weight)
         # Below the rounding of the inertia forces nothing can be asked.
         moving = max(moving, abs(inertia) * weight, 1e-6 * held * formula.to_a * weight)
@@ -191,7 +191,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
-    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
     for step in range(steps.total):
         number = steps.first + step + 1
         t = number * dt
@@ -200,7 +200,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             # Start from constant acceleration.
             counters[EXCITATION] = max(counters[EXCITATION], abs(push[i]) * (1.0 if i < 3 else 1.0 / arm))
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
-        before, halvings, found = np.inf, 0, False
+        before, halvings, balanced = np.inf, 0, False
         for _ in range(_NEWTON_LIMIT):
             differences(formula, linear.free, motion, trial)
             counters[EVALUATIONS] += 1.0
@@ -214,7 +214,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
             # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
             if norm <= enough or 0.5 * before < norm <= tolerance * scale:
-                found = True
+                balanced = True
                 break
             if norm > 2.0 * before and halvings < _HALVINGS:
                 halvings += 1
@@ -227,7 +227,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
                 break
             for i in range(5):
                 q[i] += dq[i]
-        if not found:
+        if not balanced:
             counters[REASON], counters[RESIDUAL] = NEWTON, norm
             return step
         for i in range(5):
@@ -235,8 +235,8 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
                 counters[REASON] = UNBOUNDED
                 return step
         for i in range(5):
-            motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], trial.v[i], trial.a[i], trial.rest[i]
-        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+            motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], trial.v[i], trial.a[i], trial.net_force[i]
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
         copy_matrix(contacts.new, state.memory)
         note_step(recording, number, t, motion, push, work, state.ball)
     return steps.total
@@ -269,10 +269,10 @@ def unbalanced(linear, ground, q, half, push, f):
     if not ground:
         return
     for i in range(5):
-        rest = f[i]
+        force = f[i]
         for j in range(5):
-            rest -= linear.damping[i, j] * half[j] + linear.stiffness[i, j] * q[j]
-        f[i] = rest
+            force -= linear.damping[i, j] * half[j] + linear.stiffness[i, j] * q[j]
+        f[i] = force
 
 
 @jit(boolean(MATRIX, VECTOR, VECTOR, VECTOR), inline=True)
@@ -299,15 +299,15 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
     q, half, guess, a, push = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5)
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
-    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+    next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
     inverse = np.zeros((5, 5))
     if not effective_inverse(linear, dt, inverse):
         counters[REASON] = NEWTON
         return 0
     # A bearing alone has no linear damping and stiffness at all.
-    ground, taken = linear.damping.any() or linear.stiffness.any(), 0
-    while taken < steps.total:
-        number = steps.first + taken + 1
+    ground, steps_taken = linear.damping.any() or linear.stiffness.any(), 0
+    while steps_taken < steps.total:
+        number = steps.first + steps_taken + 1
         t = number * dt
         outer_force(outer, t, push)
         for i in range(5):
@@ -323,54 +323,57 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
             break
         for i in range(5):
             motion[0, i], motion[1, i], motion[2, i] = q[i], half[i] + 0.5 * dt * a[i], a[i]
-        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.known, balls.place)
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
         copy_matrix(contacts.new, state.memory)
         note_step(recording, number, t, motion, push, work, state.ball)
-        taken += 1
-    if taken > 0:
+        steps_taken += 1
+    if steps_taken > 0:
         for i in range(5):
             motion[3, i] = 0.0
             for j in range(5):
                 motion[3, i] -= linear.mass[i, j] * motion[2, j]
-    return taken
+    return steps_taken
 
 
 @jit(void(OUTER, float64, VECTOR, STATE, VECTOR, REST, VECTOR))
-def extrapolate(outer, t, load, state, push, rest, total):
-    """First guess ``rest`` of the next equilibrium, and its load ``total`` (5,): the constant one and ``push`` (5,) at time t."""
+def extrapolate(outer, t, load, state, push, equilibrium, total):
+    """First guess of the next equilibrium, and its load ``total`` (5,): the constant one and ``push`` (5,) at time t."""
     outer_force(outer, t, push)
     for i in range(5):
-        rest.q[i] = state.motion[0, i] + state.motion[1, i]
+        equilibrium.q[i] = state.motion[0, i] + state.motion[1, i]
         total[i] = load[i] + push[i]
-    copy_matrix(state.ball, rest.ball)
+    copy_matrix(state.ball, equilibrium.ball)
 
 
 @jit(boolean(FORCES, float64, REST, MATRIX, RESPONSE), allocates=True)
-def remember(forces, t, rest, before, response):
+def remember(forces, t, equilibrium, before, response):
     """Commit the law's memory of an equilibrium after the balls' places ``before``; False where the balls find no place.
 
     One more evaluation hands it out: no rates, no step of time.
     """
     constants = Constants(forces.constants.scalars.copy(), forces.constants.table.copy())
     stop(t, constants.scalars, constants.table)
-    known = np.empty_like(rest.ball)
-    keep_slips(constants.scalars, before, known)
-    contacts = Contacts(forces.law, forces.law_params, rest.memory, rest.memory.copy(), 0.0)
-    if forces.system(t, rest.q, np.zeros(5), Balls(rest.ball, 0.0, known), contacts, constants, response) != 0:
+    history = np.empty_like(equilibrium.ball)
+    keep_slips(constants.scalars, before, history)
+    contacts = Contacts(forces.law, forces.law_params, equilibrium.memory, equilibrium.memory.copy(), 0.0)
+    if (
+        forces.system(t, equilibrium.q, np.zeros(5), Balls(equilibrium.ball, 0.0, history), contacts, constants, response)
+        != 0
+    ):
         return False
-    copy_matrix(contacts.new, rest.memory)
+    copy_matrix(contacts.new, equilibrium.memory)
     return True
 
 
 @jit(void(REST, STATE))
-def accept(rest, state):
+def accept(equilibrium, state):
     """Move the state to an equilibrium; motion[1] is the change over the step."""
     motion, ball, before = state.motion, state.ball, state.ball_before
     for i in range(5):
-        motion[1, i] = rest.q[i] - motion[0, i]
-        motion[0, i] = rest.q[i]
+        motion[1, i] = equilibrium.q[i] - motion[0, i]
+        motion[0, i] = equilibrium.q[i]
     copy_matrix(ball, before)
-    copy_matrix(rest.ball, ball)
+    copy_matrix(equilibrium.ball, ball)
 
 
 @jit(float64(int64))
@@ -393,22 +396,22 @@ def quasi_static(solver: Kernel) -> Kernel:
         response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
         report, push, total, still = np.zeros(2), np.empty(5), np.empty(5), state.motion.copy()
         loaded = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
-        rest = Rest(np.empty(5), np.empty_like(state.ball), state.memory)
+        equilibrium = Rest(np.empty(5), np.empty_like(state.ball), state.memory)
         for step in range(steps.total):
             number = steps.first + step + 1
             t = number * steps.dt
-            extrapolate(outer, t, linear.load, state, push, rest, total)
-            status = solver(forces, loaded, coefficients[0], t, rest, response, report)
+            extrapolate(outer, t, linear.load, state, push, equilibrium, total)
+            status = solver(forces, loaded, coefficients[0], t, equilibrium, response, report)
             counters[EVALUATIONS] += report[ITERATIONS] + 1.0
             if status != CONVERGED:
                 counters[REASON], counters[RESIDUAL] = reason_of(status), report[LEFT]
                 return step
-            if state.memory.shape[1] > 0 and not remember(forces, t, rest, state.ball, response):
+            if state.memory.shape[1] > 0 and not remember(forces, t, equilibrium, state.ball, response):
                 counters[REASON] = BALLS
                 return step
-            accept(rest, state)
+            accept(equilibrium, state)
             for i in range(5):
-                still[0, i] = rest.q[i]
+                still[0, i] = equilibrium.q[i]
             note_step(recording, number, t, still, push, work, state.ball)
         return steps.total
 

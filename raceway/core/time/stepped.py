@@ -52,7 +52,7 @@ def _step(
     """
     am, af, beta, gamma = numbers
     before, dt = recorder.state, recorder.schedule.dt
-    rest_before = -system.mass_times(before.a) if before.rest is None else before.rest
+    net_force_before = -system.mass_times(before.a) if before.net_force is None else before.net_force
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
     u = before.u + dt * before.v + 0.5 * dt * dt * before.a if start is None else start
@@ -64,11 +64,11 @@ def _step(
         v = before.v + dt * ((1.0 - gamma) * before.a + gamma * a)
         recorder.evaluations += 1
         try:
-            rest = system.internal(t, dt, u, v) - outer
+            net_force = system.internal(t, dt, u, v) - outer
         except ConvergenceError as why:
             raise recorder.stalled(history, str(why)) from why
         inertia = system.mass_times((1.0 - am) * a + am * before.a)
-        residual = inertia + (1.0 - af) * rest + af * rest_before
+        residual = inertia + (1.0 - af) * net_force + af * net_force_before
         norm = system.measure(residual)
         history.append(norm)
         if not np.isfinite(norm):
@@ -79,7 +79,7 @@ def _step(
         largest = max(system.contacts()[2], load, moving)
         # As in the compiled loop: what no longer shrinks is rounding, and is measured by the largest force of all.
         if norm <= tolerance * max(excitation, moving) + NOTHING or 0.5 * norm_before < norm <= tolerance * largest:
-            return State(u, v, a, rest)
+            return State(u, v, a, net_force)
         if norm > (2.0 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1
             du *= 0.5
@@ -158,8 +158,8 @@ def quasi_static(system: SteppedSystem, recorder: Recorder, tolerance: float) ->
     nothing = np.zeros(system.size)
     for step in range(1, recorder.schedule.steps + 1):
         before = recorder.state
-        u, rest = equilibrium(system, recorder, recorder.time_of(step), before.u + before.v, tolerance)
-        recorder.accept(State(u, u - before.u, nothing, rest), velocity=nothing)
+        u, net_force = equilibrium(system, recorder, recorder.time_of(step), before.u + before.v, tolerance)
+        recorder.accept(State(u, u - before.u, nothing, net_force), velocity=nothing)
 
 
 def equilibrium(
@@ -173,21 +173,21 @@ def equilibrium(
     for _ in range(NEWTON_LIMIT):
         recorder.evaluations += 1
         try:
-            rest = system.internal(t, 0.0, u, still) - outer
+            net_force = system.internal(t, 0.0, u, still) - outer
         except ConvergenceError as why:
             raise recorder.stalled(history, str(why)) from why
-        norm = system.measure(rest)
+        norm = system.measure(net_force)
         history.append(norm)
         if not np.isfinite(norm) or np.abs(u).max() >= BOUND:
             raise recorder.unbounded()
         if norm <= tolerance * max(system.contacts()[2], load) + NOTHING:
-            return u, rest
+            return u, net_force
         if norm > (1.5 if len(history) < PATIENCE else 0.999) * norm_before and halvings < HALVINGS:
             halvings += 1
             du *= 0.5
             u = u - du
             continue
         halvings, norm_before = 0, norm
-        du = system.solve(1.0, 0.0, 0.0, -rest)
+        du = system.solve(1.0, 0.0, 0.0, -net_force)
         u = u + du
     raise recorder.stalled(history)

@@ -5,10 +5,10 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records
     system(t, q, v, balls, contacts, constants, response) -> status
 
     q, v (5,)   displacement [m, rad] and velocity of the reference point: x, y, z, tilt_y, tilt_z
-    balls       place (Z, 2 to 8), in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
+    balls       position (Z, 2 to 8), in: a first guess; out: the position of each ball in its meridian plane [m], then the slip
                 of its inner and outer contact where there is friction [m], of condensed bodies the structural approach of
                 both contacts and, where balls act on each other through the rings, at last the displacement of the inner
-                groove centre against the outer one by that [m].  gain [1/s], known (like place) [m/s]: 0 and zeros at
+                groove centre against the outer one by that [m].  gain [1/s], history (like position) [m/s]: 0 and zeros at
                 rest; the columns of slips hold those that were committed last [m]; see ``layout``
     contacts    the law, its parameters and memory: inner races first, then outer
     constants   of the model, laid out in ``layout``

@@ -151,8 +151,8 @@ def _approaches(scalars, work, k, inner, outer):
 
 
 @jit(types.UniTuple(float64, 8)(VECTOR, MATRIX, int64, float64, float64))
-def _by_centre(scalars, work, k, place, speed):
-    """Of one ball, structural approaches eliminated, by e times ``place`` and its velocity times ``speed``.
+def _by_centre(scalars, work, k, position, speed):
+    """Of one ball, structural approaches eliminated, by e times ``position`` and its velocity times ``speed``.
 
     Returns
     -------
@@ -161,27 +161,27 @@ def _by_centre(scalars, work, k, place, speed):
     z = work.shape[1] // 2
     ga, gr, cross = work[TURNING, k], work[TURNING, z + k], scalars[BALL_CROSS]
     di, do = -work[CONTACT_FORCE, k] * work[SLOPE, k], -work[CONTACT_FORCE, z + k] * work[SLOPE, z + k]
-    qia = place * work[BY_AXIAL, k] + speed * work[BY_AXIAL_SPEED, k]
-    qir = place * work[BY_RADIAL, k] + speed * work[BY_RADIAL_SPEED, k]
-    qoa = place * work[BY_AXIAL, z + k] + speed * work[BY_AXIAL_SPEED, z + k]
-    qor = place * work[BY_RADIAL, z + k] + speed * work[BY_RADIAL_SPEED, z + k]
+    qia = position * work[BY_AXIAL, k] + speed * work[BY_AXIAL_SPEED, k]
+    qir = position * work[BY_RADIAL, k] + speed * work[BY_RADIAL_SPEED, k]
+    qoa = position * work[BY_AXIAL, z + k] + speed * work[BY_AXIAL_SPEED, z + k]
+    qor = position * work[BY_RADIAL, z + k] + speed * work[BY_RADIAL_SPEED, z + k]
     ci, co = work[OWN, k], work[OWN, z + k]
     ia, oa = _approaches(
-        scalars, work, k, ci * qia + cross * qoa - place * di * ga, cross * qia + co * qoa - place * do * ga
+        scalars, work, k, ci * qia + cross * qoa - position * di * ga, cross * qia + co * qoa - position * do * ga
     )
     ir, orr = _approaches(
-        scalars, work, k, ci * qir + cross * qor - place * di * gr, cross * qir + co * qor - place * do * gr
+        scalars, work, k, ci * qir + cross * qor - position * di * gr, cross * qir + co * qor - position * do * gr
     )
     wai, wri, wao, wro = _by_shift(work, k)
     half_i, half_o = -0.5 * work[CONTACT_FORCE, k] ** 2, -0.5 * work[CONTACT_FORCE, z + k] ** 2
-    slope = place * (half_i * work[SLOPE, k] + half_o * work[SLOPE, z + k])
-    curve = place * (half_i * work[CURVE, k] + half_o * work[CURVE, z + k])
+    slope = position * (half_i * work[SLOPE, k] + half_o * work[SLOPE, z + k])
+    curve = position * (half_i * work[CURVE, k] + half_o * work[CURVE, z + k])
     haa, har = 2.0 * ga * gr, gr * gr - ga * ga
     ta, tr = di * qia + do * qoa, di * qir + do * qor
-    aa = place * work[FORCE_BY_CENTRE, k] + speed * work[FORCE_BY_SPEED, k]
-    ar = place * work[FORCE_BY_CENTRE, z + k] + speed * work[FORCE_BY_SPEED, z + k]
-    ra = place * work[FORCE_BY_CENTRE + 1, k] + speed * work[FORCE_BY_SPEED + 1, k]
-    rr = place * work[FORCE_BY_CENTRE + 1, z + k] + speed * work[FORCE_BY_SPEED + 1, z + k]
+    aa = position * work[FORCE_BY_CENTRE, k] + speed * work[FORCE_BY_SPEED, k]
+    ar = position * work[FORCE_BY_CENTRE, z + k] + speed * work[FORCE_BY_SPEED, z + k]
+    ra = position * work[FORCE_BY_CENTRE + 1, k] + speed * work[FORCE_BY_SPEED + 1, k]
+    rr = position * work[FORCE_BY_CENTRE + 1, z + k] + speed * work[FORCE_BY_SPEED + 1, z + k]
     return (
         aa + curve * ga * ga + slope * haa + ga * ta + wai * ia + wao * oa,
         ar + curve * ga * gr + slope * har + ga * tr + wai * ir + wao * orr,

@@ -113,10 +113,10 @@ def single_contact(ring: System, contact: int) -> System:
     ----------
     contact : its number, inner races first, then outer
     """
-    found = impact_system(1.0, ring.law, ring.law_params[contact], state_size=ring.law_state.shape[1])
-    own = {CLEARANCE: 0.0, REST_AXIAL: found.scalars[REST_AXIAL], TILT_ARM: found.scalars[TILT_ARM]}
+    system = impact_system(1.0, ring.law, ring.law_params[contact], state_size=ring.law_state.shape[1])
+    entries = {CLEARANCE: 0.0, REST_AXIAL: system.scalars[REST_AXIAL], TILT_ARM: system.scalars[TILT_ARM]}
     # Whatever else a ring says of its contacts' normal forces holds here, too.
-    found.scalars = ring.scalars.copy()
-    for entry, value in own.items():
-        found.scalars[entry] = value
-    return found
+    system.scalars = ring.scalars.copy()
+    for entry, value in entries.items():
+        system.scalars[entry] = value
+    return system

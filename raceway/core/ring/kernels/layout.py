@@ -67,13 +67,13 @@ def place(t, q, v, constants, work, rows):
     for k in range(n):
         cosine, sine = table[k, COSINE], table[k, SINE]
         side, lever, shift = table[k, SIDE], table[k, LEVER], table[k, OWN_REST_AXIAL] + table[k, SHIFT]
-        own, reach = table[k, OWN_REST_RADIAL], arm + table[k, OWN_TILT_ARM]
+        radial, reach = table[k, OWN_REST_RADIAL], arm + table[k, OWN_TILT_ARM]
         c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
         u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
         work[direction, k], work[direction, n + k] = c, s
         work[centre, k], work[centre, n + k] = (
             rest_a + shift + side * (x + reach * u),
-            rest_r + own + y * c + z * s - lever * u,
+            rest_r + radial + y * c + z * s - lever * u,
         )
         work[velocity, k] = side * (vx + reach * u_rate)
         work[velocity, n + k] = vy * c + vz * s - lever * u_rate
@@ -328,16 +328,16 @@ def slips_end(scalars, ball):
 
 
 @jit(void(VECTOR, MATRIX, MATRIX))
-def keep_slips(scalars, ball, known):
-    """known, like ball: zeros, and the committed slips: what is known of the rates of balls at rest."""
+def keep_slips(scalars, ball, history):
+    """history, like ball, of balls at rest: zeros, and the committed slips."""
     end = slips_end(scalars, ball)
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
-            known[k, c] = ball[k, c] if 2 <= c < end else 0.0
+            history[k, c] = ball[k, c] if 2 <= c < end else 0.0
 
 
 @jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
-def next_balls(scalars, dt, ball, before, known, trial):
+def next_balls(scalars, dt, ball, before, history, trial):
     """First guess of the balls after a step, and the part of their rates that is known by then.
 
     Notes
@@ -349,12 +349,12 @@ def next_balls(scalars, dt, ball, before, known, trial):
         for c in range(ball.shape[1]):
             now, last = ball[k, c], before[k, c]
             committed = SLIPS <= c < end
-            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            history[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if committed else 2.0 * now - last
 
 
 @jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
-def accept_balls(scalars, dt, ball, before, known, trial):
+def accept_balls(scalars, dt, ball, before, history, trial):
     """Commit ``trial``, then what ``next_balls`` gives for the step after it: in one pass."""
     end, inverse = slips_end(scalars, ball), 1.0 / dt
     for k in range(ball.shape[0]):
@@ -362,7 +362,7 @@ def accept_balls(scalars, dt, ball, before, known, trial):
             now, last = trial[k, c], ball[k, c]
             committed = SLIPS <= c < end
             before[k, c], ball[k, c] = last, now
-            known[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
+            history[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if committed else 2.0 * now - last
 
 

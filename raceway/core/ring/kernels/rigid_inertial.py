@@ -85,7 +85,7 @@ def _first_guess(k, scalars, table, ball, work):
 
 
 @jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def _approach(k, scalars, table, ball, ball_gain, ball_known, work):
+def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
     z = ball.shape[0]
     li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
@@ -98,7 +98,7 @@ def _approach(k, scalars, table, ball, ball_gain, ball_known, work):
     if si > 0.0:
         by_si = 1.0 / si
         ia, ir = xa * by_si, xr * by_si
-    own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+    own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
     rate_i = work[SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
     rate_o = work[SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
     gap_i, gap_o = li - si + work[SHIFT, k], lo - so + work[SHIFT, z + k]
@@ -222,7 +222,7 @@ def _condense(k, ball_gain, work):
 @jit(SYSTEM)
 def rigid_inertial(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 2) holds p [m]; a row of zeros asks for a first guess."""
-    ball, ball_gain, ball_known = balls
+    ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
     z, elastic_bodies = table.shape[0], work.shape[0] > WORK_ROWS
@@ -235,7 +235,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     moving = z
     for _ in range(_ITERATIONS):
         for k in range(z):
-            _approach(k, scalars, table, ball, ball_gain, ball_known, work)
+            _approach(k, scalars, table, ball, ball_gain, ball_history, work)
         normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[DONE, z + k] == 0.0:

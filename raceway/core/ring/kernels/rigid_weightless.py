@@ -57,7 +57,7 @@ APPROACH, OUTER = SPEED, LENGTH
 
 
 @jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def _share(k, scalars, table, ball, ball_gain, ball_known, work):
+def _share(k, scalars, table, ball, ball_gain, ball_history, work):
     """First guess of ball k: direction and length of its line, and the approach shared as Hertzian contacts share it."""
     z = table.shape[0]
     li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
@@ -68,8 +68,8 @@ def _share(k, scalars, table, ball, ball_gain, ball_known, work):
     speed = work[VELOCITY, k] * na + work[VELOCITY, z + k] * nr
     approach = length - li - lo - work[SHIFT, k] - work[SHIFT, z + k]
     outer = (table[k, OUTER_SHARE] if approach > 0.0 else 0.5) * approach
-    own = ball_gain * (lo + work[SHIFT, z + k] + outer) + ball_known[k, 0]
-    rate_i, rate_o = own - speed + work[SHIFT_RATE, k], work[SHIFT_RATE, z + k] - own
+    ball_rate = ball_gain * (lo + work[SHIFT, z + k] + outer) + ball_history[k, 0]
+    rate_i, rate_o = ball_rate - speed + work[SHIFT_RATE, k], work[SHIFT_RATE, z + k] - ball_rate
     work[NORMAL, k], work[NORMAL, z + k] = na, nr
     work[APPROACH, z + k], work[LENGTH, k] = approach, length
     work[OUTER, z + k] = outer
@@ -154,7 +154,7 @@ def _keep_for_bodies(k, z, ball_gain, work):
 @jit(SYSTEM)
 def rigid_weightless(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball[:, 0] is s_o [m], ball[:, 1] is not used."""
-    ball, ball_gain, ball_known = balls
+    ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
     z, arm, elastic_bodies = table.shape[0], scalars[TILT_ARM], work.shape[0] > WORK_ROWS
@@ -163,7 +163,7 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     if elastic_bodies:
         move_centres(work, NORMAL, VELOCITY)
     for k in range(z):
-        _share(k, scalars, table, ball, ball_gain, ball_known, work)
+        _share(k, scalars, table, ball, ball_gain, ball_history, work)
     moving = 1
     for _ in range(_ITERATIONS):
         normal_forces(contacts, scalars, work)

@@ -127,21 +127,21 @@ def begin(t, q, v, constants, work):
 
 
 @jit(void(VECTOR, MATRIX, float64, MATRIX, MATRIX))
-def shift(scalars, ball, ball_gain, ball_known, work):
+def shift(scalars, ball, ball_gain, ball_history, work):
     """Hand structural approaches and displacements of groove centres, the last columns of ``ball``, to the rigid kernel."""
     z, first = ball.shape[0], slips_end(scalars, ball)
     for k in range(z):
         for side in range(2):
             w = ball[k, first + side]
             work[SHIFT, k + side * z] = w
-            work[SHIFT_RATE, k + side * z] = ball_gain * w + ball_known[k, first + side]
+            work[SHIFT_RATE, k + side * z] = ball_gain * w + ball_history[k, first + side]
     if scalars[COUPLED] == 0.0:
         return
     for k in range(z):
         for c in range(2):
             d = ball[k, first + 2 + c]
             work[MOVED, k + c * z] = d
-            work[MOVED_RATE, k + c * z] = ball_gain * d + ball_known[k, first + 2 + c]
+            work[MOVED_RATE, k + c * z] = ball_gain * d + ball_history[k, first + 2 + c]
     _compliances(scalars, work)
 
 
@@ -202,11 +202,11 @@ def _rests(first, scalars, ball, work):
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
         w = ball[k, first + side]
-        rest = _compliance_times(scalars, work, CONTACT_FORCE, c) - w
-        work[STEP, c] = rest
+        residual = _compliance_times(scalars, work, CONTACT_FORCE, c) - w
+        work[STEP, c] = residual
         # Second order in what is left: the force times w, less half of what its part C Q would store.
-        work[STORED, c] = 0.5 * work[CONTACT_FORCE, c] * (w - rest)
-        norm = max(norm, abs(rest))
+        work[STORED, c] = 0.5 * work[CONTACT_FORCE, c] * (w - residual)
+        norm = max(norm, abs(residual))
         deepest = max(deepest, -work[GAP, c])
     return norm, deepest
 
@@ -333,14 +333,14 @@ def _rows_of_ball(k, arm, table, work):
     ga, gr = work[TURNING, k], work[TURNING, z + k]
     seat = seat_of(k, arm, table, work, DIRECTION)
     for c in (k, z + k):
-        other = z + k if c == k else k
+        opposite = z + k if c == k else k
         to_ring(seat, Pair(work[BY_AXIAL, c], work[BY_RADIAL, c]), work[BY_TURN, c], work, BY_Q, c)
         to_ring(seat, Pair(work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c]), 0.0, work, BY_V, c)
         rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
         d = -work[CONTACT_FORCE, c] * work[SLOPE, c]
         to_ring(seat, Pair(d * ga, d * gr), 0.0, work, TURN, c)
         # B + D^T S: a shift changes the forces that turn the ring, too.
-        d = d * work[BY_OWN, c] - work[CONTACT_FORCE, other] * work[SLOPE, other] * work[BY_OTHER, other]
+        d = d * work[BY_OWN, c] - work[CONTACT_FORCE, opposite] * work[SLOPE, opposite] * work[BY_OTHER, opposite]
         by_shift = Pair(work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr)
         to_ring(seat, by_shift, work[COUPLE_BY_SHIFT, c], work, RING, c)
     return rates
@@ -388,12 +388,12 @@ def condensed(rigid: Kernel) -> Kernel:
     @jit(SYSTEM)
     def elastic(t, q, v, balls, contacts, constants, response):
         # See ``raceway.core.ring.kernels``; the last columns of ball belong to the elasticity of the bodies [m].
-        ball, ball_gain, ball_known = balls
+        ball, ball_gain, ball_history = balls
         scalars, table = constants
         f, K, C, work = response
         begin(t, q, v, constants, work)
         for _ in range(ITERATIONS):
-            shift(scalars, ball, ball_gain, ball_known, work)
+            shift(scalars, ball, ball_gain, ball_history, work)
             status = rigid(t, q, v, balls, contacts, constants, response)
             if status != 0:
                 return status

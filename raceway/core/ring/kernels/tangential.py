@@ -125,7 +125,7 @@ def seat_outside(k, scalars, table, ball, work):
 
 
 @jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def approach(k, scalars, ball, ball_gain, ball_known, work):
+def approach(k, scalars, ball, ball_gain, ball_history, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
     z = ball.shape[0]
     pa, pr = ball[k, 0], ball[k, 1]
@@ -133,7 +133,7 @@ def approach(k, scalars, ball, ball_gain, ball_known, work):
     so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
     no_a, no_r = pa / so, pr / so
     ni_a, ni_r = (xa / si, xr / si) if si > 0.0 else (no_a, no_r)
-    own_a, own_r = ball_gain * pa + ball_known[k, 0], ball_gain * pr + ball_known[k, 1]
+    own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
     rate_i = -(ni_a * (work[row.VELOCITY, k] - own_a) + ni_r * (work[row.VELOCITY, z + k] - own_r))
     rate_o = -(no_a * own_a + no_r * own_r)
     gap_i, gap_o = scalars[OFFSET_INNER] - si + work[SHIFT, k], scalars[OFFSET_OUTER] - so + work[SHIFT, z + k]
@@ -360,7 +360,7 @@ def roll(k, work):
 
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
-def rub(k, contacts, scalars, ball, ball_known, work):
+def rub(k, contacts, scalars, ball, ball_history, work):
     """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``.
 
     Notes
@@ -376,8 +376,8 @@ def rub(k, contacts, scalars, ball, ball_known, work):
     inner, outer = contacts
     at_i = li * np.arctan2(inner.axial, inner.radial) - work[row.TURNED, z + k]
     at_o = lo * np.arctan2(outer.axial, outer.radial)
-    gi = _grip(inner, li, at_i - ball_known[k, SLIPS], mu, stick)
-    go = _grip(outer, lo, at_o - ball_known[k, SLIPS + 1], mu, stick)
+    gi = _grip(inner, li, at_i - ball_history[k, SLIPS], mu, stick)
+    go = _grip(outer, lo, at_o - ball_history[k, SLIPS + 1], mu, stick)
     ball[k, SLIPS], ball[k, SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
     work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k] = gi.force, go.force
     work[row.BY_ANGLE, k], work[row.BY_ANGLE, z + k] = gi.by_angle, go.by_angle
@@ -532,7 +532,7 @@ _ITERATIONS = 300
 @jit(SYSTEM)
 def rigid_tangential(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball (Z, 4): p [m], slips [m]."""
-    ball, ball_gain, ball_known = balls
+    ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
     force = work[CONTACT_FORCE]
@@ -550,13 +550,13 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
             if attempt == PATIENCE and work[row.STATE, z + k] == row.MOVES:
                 # Forces without a potential can lead in circles: once more from the seat on the outer race.
                 seat_outside(k, scalars, table, ball, work)
-            approach(k, scalars, ball, ball_gain, ball_known, work)
+            approach(k, scalars, ball, ball_gain, ball_history, work)
         normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[row.STATE, z + k] == row.MOVES:
                 sides = contacts_of(k, ball_gain, work)
                 if scalars[FRICTION] != 0.0:
-                    rub(k, sides, scalars, ball, ball_known, work)
+                    rub(k, sides, scalars, ball, ball_history, work)
                 else:
                     roll(k, work)
                 if scalars[GYROSCOPIC] != 0.0:
