@@ -11,7 +11,7 @@ import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import attrs
 
@@ -25,6 +25,8 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from raceway.scene.scene import Scene
 
+#: What a user hands in as a scene: the scene, its path, its TOML text or its tables.
+SceneSource: TypeAlias = "Scene | str | os.PathLike[str] | Mapping[str, Any]"
 #: A change: ``"load.axial=400"``, ``{"load.axial": 400}`` or ``{"load": {"axial": 400}}``.
 Change = str | Mapping[str, Any]
 #: What makes a string the text of a scene rather than the name of a file.
@@ -151,7 +153,7 @@ def as_given(source: Any) -> Given:
     raise SceneError.at("scene", None, rule)
 
 
-def as_scene(source: Any, *changes: Change, plugins: Iterable[str | Path] = ()) -> Scene:
+def as_scene(source: SceneSource, *changes: Change, plugins: Iterable[str | Path] = ()) -> Scene:
     """A scene of whatever a user hands in as one.
 
     Parameters

@@ -84,7 +84,6 @@ class Candidate:
     conformity_outer: float
     dynamic_errors: tuple[float, ...]
     static_errors: tuple[float, ...]
-    stiffness_errors: tuple[float, ...]
     weight: float
     alike: float | None = None
 
@@ -132,9 +131,7 @@ def by_tables(size: Printed, metric: bool = False) -> list[Candidate]:
             off = np.array([*(np.abs(x).max() for x in (c, c0)), stiff.mean() if stiff.size else 0.0]) / _BY_TABLES
             shape = (np.array(_shape(size, int(z), d)[:2]) - _TABLES_SHAPE) / _TABLES_SCATTER
             weight = -0.5 * (off @ off + shape @ shape) - np.log([*_BY_TABLES, *_TABLES_SCATTER]).sum()
-            candidates.append(
-                Candidate("tables", int(z), d, CONFORMITY, CONFORMITY, tuple(c), tuple(c0), tuple(stiff), float(weight))
-            )
+            candidates.append(Candidate("tables", int(z), d, CONFORMITY, CONFORMITY, tuple(c), tuple(c0), float(weight)))
     return candidates
 
 
@@ -211,7 +208,7 @@ def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
                 # A width of the conformity is one of C0: C0 falls with (2 f - 1)^0.64.
                 spread = 0.64 * 2.0 * width / (2.0 * f - 1.0)
                 weight = np.log(grooves + 1e-7) + np.log(likely + 1e-5) - np.log([spread, *_BY_GROOVES, *_SHAPE]).sum()
-                errors = (float(np.expm1(c)),), (0.0,), tuple(stiff)
+                errors = (float(np.expm1(c)),), (0.0,)
                 alike_share = float(grooves * likely)
                 candidates.append(Candidate("grooves", int(z), d, float(f), outer, *errors, float(weight), alike_share))
     return candidates

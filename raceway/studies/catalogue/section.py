@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -57,7 +57,7 @@ def section(name: str, bearing: Bearing) -> Figure:
 
 def _outline(b: Bearing, inner: bool) -> np.ndarray:
     """Places (n, 2) [m] along the outline of a ring, axial and radial, with its groove and shoulders."""
-    shape: Any = ring_shape(b, inner)
+    shape = ring_shape(b, inner)
     side = 0.5 * shape.width
     reach = np.sqrt(max(shape.groove**2 - (shape.land - shape.centre_r) ** 2, 0.0))
     x = np.linspace(max(shape.centre_x - reach, -side), min(shape.centre_x + reach, side), _POINTS)

@@ -113,7 +113,7 @@ def fit(options: FitOptions) -> int:
             fit_numbers(
                 options.data, scene, options.free, mass=options.mass, plugins=options.plugins, progress=progress, **rig
             )
-            if options.free
+            if options.free or scene is None
             else identify_bearing(options.data, scene, plugins=options.plugins, progress=progress, **rig)
         )
     content, files = answer.to_dict(), list[str]()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -15,11 +15,11 @@ from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number, number_within, read_in
 from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.tables import Tables
 from raceway.studies.fit.column_headers import quantity_of
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
-from raceway.studies.fit.signals import headers_of, signals_of, table_of
+from raceway.studies.fit.signals import Data, headers_of, signals_of, table_of
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -213,12 +213,12 @@ def _sentence(combination: Combination, numbers: Mapping[str, tuple[float, float
 
 @door
 def fit(
-    data: Any,
-    scene: Any = None,
+    data: Data,
+    scene: SceneSource | None = None,
     free: Iterable[str] | str = (),
     *,
     mass: float | None = None,
-    slow_roll: Any = None,
+    slow_roll: Data | None = None,
     run_out: tuple[float, float] | None = None,
     columns: Mapping[str, str] | None = None,
     plugins: Iterable[str | Path] = (),
@@ -278,7 +278,8 @@ def fit(
             report("searching", 1, 2)
             return fit_record(record, names, mass)
         _refuse(mass is not None, "mass", "belongs to a record of force and displacement; a scene has its own")
-        _refuse(scene is None, "scene", "is missing: give --scene, whose answers the data are fitted by")
+        if scene is None:
+            raise SceneError.at("scene", None, "is missing: give --scene, whose answers the data are fitted by")
         read = as_scene(scene, plugins=plugins)
         if record is not None:
             subtracted = stated_run_out(slow_roll, run_out, columns)

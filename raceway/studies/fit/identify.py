@@ -6,7 +6,7 @@ from cmath import exp
 from collections.abc import Iterable, Mapping, Sequence
 from math import pi, radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -19,7 +19,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
 from raceway.plugins.pictures import given_axes, save_figure
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.tables import Rig
 from raceway.storage.files import writable
@@ -38,7 +38,7 @@ from raceway.studies.fit.rig import (
     with_tilt_of,
 )
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
-from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
+from raceway.studies.fit.signals import Data, Recording, faults_at, recording_of, signals_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, stated_run_out, synchronous
 from raceway.studies.shaft import Bearing, State, bearing, rotor
 
@@ -306,10 +306,10 @@ class Identified(Shown):
 
 @door
 def identify(
-    signals: Any,
-    scene: Any,
+    signals: Data,
+    scene: SceneSource,
     *,
-    slow_roll: Any = None,
+    slow_roll: Data | None = None,
     run_out: tuple[float, float] | None = None,
     columns: Mapping[str, str] | None = None,
     out: str | Path | None = None,

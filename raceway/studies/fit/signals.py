@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import attrs
 import numpy as np
@@ -20,6 +20,13 @@ from raceway.storage.files import write_whole
 from raceway.storage.number_table import NumberTable, read_heads, read_numbers
 from raceway.studies.fit.column_headers import IGNORE, columns_of
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from pandas import DataFrame
+    from xarray import Dataset
+
+#: A CSV file's path, columns by their headers, or labelled columns.
+Data: TypeAlias = "str | Path | Mapping[str, ArrayLike] | DataFrame | Dataset"
 #: Fewest samples of a record.
 _LEAST = 32
 #: Share of all samples that may lie at one end of the range beyond those of a sine of the same resolution.
@@ -51,7 +58,7 @@ def faults_at(source: str) -> Iterator[None]:
         raise SceneError.at(source, None, str(why)) from None
 
 
-def headers_of(data: Any, name: str) -> list[str]:
+def headers_of(data: Data, name: str) -> list[str]:
     """Column headers of data, without the numbers of a file."""
     if not isinstance(data, str | Path):
         return list(_arrays(data, name))
@@ -60,7 +67,7 @@ def headers_of(data: Any, name: str) -> list[str]:
 
 
 def table_of(
-    data: Any, name: str, word: str, judge: Callable[[list[str]], object] = lambda headers: None
+    data: Data, name: str, word: str, judge: Callable[[list[str]], object] = lambda headers: None
 ) -> tuple[NumberTable, str]:
     """Numbers below their column headers, and their source: a CSV file's path, or ``name``.
 
@@ -95,7 +102,7 @@ def table_of(
     return NumberTable(list(columns), values, np.arange(len(values)), word), name
 
 
-def _arrays(data: Any, name: str) -> dict[str, Any]:
+def _arrays(data: Any, name: str) -> dict[str, ArrayLike]:
     if hasattr(data, "data_vars"):
         units = {variable: str(data[variable].attrs.get("units", "1")) for variable in data.variables}
         return {f"{key} [{unit}]" if unit not in ("", "1") else str(key): data[key].values for key, unit in units.items()}
@@ -107,7 +114,7 @@ def _arrays(data: Any, name: str) -> dict[str, Any]:
     raise SceneError.at(name, type(data).__name__, message)
 
 
-def _numbers(header: str, array: Any, word: str) -> np.ndarray:
+def _numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
     try:
         values = np.atleast_1d(np.asarray(array, dtype=float))
     except (OverflowError, TypeError, ValueError):
@@ -150,7 +157,7 @@ def _amplitude(name: str, values: np.ndarray) -> str:
     return f" (+- {half:.4g} N)" if name.startswith("force") else ""
 
 
-def signals_of(data: Any, columns: Mapping[str, str] | None = None) -> Signals:
+def signals_of(data: Data, columns: Mapping[str, str] | None = None) -> Signals:
     """The record in data of any form that ``table_of`` takes.
 
     Parameters

@@ -15,7 +15,6 @@ from __future__ import annotations
 from cmath import exp
 from collections.abc import Mapping
 from math import pi, radians
-from typing import Any
 
 import attrs
 import numpy as np
@@ -23,7 +22,7 @@ import numpy as np
 from raceway.errors import RacewayError, SceneError
 from raceway.scene.tables import Rig
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
-from raceway.studies.fit.signals import Recording, faults_at, recording_of, signals_of
+from raceway.studies.fit.signals import Data, Recording, faults_at, recording_of, signals_of
 from raceway.studies.shaft import Bearing, Rotor, rotor
 
 _BLOCKS = 16
@@ -190,7 +189,7 @@ def slow_roll(recording: Recording) -> Synchronous:
 
 
 def stated_run_out(
-    slow: Any, vector: tuple[float, float] | None, columns: Mapping[str, str] | None
+    slow: Data | None, vector: tuple[float, float] | None, columns: Mapping[str, str] | None
 ) -> RunOut | Synchronous | None:
     """The 1x component of a slow roll's signals, or the run-out with an amplitude [m] and the angle [deg] of its high spot.
 

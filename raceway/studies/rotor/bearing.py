@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from copy import copy
 from math import pi
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
+from raceway.scene.inputs import SceneSource
 from raceway.studies.rotor.node_bearing import NodeBearing, node_bearing
 from raceway.studies.rotor.ross_file import generation, ross, through_points
+
+if TYPE_CHECKING:
+    from pint import Quantity
 
 _ross = ross("raceway.ross.RollingBearing")
 _Element: Any = _ross.BearingElement
@@ -66,7 +71,7 @@ class RollingBearing(_Element):
 
     def __init__(
         self,
-        bearing: Any,
+        bearing: SceneSource,
         preload: float | None = None,
         *,
         n: int,
@@ -147,21 +152,21 @@ class RollingBearing(_Element):
         twin._at_motion = dict(values)
         return twin
 
-    def _dynamic(self, frequency: Any, speed: Any) -> np.ndarray:
-        frequency, speed = (None if w is None else _radians(w) for w in (frequency, speed))
-        speed = frequency if speed is None else speed
-        at_motion = self._at_motion.get(speed) if frequency == speed else None
-        return self.across(self.node_bearing.dynamic_stiffness(frequency, abs(speed)) if at_motion is None else at_motion)
+    def _dynamic(self, frequency: float | Quantity, speed: float | Quantity | None) -> np.ndarray:
+        w = _radians(frequency)
+        spin = w if speed is None else _radians(speed)
+        at_motion = self._at_motion.get(spin) if w == spin else None
+        return self.across(self.node_bearing.dynamic_stiffness(w, abs(spin)) if at_motion is None else at_motion)
 
-    def K(self, frequency: Any, speed: Any = None) -> np.ndarray:
+    def K(self, frequency: float | Quantity, speed: float | Quantity | None = None) -> np.ndarray:
         """Stiffness over the element's degrees of freedom [N/m, N, N m/rad] at a frequency and a speed of the ring [rad/s]."""
         return np.ascontiguousarray(self._dynamic(frequency, speed).real)
 
-    def C(self, frequency: Any, speed: Any = None) -> np.ndarray:
+    def C(self, frequency: float | Quantity, speed: float | Quantity | None = None) -> np.ndarray:
         """Damping over the element's degrees of freedom [N s/m] at a frequency and a speed of the ring [rad/s]."""
         return np.ascontiguousarray(self._dynamic(frequency, speed).imag / max(abs(_radians(frequency)), 1e-3))
 
-    def M(self, frequency: Any, speed: Any = None) -> np.ndarray:
+    def M(self, frequency: float | Quantity, speed: float | Quantity | None = None) -> np.ndarray:
         """No mass: it is the rotor's."""
         return np.zeros((self.frame.shape[1],) * 2)
 
@@ -169,7 +174,7 @@ class RollingBearing(_Element):
         """No gyroscopic moment."""
         return np.zeros((self.frame.shape[1],) * 2)
 
-    def save(self, file: Any) -> None:
+    def save(self, file: str | Path) -> None:
         """Write the table over ``speeds`` as a ``BearingElement``, which ROSS reads without Raceway."""
         names = [f"{letter}{name}" for letter in "kc" for name in _ENTRIES]
         axes = {name: getattr(self, name) for name in ("speed", "frequency") if getattr(self, name, None) is not None}
@@ -177,6 +182,6 @@ class RollingBearing(_Element):
         _Element(**options, **axes).save(file)
 
 
-def _radians(speed: Any) -> float:
+def _radians(speed: float | Quantity) -> float:
     """Of a number, or of a quantity with a unit [rad/s]."""
     return float(speed.m_as("rad/s") if hasattr(speed, "m_as") else speed)

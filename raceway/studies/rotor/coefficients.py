@@ -12,7 +12,6 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import attrs
 import numpy as np
@@ -144,7 +143,7 @@ def coefficients(
     notes += [*replaced, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, measured, unresolved)]
     tangent, tangent_damping = _at_equilibrium(selection, "stiffness"), _at_equilibrium(selection, "damping")
     axial = _undirected(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
-    speed, frequency, *arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping)
+    speed, frequency, arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping)
     stiffness, damping, axial, tangent, tangent_damping = arrays
     tilt = selection.value("supports.tilt", "locked")
     return Coefficients(
@@ -251,13 +250,13 @@ def _refuse_few(selection: Selection, least: int) -> None:
         )
 
 
-def _table(selection: Selection, *arrays: np.ndarray) -> tuple[Any, ...]:
+def _table(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None, tuple[np.ndarray, ...]]:
     """Axes [rad/s], None where there is none, and the arrays; both axes in the order (speed, frequency)."""
     spins, speeds = (np.array(selection.axes.get(key, []), dtype=float) * _RADIANS for key in (SPIN, SPEED))
     if len(spins) and len(speeds):
         if [key for key in selection.axes if key in (SPIN, SPEED)] != [SPIN, SPEED]:
             arrays = tuple(np.swapaxes(array, 0, 1) for array in arrays)
-        return spins, speeds, *arrays
+        return spins, speeds, arrays
     if len(spins):
-        return spins, None, *arrays
-    return (speeds, None, *arrays) if selection.value(SPIN) is None else (None, speeds, *arrays)
+        return spins, None, arrays
+    return (speeds, None, arrays) if selection.value(SPIN) is None else (None, speeds, arrays)

@@ -80,10 +80,10 @@ def export(
     from raceway.studies.rotor.ross_file import check_name, installed_generation
 
     paths = {"nastran": nastran, "ansys": ansys, None: table}
-    others = [(kind_of(kind, path), path) for kind, path in paths.items() if path is not None]
-    if ross is None and not others:
+    other_programs = [(kind_of(kind, path), path) for kind, path in paths.items() if path is not None]
+    if ross is None and not other_programs:
         raise SceneError.at("raceway export", None, "writes nothing: give --ross, --nastran, --ansys or --table with a FILE")
-    for path in filter(None, (ross, *(path for _, path in others))):
+    for path in filter(None, (ross, *(path for _, path in other_programs))):
         writable(path.parent)
     exports: list[tuple[CoefficientFile, Path]] = []
     if ross is not None:
@@ -91,7 +91,9 @@ def export(
         if ross_version is None and installed_generation() is None:
             warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
         exports.append((export_ross(store, ross_version=ross_version, **common_options), ross))
-    exports += [(export_coefficients(store, kind=kind, number=number, **common_options), path) for kind, path in others]
+    exports += [
+        (export_coefficients(store, kind=kind, number=number, **common_options), path) for kind, path in other_programs
+    ]
     files: list[str] = []
     failed = attempt(lambda: [bearing.write(path) for bearing, path in exports], files)
     content: Tables = {

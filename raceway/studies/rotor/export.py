@@ -6,13 +6,13 @@ import json
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.cli.frame import slug
-from raceway.errors import RacewayError, SceneError, extra
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
@@ -33,6 +33,7 @@ from raceway.studies.rotor.ross_file import (
     NAMES,
     check_name,
     installed_generation,
+    ross,
     ross_content,
     ross_json,
     ross_notes,
@@ -42,11 +43,12 @@ from raceway.studies.rotor.ross_file import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from ross import BearingElement
     from xarray import Dataset
 
-PROGRAMS = {"nastran": "Nastran", "ansys": "Ansys", "csv": "CSV", "json": "JSON"}
+_PROGRAMS = {"nastran": "Nastran", "ansys": "Ansys", "csv": "CSV", "json": "JSON"}
 #: File endings of the kinds that have one of their own.
-ENDINGS = {".csv": "csv", ".json": "json"}
+_ENDINGS = {".csv": "csv", ".json": "json"}
 _RPM = 30.0 / np.pi
 #: Cross terms of an isotropic bearing, and changes along an axis, below this part of the largest of their kind are rounding.
 _ROUNDING = 1e-9
@@ -83,7 +85,7 @@ class CoefficientFile(Shown):
     @property
     def program(self) -> str:
         """The program that the file is for."""
-        return PROGRAMS[self.kind]
+        return _PROGRAMS[self.kind]
 
     def to_dict(self) -> Tables:
         """The numbers by our names, and the notes, as plain tables."""
@@ -173,7 +175,7 @@ class RossTable(CoefficientFile):
     @property
     def names(self) -> dict[str, str]:
         """Our coefficient -> ROSS's."""
-        return {f"{ours}{self.coefficients.ending}": ross for ours, ross in NAMES.items()}
+        return {f"{ours}{self.coefficients.ending}": theirs for ours, theirs in NAMES.items()}
 
     @property
     def program(self) -> str:
@@ -197,7 +199,7 @@ class RossTable(CoefficientFile):
         text = self.text if path.suffix.lower() == ".toml" else ross_json(self.tag, self.content, self.notes)
         return write_whole(text.encode(), path)
 
-    def element(self, node: int | None = None) -> Any:
+    def element(self, node: int | None = None) -> BearingElement:
         """The ``ross.BearingElement``, which passes through the points of the table in ROSS 2, too.
 
         Parameters
@@ -209,14 +211,11 @@ class RossTable(CoefficientFile):
         RacewayError
             ROSS is missing.
         """
-        try:
-            from ross import BearingElement
-        except ImportError as why:
-            raise RacewayError(f"an element needs ROSS: {extra('ross')} ({why})") from None
+        package = ross("an element")
         content = self.content if node is None else {**self.content, "n": node, "tag": f"{self.tag}, node {node}"}
         with tempfile.TemporaryDirectory(prefix="raceway-ross-") as folder:
             file = write_whole(ross_toml(self.tag, content, self.notes).encode(), Path(folder) / "bearing.toml")
-            return through_points(BearingElement.load(file))
+            return through_points(package.BearingElement.load(file))
 
 
 def ross_table(table: Coefficients, generation: int, tag: str, node: int, origin: tuple[str, ...]) -> RossTable:
@@ -227,10 +226,10 @@ def ross_table(table: Coefficients, generation: int, tag: str, node: int, origin
 
 @door
 def export_ross(
-    data: Any,
+    data: Dataset | str | Path,
     path: str | Path | None = None,
     *,
-    at: Mapping[str, Any] | Iterable[str] = (),
+    at: Mapping[str, object] | Iterable[str] = (),
     source: str | None = None,
     damping: float = 0.0,
     ross_version: int | str | None = None,
@@ -289,11 +288,11 @@ def export_ross(
 
 @door
 def export_coefficients(
-    data: Any,
+    data: Dataset | str | Path,
     path: str | Path | None = None,
     *,
     kind: str | None = None,
-    at: Mapping[str, Any] | Iterable[str] = (),
+    at: Mapping[str, object] | Iterable[str] = (),
     source: str | None = None,
     damping: float = 0.0,
     number: int = 1,
@@ -360,16 +359,21 @@ def kind_of(kind: str | None, path: str | Path | None) -> str:
         An unknown one.
     """
     if kind is None and path is not None:
-        kind = ENDINGS.get(Path(path).suffix.lower())
+        kind = _ENDINGS.get(Path(path).suffix.lower())
         if kind is None:
-            raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(ENDINGS)}")
-    if kind not in PROGRAMS:
-        raise SceneError.at("kind", kind, f"must be one of {', '.join(PROGRAMS)}")
+            raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(_ENDINGS)}")
+    if kind not in _PROGRAMS:
+        raise SceneError.at("kind", kind, f"must be one of {', '.join(_PROGRAMS)}")
     return kind
 
 
 def _swept(
-    data: Any, at: Mapping[str, Any] | Iterable[str], source: str | None, damping: float, least: int, tag: str | None
+    data: Dataset | str | Path,
+    at: Mapping[str, object] | Iterable[str],
+    source: str | None,
+    damping: float,
+    least: int,
+    tag: str | None,
 ) -> tuple[Coefficients, str, tuple[str, ...]]:
     """Coefficients of a sweep, the bearing's name, and sentences on where they come from."""
     dataset = _dataset(data)
@@ -379,7 +383,7 @@ def _swept(
     return table, slug(name), head(selection)
 
 
-def _values_at(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
+def _values_at(at: Mapping[str, object] | Iterable[str], data: Dataset) -> Tables:
     """Key -> value, numbers in the units of the keys."""
     if not isinstance(at, Mapping):
         return parse_at(at)
@@ -387,7 +391,7 @@ def _values_at(at: Mapping[str, Any] | Iterable[str], data: Dataset) -> Tables:
     return numbers_at(json.loads(data.attrs["scene"]), values, default_registry())
 
 
-def _dataset(data: Any) -> Dataset:
+def _dataset(data: Dataset | str | Path) -> Dataset:
     """The labelled results of a sweep, as such or in the folder of its store."""
     if isinstance(data, str | Path):
         with open_store(data) as store:
@@ -413,9 +417,9 @@ def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
         if name not in zero:
             alike.setdefault((name[0], *(_text(name, value) for value in values.flat)), []).append(name)
     constant, varying = [], {}
-    for name, *others in alike.values():
+    for name, *equal in alike.values():
         # What all names end with stands once.
-        title = " = ".join(word[:3] for word in (name, *others)) + name[3:].replace("_", " ")
+        title = " = ".join(word[:3] for word in (name, *equal)) + name[3:].replace("_", " ")
         unit_shown = "N/µm" if name[0] == "k" else "N s/m"
         if np.ptp(columns[name]) <= bound[name[0]]:
             constant.append(f"{title} = {_text(name, columns[name].flat[0])} {unit_shown} at all points")

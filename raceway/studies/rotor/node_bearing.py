@@ -6,7 +6,6 @@ Independent of ROSS; x is the bearing's axis.
 from __future__ import annotations
 
 from math import pi
-from typing import Any
 
 import attrs
 import numpy as np
@@ -19,7 +18,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import simulate
 from raceway.planning.plan import make_plan
 from raceway.plugins.excitations import harmonic_load
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
 
@@ -50,7 +49,7 @@ class NodeBearing:
     damping: float = 0.0
     _equilibria: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
 
-    def __deepcopy__(self, _memo: Any) -> NodeBearing:
+    def __deepcopy__(self, _memo: object) -> NodeBearing:
         """Itself: it never changes, and ROSS copies rotors."""
         return self
 
@@ -176,7 +175,7 @@ def _condensed(matrix: np.ndarray, shared: list[int], inside: list[int]) -> np.n
 
 
 def node_bearing(
-    bearing: Any,
+    bearing: SceneSource,
     preload: float | None = None,
     tilt: float | str | None = None,
     axial: str | None = None,
@@ -216,7 +215,7 @@ def node_bearing(
     return NodeBearing(scene, tilt == "node", damping)
 
 
-def _is_preset(bearing: Any) -> bool:
+def _is_preset(bearing: SceneSource) -> bool:
     return isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
 
 

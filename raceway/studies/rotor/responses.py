@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -13,6 +13,12 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.studies.rotor.bearing import RollingBearing
 from raceway.studies.rotor.node_bearing import NodeBearing
 from raceway.studies.shaft import find_root
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+    from pint import Quantity
+    from ross import BearingElement, Rotor
+    from ross.results import ForcedResponseResults, TimeResponseResults
 
 _HALVINGS = 6
 #: Options of ROSS's Newmark method that are handed on, with its own defaults.
@@ -34,8 +40,8 @@ class UnbalanceResponse:
     runs : (m,) evaluations of the bearings
     """
 
-    rotor: Any
-    response: Any
+    rotor: Rotor
+    response: ForcedResponseResults
     speed: np.ndarray
     stiffness: dict[str, np.ndarray]
     damping: dict[str, np.ndarray]
@@ -44,7 +50,11 @@ class UnbalanceResponse:
 
 
 def run_unbalance_response(
-    rotor: Any, node: Any, unbalance_magnitude: Any, unbalance_phase: Any, frequency: Any
+    rotor: Rotor,
+    node: ArrayLike,
+    unbalance_magnitude: ArrayLike | Quantity,
+    unbalance_phase: ArrayLike | Quantity,
+    frequency: ArrayLike | Quantity,
 ) -> UnbalanceResponse:
     """ROSS's unbalance response, each ``RollingBearing`` with its stiffness at the rotor's own motion.
 
@@ -87,14 +97,14 @@ def run_unbalance_response(
     return UnbalanceResponse(twin, response, speeds, stiffness, damping, force, np.array([runs for *_, runs in balances]))
 
 
-def _rolling_bearings(rotor: Any, method: str) -> list[RollingBearing]:
+def _rolling_bearings(rotor: Rotor, method: str) -> list[RollingBearing]:
     bearings = [element for element in rotor.bearing_elements if isinstance(element, RollingBearing)]
     if not bearings:
         raise RacewayError(f"the rotor stands on no raceway.ross.RollingBearing: take rotor.{method}")
     return bearings
 
 
-def _with_bearings(rotor: Any, bearings: list[Any]) -> Any:
+def _with_bearings(rotor: Rotor, bearings: list[BearingElement]) -> Rotor:
     """A copy of a rotor on other bearings at the same nodes, without the results that ROSS caches."""
     twin = copy(rotor)
     for name in [name for name in vars(twin) if name.startswith("__wire|")]:  # of the package methodtools
@@ -119,7 +129,9 @@ class _Balance:
     receptance: np.ndarray
 
     @classmethod
-    def at(cls, rotor: Any, bearings: list[RollingBearing], w: float, unbalance: tuple[Any, Any, Any]) -> _Balance:
+    def at(
+        cls, rotor: Rotor, bearings: list[RollingBearing], w: float, unbalance: tuple[ArrayLike | Quantity, ...]
+    ) -> _Balance:
         dynamic = rotor.K(w) + 1j * w * (rotor.C(w) + w * rotor.G()) - w**2 * rotor.M(w)
         rows = []
         for bearing in bearings:
@@ -174,11 +186,13 @@ class _Balance:
         return size
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: ArrayLike | Quantity) -> ArrayLike:
     return value.to_base_units().magnitude if hasattr(value, "to_base_units") else value
 
 
-def run_time_response(rotor: Any, speed: float, F: np.ndarray, t: np.ndarray, **options: Any) -> Any:
+def run_time_response(
+    rotor: Rotor, speed: float, F: np.ndarray, t: np.ndarray, **options: float | None
+) -> TimeResponseResults:
     """ROSS's time response by Newmark's method, each ``RollingBearing`` with its nonlinear force.
 
     Parameters
@@ -229,7 +243,7 @@ class _NonlinearForce:
     """K q - f(q) (ndof,) at the end of a step, as ROSS's ``add_to_RHS``."""
 
     def __init__(
-        self, rotor: Any, bearings: list[RollingBearing], speed: float, forces: np.ndarray, gamma: float, beta: float
+        self, rotor: Rotor, bearings: list[RollingBearing], speed: float, forces: np.ndarray, gamma: float, beta: float
     ) -> None:
         self.bearings, self.speed, self.forces, self.gamma, self.beta = bearings, speed, forces, gamma, beta
         self.mass, self.stiffness = rotor.M(), rotor.K(speed)

@@ -21,7 +21,8 @@ import warnings
 from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,8 +32,9 @@ from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+    from ross import BearingElement
 
-DISTRIBUTION = "ross-rotordynamics"
+_DISTRIBUTION = "ross-rotordynamics"
 GENERATIONS = (2, 3)
 #: Our entry -> ROSS's.
 NAMES = {
@@ -150,7 +152,7 @@ def smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
         return np.asarray(UnivariateSpline(axis, values)(axis))
 
 
-def through_points(bearing: Any) -> Any:
+def through_points(bearing: BearingElement) -> BearingElement:
     """Let a bearing element of ROSS pass through its points, as ROSS 3 does by itself; returns it.
 
     Parameters
@@ -186,7 +188,7 @@ class _Points:
         return np.asarray(self.inside(clipped) + slope * (x - clipped))
 
 
-def ross(purpose: str, least: int = GENERATIONS[0]) -> Any:
+def ross(purpose: str, least: int = GENERATIONS[0]) -> ModuleType:
     """The package ``ross``, imported without what its own packages print while they are loaded.
 
     Parameters
@@ -209,7 +211,7 @@ def ross(purpose: str, least: int = GENERATIONS[0]) -> Any:
     return package
 
 
-def generation(package: Any) -> int:
+def generation(package: ModuleType) -> int:
     """Major number of a ROSS; 0 where it has none."""
     major = str(getattr(package, "__version__", "")).partition(".")[0]
     return int(major) if major.isdigit() else 0
@@ -218,7 +220,7 @@ def generation(package: Any) -> int:
 def installed_generation() -> int | None:
     """Of the ROSS that is installed here; it is not imported."""
     try:
-        major = int(version(DISTRIBUTION).partition(".")[0])
+        major = int(version(_DISTRIBUTION).partition(".")[0])
     except PackageNotFoundError:
         return None
     return GENERATIONS[0] if major < GENERATIONS[1] else GENERATIONS[1]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 DIRECTION = "excitation.direction_deg"
 #: Backward over forward amplitude, or cross over direct receptance, above which one number does not stand for the bearing.
-MOST_ANISOTROPY = 0.01
+_MOST_ANISOTROPY = 0.01
 #: Share of kyy by which it differs from that of a run, from which on a note says so.
 _SOFTER = 1e-3
 #: Of ``_across``: squares that leave 1e-16 are 1e-8.
@@ -49,10 +49,10 @@ def rotating(selection: Selection) -> Matrices:
     data = selection.dataset
     smaller, larger = np.sort(np.stack([data["forward_amplitude"].values, data["backward_amplitude"].values]), axis=0)
     share = float(np.max(smaller / larger))
-    if share > MOST_ANISOTROPY:
+    if share > _MOST_ANISOTROPY:
         raise RacewayError(
             f"the bearing is not isotropic: the orbit's counter-rotating part reaches {share:.1%} of the rotating one (at most "
-            f"{MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. Take the tangent of the "
+            f"{_MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. Take the tangent of the "
             "equilibrium with --from tangent, or sweep a fixed force over both directions with excitation.kind = unidirectional "
             f"and --grid {DIRECTION}=0,45,90"
         )
@@ -103,7 +103,7 @@ def directions(selection: Selection) -> Matrices:
                 f"; the ring's gyroscopic moments add {np.max(antisymmetric / np.abs(h[0])):.1e} of H, counted as its error"
             )
     else:
-        if widest > MOST_ANISOTROPY:
+        if widest > _MOST_ANISOTROPY:
             raise RacewayError(
                 f"a force along y moves the ring along z by {widest:.1%} of its motion along y: cross terms are there, and two "
                 f"directions do not tell them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
