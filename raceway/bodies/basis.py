@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import pi, radians
 
 import attrs
@@ -13,8 +12,8 @@ from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.ring import Growth
 from raceway.core.ring.system import ChangingSpeed
 from raceway.core.signatures import FORCE
-from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.duties import force_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.cost import axial_approach
 from raceway.planning.plan import Plan
@@ -98,16 +97,6 @@ def growth_of(scene: Scene, row: np.ndarray) -> Growth:
     return Growth(common, (rows - common)[row])
 
 
-def call_plugin(who: str, duty: str, make: Callable[[], object]) -> np.ndarray:
-    """An array from a plug-in's own code, whose failures are put to its name."""
-    try:
-        return np.ascontiguousarray(make(), dtype=float)
-    except RacewayError:
-        raise
-    except Exception as why:  # a third party's own code
-        raise PluginError(f"{who}: {duty} raises {type(why).__name__}: {why}") from why
-
-
 def contact_pairs(scene: Scene, basis: Basis) -> ContactPairs:
     """The contacts as a law sees them, mounted and at standstill."""
     inner, outer = basis.inner, basis.outer
@@ -133,17 +122,20 @@ def contact_pairs(scene: Scene, basis: Basis) -> ContactPairs:
     )
 
 
-def law_params(scene: Scene, basis: Basis, pairs: ContactPairs | None = None) -> np.ndarray:
-    """(2 Z, k) parameters of the contact law: inner races first, then outer; without ``pairs`` those of standstill."""
-    pairs = contact_pairs(scene, basis) if pairs is None else pairs
-    params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
-    count = len(pairs.curvature_a)
-    if params.ndim != 2 or len(params) != count:
-        raise PluginError(
-            f"contact law '{scene.contact.kind}': build() returned parameters of shape {params.shape}; "
-            f"it must be ({count}, k): a row for each ball-race pair"
-        )
-    return params
+def point_pairs(basis: Basis, inner: np.ndarray, area: np.ndarray) -> ContactPairs:
+    """Surface points as a law sees them: whether each (n,) is of an inner race, and its area (n,) [m2]."""
+
+    def either(first: float, second: float) -> np.ndarray:
+        return np.where(inner, first, second).astype(float)
+
+    return ContactPairs(
+        curvature_a=either(basis.inner.curvatures[0], basis.outer.curvatures[0]),
+        curvature_b=either(basis.inner.curvatures[1], basis.outer.curvatures[1]),
+        contact_modulus=np.full(len(area), basis.modulus),
+        hertz_factor=either(basis.inner.factor, basis.outer.factor),
+        reference_load=np.full(len(area), basis.ball_load),
+        area=area,
+    )
 
 
 def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
@@ -168,12 +160,10 @@ def excitation(scene: Scene) -> Tables:
         from raceway.core.excitations.harmonic import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
-    parameters = call_plugin(f"excitation '{scene.excitation.name}'", "parameters()", scene.excitation.parameters)
-    if parameters.ndim != 1:
-        raise PluginError(
-            f"excitation '{scene.excitation.name}': parameters() returned shape {parameters.shape}; it must be (k,)"
-        )
-    return {"force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"), "force_params": parameters}
+    return {
+        "force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"),
+        "force_params": force_params(scene.excitation),
+    }
 
 
 def changing_speed(scene: Scene) -> ChangingSpeed | None:

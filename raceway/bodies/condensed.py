@@ -75,7 +75,7 @@ def seat_faults(scene: Scene) -> list[Mistake]:
     """Seats so soft that they hold nothing."""
     faults = []
     load = abs(scene.load.axial) + sum(abs(force) for force in scene.load.radial)
-    load += getattr(scene.excitation, "amplitude_n", 0.0) or 0.0
+    load += 0.0 if scene.excitation is None else scene.excitation.amplitude_n
     b = scene.bearing
     for key, diameter in (("inner_seat", b.bore), ("outer_seat", b.outer_diameter)):
         seat = getattr(scene.supports, key)
@@ -156,7 +156,7 @@ def patch_faults(scene: Scene) -> list[Mistake]:
 
     instead = "use discretisation = 'resultant'"
     contact = scene.contact
-    remembers = getattr(contact.law, "state_size", 0) > 0
+    remembers = contact.law.state_size > 0
     why = f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {instead}"
     refuse(remembers, "contact.kind", contact.kind, why)
     recorded = scene.excitation is not None and "record" in scene.identifier.method.needs

@@ -11,7 +11,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import surrogate
 from raceway.errors import ConvergenceError
-from raceway.framework.duties import renews, traits_of
+from raceway.framework.duties import is_foundation, renews
 from raceway.framework.estimate import Estimate
 from raceway.scene.growth import groove_depth, load_at_edge
 from raceway.scene.scene import Scene
@@ -149,7 +149,7 @@ def contact_ellipse(
         # Loads of no particular balls: of the row in which they press hardest.
         each = [one.ellipses(basis.modulus)[race] for one in basis.geometries]
         ellipse = max(each, key=lambda one: float(one.peak_pressure(1.0)))
-    if not traits_of(scene).resultants or not getattr(contact.law, "foundation", False):
+    if not scene.body_kind.traits.resultants or not is_foundation(contact.law):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at(ring, basis.geometry.ball_diameter, race, load)

@@ -13,6 +13,7 @@ from raceway.bodies.condensed import section_cost
 from raceway.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.duties import is_constraint
 from raceway.framework.options import one_of, option, positive
 from raceway.planning.cost import START_S, axial_approach
 from raceway.planning.resolve import Balls, Decisions, Motion
@@ -219,7 +220,7 @@ def elastic_faults(scene: Scene) -> list[Mistake]:
     why = f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {other}"
     refuse(whole and contact.friction > 0.0, "contact.friction", contact.friction, why)
     why = "is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', " + other
-    refuse(getattr(contact.law, "constraint", False), "contact.kind", contact.kind, why)
+    refuse(is_constraint(contact.law), "contact.kind", contact.kind, why)
     why = f"balls of elastic bodies stay at their azimuth: set it false, {other}"
     refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
     why = f"balls of elastic bodies do not turn: set it 'none', {other}"

@@ -8,7 +8,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, call_plugin, make_basis
+from raceway.bodies.basis import Basis, make_basis, point_pairs
 from raceway.bodies.elastic_contacts import ElasticBodies, ElasticPoints, ElasticResultants
 from raceway.bodies.mesh import check_sets, mesh_scene, scene_mesher
 from raceway.bodies.mounting import place_ring
@@ -21,8 +21,8 @@ from raceway.core.signatures import LAW
 from raceway.elastic.bearing import ElasticBearing
 from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.ring import ElasticRing
-from raceway.errors import ConvergenceError, PluginError, SceneError
-from raceway.framework.contracts import ContactPairs
+from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import Plan
 from raceway.scene.growth import radial_growth
@@ -146,29 +146,10 @@ def _stick(scene: Scene, basis: Basis) -> float | None:
 
 def _params(scene: Scene, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
-    law, z = scene.contact.law, len(basis.azimuth)
+    z = len(basis.azimuth)
 
     def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
-        inner = pair < z
-
-        def either(a: float, b: float) -> np.ndarray:
-            return np.where(inner, a, b).astype(float)
-
-        one, other = basis.inner, basis.outer
-        pairs = ContactPairs(
-            curvature_a=either(one.curvatures[0], other.curvatures[0]),
-            curvature_b=either(one.curvatures[1], other.curvatures[1]),
-            contact_modulus=either(basis.modulus, basis.modulus),
-            hertz_factor=either(one.factor, other.factor),
-            reference_load=either(basis.ball_load, basis.ball_load),
-            area=area,
-        )
-        found = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
-        if found.ndim != 2 or len(found) != len(pair):
-            raise PluginError(
-                f"contact law '{scene.contact.kind}': build() returned parameters of shape {found.shape}; "
-                f"it must be ({len(pair)}, k): a row for each surface point"
-            )
-        return found
+        pairs = point_pairs(basis, pair < z, area)
+        return law_params(scene.contact.law, pairs, "surface point")
 
     return params

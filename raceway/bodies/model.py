@@ -28,7 +28,6 @@ from raceway.core.ring.system import compiled
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door
-from raceway.framework.duties import bodies, traits_of
 from raceway.planning.plan import Plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -214,8 +213,7 @@ class Model:
     @property
     def traits(self) -> Traits:
         """Of the bodies in this scene."""
-        traits: Traits = traits_of(self.scene)
-        return traits
+        return self.scene.body_kind.traits
 
     @property
     def mass_used(self) -> float:
@@ -241,7 +239,7 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
     2.06
     """
-    bearing = bodies(scene, "build", plan)
+    bearing = scene.body_kind.build(plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(
             f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, call_plugin, make_basis
+from raceway.bodies.basis import Basis, make_basis, point_pairs
 from raceway.bodies.condensed import nodes_of
 from raceway.bodies.condensed_bearing import inertia_table
 from raceway.bodies.contacts import overlap
@@ -32,7 +32,7 @@ from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
 from raceway.core.ring.system import System, surrogate
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.framework.contracts import ContactPairs
+from raceway.framework.duties import is_constraint, law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import Plan
@@ -374,18 +374,10 @@ def _widening(
 def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
     """Laws of the inner and the outer race's points; the plan has refused those that remember."""
     law = scene.contact.law
-    if getattr(law, "constraint", False):
+    if is_constraint(law):
         return None, None
-    both = [basis.inner, basis.outer]
-    pairs = ContactPairs(
-        curvature_a=np.array([e.curvatures[0] for e in both]),
-        curvature_b=np.array([e.curvatures[1] for e in both]),
-        contact_modulus=np.full(2, basis.modulus),
-        hertz_factor=np.array([e.factor for e in both]),
-        reference_load=np.full(2, basis.ball_load),
-        area=np.full(2, spacing.area),
-    )
-    params = call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: law.build(pairs))
+    pairs = point_pairs(basis, np.array([True, False]), np.full(2, spacing.area))
+    params = law_params(law, pairs, "race")
     kernel = plugin_kernel(law, "contact law", LAW, "LAW")
     first, second = (PointLaw(kernel, row, spacing.area) for row in params)
     return first, second

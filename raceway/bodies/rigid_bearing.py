@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.bodies.basis import Basis, changing_speed, excitation, law_params, linear_parts, make_basis
+from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
 from raceway.bodies.contacts import against_hertz
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
@@ -15,6 +15,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System, by_address
 from raceway.core.signatures import LAW
+from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway.planning.plan import Plan
@@ -56,7 +57,7 @@ def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
         kernel=kernel,
         base_kernel=base,
         law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
-        law_params=law_params(scene, basis),
+        law_params=law_params(scene.contact.law, contact_pairs(scene, basis)),
         law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
         scalars=_scalars(scene, plan, basis),
         table=_ball_table(scene, plan, basis),

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, contact_pairs, law_params
+from raceway.bodies.basis import Basis, contact_pairs
 from raceway.bodies.contacts import contact_angles
 from raceway.core.contact.film import entraining_speed
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
-from raceway.framework.duties import law_report, reach_of, renews
+from raceway.framework.duties import law_params, law_report, reach_of, renews
 from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def renew(
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
         angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
         pairs = running_pairs(scene, basis, force, angles)
-        found = system.running(law_params(scene, basis, pairs), reach_of(law, pairs))
+        found = system.running(law_params(law, pairs), reach_of(law, pairs))
         system.table, system.law_params = found.table, found.law_params
         system.mounted_params, system.reach = found.mounted_params, found.reach
         if isinstance(system.spin, ChangingSpeed):
@@ -128,13 +128,13 @@ def _following(
 ) -> Callable[[System, float], System]:
     """A system and another speed [rad/s] -> the system with its law there, at the loads and angles of the equilibrium."""
 
-    mounted = contact_pairs(scene, basis)
+    law, mounted = scene.contact.law, contact_pairs(scene, basis)
 
     def follow(system: System, speed: float) -> System:
         if speed <= 0.0:
             assert system.mounted_params is not None and system.reach is not None, "built in above"
             return system.running(system.mounted_params, np.zeros_like(system.reach))
         pairs = running_pairs(scene, basis, force, angles, speed, mounted)
-        return system.running(law_params(scene, basis, pairs), reach_of(scene.contact.law, pairs))
+        return system.running(law_params(law, pairs), reach_of(law, pairs))
 
     return follow

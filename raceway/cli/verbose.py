@@ -12,7 +12,8 @@ import click
 from raceway.framework.hookspecs import hookimpl
 
 if TYPE_CHECKING:
-    from raceway.framework.higher_types import Plan, Result
+    from raceway.pipeline.result import Result
+    from raceway.planning.plan import Plan
 
 LOGGER = logging.getLogger("raceway")
 #: Signs of a line that tell the time.

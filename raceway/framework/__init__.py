@@ -1,11 +1,11 @@
 """Kinds of plug-ins, and how they are found.
 
 contracts   duties of each kind, numbered
-hookspecs   hooks that a plug-in may implement;  higher_types: names of types that both are handed
+hookspecs   hooks that a plug-in may implement
 doors       arguments of public functions, read by their names
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
-duties      calls of the duties of bodies, with their faults put to the plug-in
+duties      duties as the program calls them: faults are put to the plug-in, what is left out has its default
 sources     entry points and one-off files
 probe       compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
 shown       short texts and tables of results, for terminals and notebooks

@@ -21,23 +21,19 @@ if TYPE_CHECKING:
     import click
     import numpy as np
 
+    from raceway.bodies.model import Bearing as BuiltBearing
+    from raceway.bodies.model import Equilibrium, Model
     from raceway.core.jit import Kernel
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.record import Record
     from raceway.core.signals import Identification
     from raceway.core.time.schemes import Scheme
     from raceway.errors import Mistake
-    from raceway.framework.higher_types import (
-        Balls,
-        Bearing,
-        BuiltBearing,
-        Decisions,
-        Equilibrium,
-        Model,
-        Motion,
-        Plan,
-        Scene,
-    )
+    from raceway.pipeline.result import Result
+    from raceway.planning.plan import Plan
+    from raceway.planning.resolve import Balls, Decisions, Motion
+    from raceway.scene.bearing import Bearing
+    from raceway.scene.scene import Scene
 
 
 class ContactLaw(attrs.AttrsInstance, Protocol):
@@ -49,17 +45,17 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
        approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
     5. A law for both discretisations tells them apart by ``pairs.area``, which is None for resultants.
-    6. ``constraint`` = True, if it is there, says that the law stands for no penetration at all: condensed bodies then hold
-       the gap exactly and do not call the kernel.
-    7. ``foundation`` = True, if it is there, says that a resultant is the integral of a pressure that follows from the overlap
-       at each place: results then tell the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap
-       ellipse's, instead of Hertz's at the same load.
-    8. ``renewed`` = True, if it is there, says that parameters follow the running speed and the loads: ``build`` is called once
-       for the mounted bearing at standstill, where ``pairs.entraining_speed`` and ``pairs.load`` are None and the law is dry, and
-       again at the running equilibrium until loads and parameters fit each other; again where a run changes the speed.
-    9. ``reach(pairs)``, if it is there, with ``renewed``: how far from touching each contact begins to carry (n,) [m], 0 or more:
-       what stands between the surfaces, such as a film.  The bearing makes room for it: the kernel's gap is measured from there.
-    10. ``report(pairs)``, if it is there, with ``renewed``: a ``LawReport`` at the running equilibrium.
+    6. May be left out, as the rest, with the defaults of ``raceway.framework.duties``: ``constraint`` = True says that the law stands for
+       no penetration at all: condensed bodies then hold the gap exactly and do not call the kernel.
+    7. ``foundation`` = True says that a resultant is the integral of a pressure that follows from the overlap at each place: results
+       then have the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap ellipse's, instead of Hertz's
+       at the same load.
+    8. ``renewed`` = True says that parameters follow the running speed and the loads: ``build`` is called once for the mounted
+       bearing at standstill, where ``pairs.entraining_speed`` and ``pairs.load`` are None and the law is dry, and again at the
+       running equilibrium until loads and parameters fit each other; again where a run changes the speed.
+    9. ``reach(pairs)``, with ``renewed``: how far from touching each contact begins to carry (n,) [m], 0 or more: what stands
+       between the surfaces, such as a film.  The bearing makes room for it: the kernel's gap is measured from there.
+    10. ``report(pairs)``, with ``renewed``: a ``LawReport`` at the running equilibrium.
     """
 
     name: ClassVar[str]
@@ -158,13 +154,13 @@ class Excitation(attrs.AttrsInstance, Protocol):
     2. ``sense``: +1 turns forward (from +y towards +z), -1 backward, 0 along a fixed direction.
     3. ``parameters()``: an array (k,) of float64 that the kernel gets.
     4. ``kernel()``: a function compiled with ``@jit(FORCE)`` that overwrites out (5,) = F_x, F_y, F_z, M_y, M_z.
-    5. ``speed_rpm``, if there is one, is the default of ``kinematics.spin_speed_rpm``; ``ramp_turns``, if there is one,
-       is the time over which the core lets the force grow; ``duration_s``, if there is one and it is not None, is the
-       time that is integrated, instead of ``integrator.turns``; ``phase(time)``, if there is one, is the angle of the
-       1x line (n,) [rad], which identifiers of changing speeds need, and without a period the angle that the spin speed
-       follows; ``steady()``, if there is one, is a periodic excitation whose orbit the motion starts on;
-       ``at_whirl(speed_rpm)``, if there is one, is the same force at another whirl speed, for identifiers of several speeds:
-       else they change ``speed_rpm``.
+    5. May be left out, with the defaults of ``raceway.framework.duties``: ``speed_rpm``, the default of
+       ``kinematics.spin_speed_rpm``; ``first_speed_rpm``, from which the speed changes to ``speed_rpm``; ``ramp_turns``, the time over
+       which the core lets the force grow; ``duration_s``, the time that is integrated, instead of ``integrator.turns``;
+       ``phase(time)``, the angle of the 1x component (n,) [rad], which identifiers of changing speeds need, and without a period the
+       angle that the spin speed follows; ``steady()``, a periodic excitation whose orbit the motion starts on;
+       ``at_whirl(speed_rpm)``, the same force at another whirl speed, for identifiers of several speeds: else they change
+       ``speed_rpm``.
     """
 
     name: ClassVar[str]
@@ -280,7 +276,7 @@ class Report(attrs.AttrsInstance, Protocol):
 
     name: ClassVar[str]
 
-    def write(self, result: Any, folder: Path) -> list[Path]: ...
+    def write(self, result: Result, folder: Path) -> list[Path]: ...
 
 
 #: A batch of a study: its number, and what is computed in it as plain values.
@@ -388,9 +384,9 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
     7. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
     8. The fields of the class are the keys of the table [bodies] beside ``kind``.
-    9. ``example_scene()``, if it is there, is a classmethod: the tables of a small scene, less [bodies], that these bodies run,
+    9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
-    10. ``same_bodies(scene, other)``, if it is there: whether nothing that is meshed differs between two scenes of this kind, so
+    10. May be left out: ``same_bodies(scene, other)``: whether nothing that is meshed differs between two scenes of this kind, so
         that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
     """
 

@@ -1,12 +1,12 @@
-"""Calls of duties of the kind of bodies that a scene names: what it raises, or returns of another type, is put to its name.
-
-Duties of contact laws that may be left out have their defaults here.
-"""
+"""Duties of plug-ins as the program calls them: faults are put to the plug-in's name, duties that it leaves out have their defaults here."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+import attrs
 
 from raceway.errors import PluginError
 from raceway.framework.contracts import Cost, LawReport, Traits
@@ -15,85 +15,156 @@ from raceway.framework.sources import blamed
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.framework.contracts import ContactPairs
+    from raceway.bodies.model import Bearing
+    from raceway.errors import Mistake
+    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation
+    from raceway.planning.plan import Plan
+    from raceway.planning.resolve import Balls, Decisions, Motion
+    from raceway.scene.scene import Scene
 
-#: Duty -> what it returns.
-_RETURNS: dict[str, tuple[type, ...]] = {
-    "faults": (list,),
-    "traits": (Traits,),
-    "stable_step": (float, type(None)),
-    "decide": (type(None),),
-    "unused": (list,),
-    "cost": (Cost,),
-    "imports": (Mapping,),
-    "build": (object,),
-}
+T = TypeVar("T")
 
 
-def bodies(scene: Any, duty: str, *arguments: Any) -> Any:
-    """What a duty of ``raceway.framework.contracts.BodiesKind`` returns for a scene.
-
-    Raises
-    ------
-    PluginError
-        It raises anything but a ``RacewayError``, or returns another type.
-    """
-    who = f"bodies '{scene.bodies.name}'"
-    with blamed(who, f"{duty}()"):
-        found = getattr(scene.bodies, duty)(scene, *arguments)
-    if not isinstance(found, _RETURNS[duty]):
-        words = " or ".join("None" if one is type(None) else one.__name__ for one in _RETURNS[duty])
-        raise PluginError(f"{who}: {duty}() returned {type(found).__name__}; it must be {words}")
-    return found
+def _answer(plugin: str, duty: str, call: Callable[[], T], *types: type) -> T:
+    """What a duty returns; ``PluginError`` where it raises anything but a ``RacewayError``, or returns another type."""
+    with blamed(plugin, f"{duty}()"):
+        answer = call()
+    if not isinstance(answer, types):
+        words = " or ".join("None" if kind is type(None) else kind.__name__ for kind in types)
+        raise PluginError(f"{plugin}: {duty}() returned {type(answer).__name__}; it must be {words}")
+    return answer
 
 
-def traits_of(scene: Any) -> Traits:
-    """Of the bodies in a scene."""
-    found: Traits = bodies(scene, "traits")
-    return found
+class BodyKind:
+    """The kind of bodies of a scene: its duties for this scene, which raise ``PluginError`` where the kind breaks them."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene, self._plugin, self._name = scene, scene.bodies, f"bodies '{scene.bodies.name}'"
+
+    def faults(self) -> list[Mistake]:
+        return _answer(self._name, "faults", lambda: self._plugin.faults(self._scene), list)
+
+    @cached_property
+    def traits(self) -> Traits:
+        return _answer(self._name, "traits", lambda: self._plugin.traits(self._scene), Traits)
+
+    def stable_step(self) -> float | None:
+        return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(self._scene), float, type(None))
+
+    def decide(self, parts: Decisions) -> None:
+        _answer(self._name, "decide", lambda: self._plugin.decide(self._scene, parts), type(None))
+
+    def unused(self) -> list[tuple[str, str]]:
+        return _answer(self._name, "unused", lambda: self._plugin.unused(self._scene), list)
+
+    def cost(self, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+        return _answer(self._name, "cost", lambda: self._plugin.cost(self._scene, balls, motion, parts), Cost)
+
+    def build(self, plan: Plan) -> Bearing:
+        return _answer(self._name, "build", lambda: self._plugin.build(self._scene, plan), object)
+
+    def same_bodies(self, other: Scene) -> bool:
+        """Whether another scene of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""
+        if not hasattr(self._plugin, "same_bodies"):
+            return self._scene.mesh is None or self._scene.bearing == other.bearing
+        return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._scene, other), object))
 
 
-def same_bodies(scene: Any, other: Any) -> bool:
-    """Whether two scenes whose bodies are of one kind have the same meshes; where bodies do not tell, unless [mesh] is there."""
-    if not hasattr(scene.bodies, "same_bodies"):
-        return scene.mesh is None or scene.bearing == other.bearing
-    with blamed(f"bodies '{scene.bodies.name}'", "same_bodies()"):
-        return bool(scene.bodies.same_bodies(scene, other))
-
-
-def renews(law: Any) -> bool:
+def renews(law: ContactLaw) -> bool:
     """Whether a contact law's parameters follow the running speed and the loads; not unless it says so."""
     return bool(getattr(law, "renewed", False))
 
 
-def reach_of(law: Any, pairs: ContactPairs) -> np.ndarray:
-    """How far from touching the contacts of a law begin to carry (n,) [m]; 0 unless it says more.
+def is_constraint(law: ContactLaw) -> bool:
+    """Whether a contact law stands for no penetration at all; not unless it says so."""
+    return bool(getattr(law, "constraint", False))
 
-    Raises
-    ------
-    PluginError
-        It raises, or returns no such array.
-    """
+
+def is_foundation(law: ContactLaw) -> bool:
+    """Whether a contact law integrates a pressure that follows from the overlap at each place; not unless it says so."""
+    return bool(getattr(law, "foundation", False))
+
+
+def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair") -> np.ndarray:
+    """(n, k) parameters of a contact law, or ``PluginError``; ``row`` : what a row stands for."""
+    params, n = _array(f"contact law '{law.name}'", "build", lambda: law.build(pairs)), len(pairs.curvature_a)
+    if params.ndim != 2 or len(params) != n:
+        raise PluginError(
+            f"contact law '{law.name}': build() returned parameters of shape {params.shape}; "
+            f"it must be ({n}, k): a row for each {row}"
+        )
+    return params
+
+
+def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
+    """How far from touching the contacts of a law begin to carry (n,) [m], or ``PluginError``; 0 unless it says more."""
     import numpy as np
 
     n = len(pairs.curvature_a)
     if not hasattr(law, "reach"):
         return np.zeros(n)
-    who = f"contact law '{law.name}'"
-    with blamed(who, "reach()"):
-        found = np.asarray(law.reach(pairs))
-    if found.shape != (n,) or not (found >= 0.0).all() or not np.isfinite(found).all():
-        raise PluginError(f"{who}: reach() must return {n} finite lengths of 0 or more, one for each contact")
-    return found
+    reach = _array(f"contact law '{law.name}'", "reach", lambda: law.reach(pairs))
+    if reach.shape != (n,) or not (reach >= 0.0).all() or not np.isfinite(reach).all():
+        raise PluginError(
+            f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more, one for each contact"
+        )
+    return reach
 
 
-def law_report(law: Any, pairs: ContactPairs) -> LawReport | None:
-    """What a renewed law tells of its contacts; None unless it does."""
+def law_report(law: ContactLaw, pairs: ContactPairs) -> LawReport | None:
+    """The report of a renewed law on its contacts; None unless it has one."""
     if not renews(law) or not hasattr(law, "report"):
         return None
-    who = f"contact law '{law.name}'"
-    with blamed(who, "report()"):
-        found = law.report(pairs)
-    if not isinstance(found, LawReport):
-        raise PluginError(f"{who}: report() returned {type(found).__name__}; it must be a LawReport")
-    return found
+    return _answer(f"contact law '{law.name}'", "report", lambda: law.report(pairs), LawReport)
+
+
+def force_params(excitation: Excitation) -> np.ndarray:
+    """(k,) parameters of an excitation, or ``PluginError``."""
+    params = _array(f"excitation '{excitation.name}'", "parameters", excitation.parameters)
+    if params.ndim != 1:
+        raise PluginError(f"excitation '{excitation.name}': parameters() returned shape {params.shape}; it must be (k,)")
+    return params
+
+
+def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:
+    import numpy as np
+
+    return _answer(plugin, duty, lambda: np.ascontiguousarray(call(), dtype=float), np.ndarray)
+
+
+def speed_rpm(excitation: Excitation | None) -> float | None:
+    """The speed of an excitation [r/min], default of the spin speed; None where it has none, or there is no excitation."""
+    return getattr(excitation, "speed_rpm", None)
+
+
+def changes_speed(excitation: Excitation | None) -> bool:
+    """Whether an excitation runs from one speed, ``first_speed_rpm``, to another; not unless it has that."""
+    return getattr(excitation, "first_speed_rpm", None) is not None
+
+
+def ramp_turns(excitation: Excitation | None) -> float:
+    """Turns over which the force grows from zero; 0 unless the excitation says more."""
+    return float(getattr(excitation, "ramp_turns", 0.0))
+
+
+def duration_s(excitation: Excitation | None) -> float | None:
+    """Time that is integrated [s]; None, for the turns of the scene, unless the excitation says more."""
+    return getattr(excitation, "duration_s", None)
+
+
+def has_phase(excitation: Excitation | None) -> bool:
+    """Whether an excitation knows the angle of its 1x component."""
+    return hasattr(excitation, "phase")
+
+
+def steady_form(excitation: Excitation | None) -> Excitation | None:
+    """The periodic excitation on whose orbit the motion under a changing speed starts; None where there is none."""
+    steady = getattr(excitation, "steady", None)
+    return None if steady is None else steady()
+
+
+def at_whirl(excitation: Excitation, whirl_rpm: float) -> Excitation:
+    """The same force at another whirl speed [r/min]; with another ``speed_rpm`` unless the excitation says more."""
+    if hasattr(excitation, "at_whirl"):
+        return excitation.at_whirl(whirl_rpm)
+    return attrs.evolve(excitation, speed_rpm=whirl_rpm)  # type: ignore[misc]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
-    from raceway.framework.higher_types import Plan, Result
+    from raceway.pipeline.result import Result
+    from raceway.planning.plan import Plan
 
 # A specification has no body: pluggy never calls it.  Mypy misses the return of those that declare one: empty-body.
 hookspec = pluggy.HookspecMarker("raceway")

@@ -28,7 +28,6 @@ from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
-from raceway.framework.duties import traits_of
 from raceway.scene.growth import free_angle
 from raceway.storage.tables import Tables
 
@@ -128,7 +127,7 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
     warnings, scene = _seating(model, inner), model.scene
     if any(scene.load.moment) and scene.supports.tilt == "locked":
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
-    if scene.contact.friction > 0.0 and traits_of(scene).every_node:
+    if scene.contact.friction > 0.0 and scene.body_kind.traits.every_node:
         warnings.append(
             "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
         )

@@ -17,6 +17,7 @@ from raceway.core.ring.system import compiled
 from raceway.core.signals import fourier_line, stiffness
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
+from raceway.framework.duties import at_whirl, ramp_turns, steady_form
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, searches_orbits, stable_steps_per_turn
@@ -120,16 +121,16 @@ def simulate(
     critical = _critical_step(model, equilibrium, start.orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
-    ramp_turns = min(_ramp_turns(model), float(turns)) if start.kind == "ramp" else 0.0
+    ramp = min(_ramp_turns(model), float(turns)) if start.kind == "ramp" else 0.0
     stride = _stride(steps_per_turn, turns, method.inertial)
-    schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp_turns * period)
+    schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
     if near is not None:
         motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
     label = f"{model.scene.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     record = integrate(method, model.system, motion, schedule, progress)
-    used = turns - ceil(ramp_turns)
+    used = turns - ceil(ramp)
     if start.kind == "static" and method.inertial and not method.steady:
         used = max(model.plan.turns // 3, 1)
     warnings = (*start.warnings, *step_warnings, *record.counts.get("warnings", ()))
@@ -142,7 +143,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
     for speed in model.scene.identifier.method.speeds_rpm:
         rpm = float(speed)
-        excitation = force.at_whirl(rpm) if hasattr(force, "at_whirl") else attrs.evolve(force, speed_rpm=rpm)
+        excitation = at_whirl(force, rpm)
         scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
         at_speed = build_model(scene, make_plan(scene))
         motions.append(simulate(at_speed, solve_equilibrium(at_speed), on_progress))
@@ -154,7 +155,7 @@ def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = N
     scene, method = model.scene, model.scene.integrator.method
     if method.steady:
         return Start("static")
-    kind = "ramp" if getattr(scene.excitation, "ramp_turns", 0.0) > 0.0 else scene.integrator.start
+    kind = "ramp" if ramp_turns(scene.excitation) > 0.0 else scene.integrator.start
     start = _orbit_start(model, equilibrium, watch) if kind == "orbit" and method.inertial else Start(kind)
     return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if scene.contact.friction > 0.0 else start
 
@@ -164,11 +165,11 @@ def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) ->
     excitation, system = model.excitation, model.bearing.orbiting(model.system.at_speed(0.0))
     if excitation.period_s is None:
         # What changes its speed starts on the orbit of its first moment.
-        steady = getattr(excitation, "steady", None)
+        steady = steady_form(excitation)
         if steady is None:
             why = "the excitation does not repeat every turn: started with a ramp instead of on the orbit"
             return Start("ramp", settled=False, warnings=(why,))
-        excitation = steady()
+        excitation = steady
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
         return _searched_start(model, system, excitation.period_s, equilibrium.displacement, watch)
@@ -243,7 +244,7 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
 
 
 def _ramp_turns(model: Model) -> float:
-    return float(getattr(model.scene.excitation, "ramp_turns", 0.0)) or 2.0 * model.plan.turns / 3.0
+    return ramp_turns(model.scene.excitation) or 2.0 * model.plan.turns / 3.0
 
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
@@ -307,11 +308,11 @@ class SteadyMotions:
 
 def _at_speed(model: Model, speed: float) -> Model | None:
     """The same scene at one speed [rad/s], of an excitation that has a steady form."""
-    steady = getattr(model.excitation, "steady", None)
+    steady = steady_form(model.excitation)
     if steady is None:
         return None
-    scene = attrs.evolve(model.scene, excitation=attrs.evolve(steady(), speed_rpm=speed * 30.0 / pi))
-    return build_model(scene, model.plan)
+    excitation = attrs.evolve(steady, speed_rpm=speed * 30.0 / pi)  # type: ignore[misc]
+    return build_model(attrs.evolve(model.scene, excitation=excitation), model.plan)
 
 
 def steady_record(

@@ -25,7 +25,7 @@ from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Evaluation
 from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.framework.duties import renews, same_bodies
+from raceway.framework.duties import renews
 from raceway.scene.changes import Key, with_number
 from raceway.scene.scene import Scene
 
@@ -167,7 +167,7 @@ def _scene(model: Model, key: Key, step: float) -> Scene:
         if key.value == 0.0:
             raise NoDerivative("is 0, the end of its range: it switches a part on, which is no small change") from None
         raise NoDerivative(f"is at the end of its range: {why}") from None
-    if not same_bodies(model.scene, scene):
+    if not model.scene.body_kind.same_bodies(scene):
         raise NoDerivative(
             "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. "
             "bodies.kind = 'rigid' has one"

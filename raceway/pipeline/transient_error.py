@@ -44,6 +44,7 @@ from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
 from raceway.core.signals import Identification, fourier_line, stiffness, without_drift
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
+from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
 from raceway.planning.resolve import compares_with_steady_motion, remembers_its_start
@@ -258,7 +259,7 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
 def _started_by(model: Model, kind: str) -> Model:
     """The same scene with another start."""
     scene, excitation = model.scene, model.scene.excitation
-    if getattr(excitation, "ramp_turns", 0.0) > 0.0:
+    if ramp_turns(excitation) > 0.0:
         excitation = attrs.evolve(excitation, ramp_turns=0.0)
     scene = attrs.evolve(scene, excitation=excitation, integrator=attrs.evolve(scene.integrator, start=kind))
     return attrs.evolve(model, scene=scene)

@@ -11,6 +11,7 @@ from math import cos, log, pi, sin, sqrt
 
 import attrs
 
+from raceway.framework.duties import changes_speed
 from raceway.planning.resolve import Balls, Motion, recorded_per_turn, remembers_its_start
 from raceway.scene.growth import ring_inertia
 from raceway.scene.scene import Scene
@@ -62,7 +63,7 @@ def compiled_motion(scene: Scene, balls: Balls, motion: Motion, times: Times, mo
     method, share = scene.integrator.method, balls_of(scene) / 12.0
     each = runs(scene, motion) * share * (times.step[balls.kind] + more)
     each *= (1.0 if method.implicit else _EXPLICIT) * (1.0 if method.inertial else _EQUILIBRIUM)
-    if getattr(scene.excitation, "first_speed_rpm", None) is not None:
+    if changes_speed(scene.excitation):
         each += _CHANGING_S
     samples = motion.turns * recorded_per_turn(motion.steps_per_turn, motion.turns, method.inertial)
     steps = 0 if method.steady else motion.turns * motion.steps_per_turn

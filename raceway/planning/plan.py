@@ -13,7 +13,6 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
-from raceway.framework.duties import bodies
 from raceway.framework.shown import Fact, Shown, number
 from raceway.planning.machine import slowness
 from raceway.planning.resolve import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts, refuse_memory
@@ -101,13 +100,13 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     parts = Decisions(force)
     tilts = decide_tilts(scene, parts)
     balls = decide_balls(scene, parts)
-    bodies(scene, "decide", parts)
+    scene.body_kind.decide(parts)
     motion = decide_motion(scene, parts, tilts, balls.friction)
     decide_output(scene, parts, motion)
     count = scene.bearing.balls_in_all
     if motion.recorded:
         refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
-    cost = bodies(scene, "cost", balls, motion, parts)
+    cost = scene.body_kind.cost(balls, motion, parts)
     free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return Plan(

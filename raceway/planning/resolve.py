@@ -8,15 +8,14 @@ from math import ceil, pi, sqrt
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.duties import bodies, traits_of
+from raceway.framework.duties import changes_speed, duration_s, ramp_turns, steady_form
 from raceway.scene.growth import ring_inertia
 from raceway.scene.scene import Scene
 
 
 def searches_orbits(scene: Scene) -> bool:
     """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
-    ramped = getattr(scene.excitation, "ramp_turns", 0.0) > 0.0
-    return scene.integrator.start == "orbit" and not ramped and has_orbits(scene)
+    return scene.integrator.start == "orbit" and not ramp_turns(scene.excitation) and has_orbits(scene)
 
 
 def has_orbits(scene: Scene) -> bool:
@@ -24,8 +23,8 @@ def has_orbits(scene: Scene) -> bool:
     method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
     if excitation is None or method.steady or not method.inertial:
         return False
-    repeats = excitation.period_s is not None or getattr(excitation, "steady", None) is not None
-    return repeats and traits_of(scene).compiled and contact.law.state_size == 0
+    repeats = excitation.period_s is not None or steady_form(excitation) is not None
+    return repeats and scene.body_kind.traits.compiled and contact.law.state_size == 0
 
 
 def remembers_its_start(scene: Scene) -> bool:
@@ -36,7 +35,7 @@ def remembers_its_start(scene: Scene) -> bool:
     With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
     fits over several speeds no transient is estimated: a second run of them would tell nothing more.
     """
-    if scene.excitation is None or scene.contact.friction == 0.0 or traits_of(scene).every_node:
+    if scene.excitation is None or scene.contact.friction == 0.0 or scene.body_kind.traits.every_node:
         return False
     needs = scene.identifier.method.needs
     return "record" in needs and "speeds" not in needs
@@ -53,12 +52,11 @@ def compares_with_steady_motion(scene: Scene) -> bool:
     method, excitation = scene.integrator.method, scene.excitation
     if excitation is None or not method.inertial or method.steady:
         return False
-    if not traits_of(scene).compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
+    if not scene.body_kind.traits.compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
         return False
     if excitation.period_s is None:
-        return getattr(excitation, "steady", None) is not None
-    ramped = getattr(excitation, "ramp_turns", 0.0) > 0.0
-    return ramped or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs
+        return steady_form(excitation) is not None
+    return ramp_turns(excitation) > 0.0 or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs
 
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
@@ -75,7 +73,7 @@ _MEMORY_LIMIT = 4 * 2**30
 
 def turns_of(scene: Scene) -> int:
     """Turns that are integrated: the scene's, or as many as the excitation lasts."""
-    duration = getattr(scene.excitation, "duration_s", None)
+    duration = duration_s(scene.excitation)
     if duration is None:
         return scene.integrator.turns
     return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
@@ -89,7 +87,7 @@ def predicted_steps_per_turn(scene: Scene) -> int:
     if scene.integrator.method.implicit:
         return STEPS_PER_TURN
     period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-    stable = bodies(scene, "stable_step")
+    stable = scene.body_kind.stable_step()
     return STEPS_PER_TURN if stable is None else stable_steps_per_turn(period, damped_limit(stable, scene.time_constant))
 
 
@@ -248,7 +246,7 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     inertia = parts.decide(
         inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
     )
-    if scene.spin_speed > 0.0 and getattr(scene.excitation, "first_speed_rpm", None) is not None:
+    if scene.spin_speed > 0.0 and changes_speed(scene.excitation):
         rpm = scene.spin_speed * 30.0 / pi
         why = f"balls, ring and rotor follow the speed of excitation '{scene.excitation.name}'"
         why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
@@ -260,7 +258,7 @@ def decide_balls(scene: Scene, parts: Decisions) -> Balls:
     parts.decide(damped and rates, "contact damping", why, why_not)
     rubbing = scene.contact.friction > 0.0
     why_not = _off(scene, "contact.friction", "0")
-    if rubbing and not uses_record(scene) and traits_of(scene).every_node:
+    if rubbing and not uses_record(scene) and scene.body_kind.traits.every_node:
         rubbing = False
         why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)

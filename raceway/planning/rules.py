@@ -10,7 +10,7 @@ import attrs
 
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
-from raceway.framework.duties import bodies, renews, traits_of
+from raceway.framework.duties import changes_speed, has_phase, renews, speed_rpm
 from raceway.planning.resolve import predicted_steps_per_turn, recorded_per_turn, turns_of
 from raceway.scene.growth import growth_faults, loose_rings, ring_inertia
 from raceway.scene.scene import Scene
@@ -28,7 +28,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
             faults.append(Mistake(path, value, why))
 
     kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
-    faults += bodies(scene, "faults")
+    faults += scene.body_kind.faults()
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
@@ -41,7 +41,7 @@ def refuse_what_cannot_run(scene: Scene) -> None:
     why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
     refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
     refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
-    compiled = traits_of(scene).compiled
+    compiled = scene.body_kind.traits.compiled
     why = (
         f"has no terms that follow the changing speed of '{getattr(scene.excitation, 'name', None)}', which contact resultants on "
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
@@ -83,7 +83,7 @@ def _refuse_renewed(scene: Scene, refuse: _Refuse) -> None:
     refuse(scene.spin_speed == 0.0, "contact.kind", contact.kind, why)
     if contact.discretisation in contact.law.discretisations:
         why = "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'"
-        refuse(not traits_of(scene).renews, "contact.kind", contact.kind, why)
+        refuse(not scene.body_kind.traits.renews, "contact.kind", contact.kind, why)
 
 
 def _refuse_time_constant(scene: Scene, refuse: _Refuse) -> None:
@@ -93,7 +93,7 @@ def _refuse_time_constant(scene: Scene, refuse: _Refuse) -> None:
     ways["loss_factor"] = contact.loss_factor
     why = "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, or contact.damping in N s/m"
     for key, value in ways.items():
-        refuse(value is not None and not traits_of(scene).damps, f"contact.{key}", value, why)
+        refuse(value is not None and not scene.body_kind.traits.damps, f"contact.{key}", value, why)
     changing = scene.excitation is not None and scene.excitation.period_s is None
     why = "belongs to one frequency, and the excitation has none: give contact.time_constant"
     refuse(contact.loss_factor is not None and changing, "contact.loss_factor", contact.loss_factor, why)
@@ -116,14 +116,14 @@ def _refuse_different_rows(scene: Scene, refuse: _Refuse) -> None:
 
 def _slow(scene: Scene) -> tuple[str, str]:
     """The key, and its value, by which bodies have no compiled forces."""
-    if traits_of(scene).every_node or scene.contact.discretisation == "resultant":
+    if scene.body_kind.traits.every_node or scene.contact.discretisation == "resultant":
         return "bodies.kind", scene.bodies.name
     return "contact.discretisation", scene.contact.discretisation
 
 
 def _refuse_driver(scene: Scene, refuse: _Refuse) -> None:
     """A method without the driver that the bodies ask for."""
-    missing = missing_driver(scene.integrator.method.scheme, traits_of(scene).compiled)
+    missing = missing_driver(scene.integrator.method.scheme, scene.body_kind.traits.compiled)
     key, value = _slow(scene)
     why = (
         f"has no driver `{missing}`, which {key} = '{value}' needs: its forces are not compiled. Use 'newmark' or "
@@ -136,7 +136,7 @@ def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
     """Requirements of the identifier on the excitation."""
     needs, kind = scene.identifier.method.needs, scene.identifier.kind
     name, excitation = scene.excitation.name, scene.excitation
-    changing = excitation.period_s is None and getattr(excitation, "first_speed_rpm", None) is not None
+    changing = excitation.period_s is None and changes_speed(excitation)
     why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
     refuse("period" in needs and changing, "identifier.kind", kind, why)
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
@@ -150,10 +150,10 @@ def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
         )
         refuse(samples < least, "identifier.harmonics", fitted, why)
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
-    refuse("phase" in needs and not hasattr(excitation, "phase"), "identifier.kind", kind, why)
+    refuse("phase" in needs and not has_phase(excitation), "identifier.kind", kind, why)
     why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
     several = "speeds" in needs
-    unable = changing or not hasattr(excitation, "speed_rpm")
+    unable = changing or speed_rpm(excitation) is None
     refuse(several and unable, "identifier.kind", kind, why)
     if several and not unable:
         for rpm in scene.identifier.method.speeds_rpm:
@@ -245,9 +245,9 @@ def foreseen(scene: Scene) -> list[Mistake]:
         why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
         found.append(Mistake("identifier.window_turns", window, why))
     steps = scene.integrator.steps_per_turn
-    if not scene.integrator.method.implicit and isinstance(steps, int) and not traits_of(scene).every_node:
+    if not scene.integrator.method.implicit and isinstance(steps, int) and not scene.body_kind.traits.every_node:
         period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-        stable = bodies(scene, "stable_step")
+        stable = scene.body_kind.stable_step()
         least = 0 if stable is None else int(period / stable)
         if steps * _ROUGH < least:
             why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"

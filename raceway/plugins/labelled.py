@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from raceway.errors import RacewayError, extra
 
 if TYPE_CHECKING:
-    from raceway.framework.higher_types import Result
+    from raceway.pipeline.result import Result
 
 #: Name, unit and meaning of the numbers that are identified.
 _IDENTIFIED = (

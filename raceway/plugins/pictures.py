@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.framework.higher_types import Result, Simulation
+    from raceway.pipeline.result import Result
+    from raceway.pipeline.simulate import Simulation
 
 
 _USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, cached_property
 from math import pi
 from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from raceway.framework.duties import BodyKind, has_phase, speed_rpm
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.bearing import Bearing
 from raceway.scene.changes import told
@@ -135,12 +136,17 @@ class Scene(Shown):
 
         return as_scene(self, tables)
 
+    @cached_property
+    def body_kind(self) -> BodyKind:
+        """The kind of bodies, which answers for this scene."""
+        return BodyKind(self)
+
     @property
     def spin_speed(self) -> float:
         """Speed of the inner ring [rad/s]."""
         rpm = self.kinematics.spin_speed_rpm
         if rpm is None:
-            rpm = getattr(self.excitation, "speed_rpm", 0.0) if self.excitation is not None else 0.0
+            rpm = speed_rpm(self.excitation) or 0.0
         return rpm * pi / 30.0
 
     def says(self, key: str) -> bool:
@@ -162,7 +168,7 @@ class Scene(Shown):
     def spin_changes(self) -> bool:
         """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
         excitation = self.excitation
-        changing = excitation is not None and excitation.period_s is None and hasattr(excitation, "phase")
+        changing = excitation is not None and excitation.period_s is None and has_phase(excitation)
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
     def _shown(self) -> tuple[str, list[Fact]]:

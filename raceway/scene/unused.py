@@ -8,7 +8,6 @@ from contextlib import suppress
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.framework.duties import bodies
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
 from raceway.scene.reading import scene_from_dict
@@ -93,7 +92,7 @@ def _core(scene: Scene) -> list[tuple[str, str]]:
     locked = scene.supports.tilt == "locked"
     told(locked and not slow, "supports.tilt is locked", "rotor.transverse_inertia", "rotor.polar_inertia")
     told(scene.contact.friction == 0.0, "contact.friction is 0", "contact.stick_stiffness")
-    for path, why in bodies(scene, "unused"):
+    for path, why in scene.body_kind.unused():
         told(True, why, path)
     own = {field.name for field in attrs.fields(type(scene.bodies))}
     others = [f"bodies.{key}" for key in scene.source.get("bodies", {}) if key != "kind" and key not in own]

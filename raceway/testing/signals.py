@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import radians
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 
 if TYPE_CHECKING:
+    from raceway.bodies.model import Equilibrium, Model
     from raceway.framework.contracts import Excitation, Identifier
 
 
@@ -198,7 +199,7 @@ def synthetic_record(
     )  # fmt: skip
 
 
-def model_of(sense: int = 1, direction: float = 0.0) -> SimpleNamespace:
+def model_of(sense: int = 1, direction: float = 0.0) -> Model:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
     from raceway.core.excitations.harmonic import harmonic
     from raceway.testing.systems import linear_system
@@ -214,14 +215,14 @@ def model_of(sense: int = 1, direction: float = 0.0) -> SimpleNamespace:
         phase=lambda time: w * time - 0.4,
     )  # fmt: skip
     scene = SimpleNamespace(excitation=excitation)
-    return SimpleNamespace(system=system, excitation=excitation, mass_used=MASS, scene=scene)
+    return cast("Model", SimpleNamespace(system=system, excitation=excitation, mass_used=MASS, scene=scene))
 
 
-def equilibrium_at_rest() -> SimpleNamespace:
+def equilibrium_at_rest() -> Equilibrium:
     """An equilibrium without displacement."""
-    none = np.zeros((5, 5))
     matrices = ("stiffness", "stiffness_rows_held", "damping", "damping_rows_held")
-    return SimpleNamespace(displacement=np.zeros(5), ball=np.zeros((1, 2)), **{name: none.copy() for name in matrices})
+    parts = {name: np.zeros((5, 5)) for name in matrices}
+    return cast("Equilibrium", SimpleNamespace(displacement=np.zeros(5), ball=np.zeros((1, 2)), **parts))
 
 
 #: (sense, direction [rad]) of the forces that are tried.

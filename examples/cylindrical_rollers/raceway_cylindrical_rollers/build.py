@@ -9,11 +9,12 @@ import attrs
 import numpy as np
 
 from raceway import LAW, ConvergenceError
-from raceway.bodies.basis import Basis, call_plugin, changing_speed, excitation, linear_parts, make_basis
+from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, make_basis
 from raceway.bodies.model import Bearing, Told
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.framework.contracts import ContactPairs
+from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway_cylindrical_rollers.compiled import rollers
 from raceway_cylindrical_rollers.kind import STRIBECK
@@ -138,7 +139,7 @@ def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, f
         reference_load=np.full(2 * z, load),
         length=np.full(2 * z, length),
     )
-    return call_plugin(f"contact law '{scene.contact.kind}'", "build()", lambda: scene.contact.law.build(pairs))
+    return law_params(scene.contact.law, pairs)
 
 
 def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:

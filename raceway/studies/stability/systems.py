@@ -21,7 +21,7 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.system import System, surrogate
-from raceway.framework.duties import reach_of, renews
+from raceway.framework.duties import law_params, reach_of, renews
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
@@ -205,7 +205,7 @@ def _at_load(model: Model, load: float, angle: float) -> tuple[np.ndarray | None
         return None, np.zeros(2 * z)
     angles = np.full(z, angle)
     pairs = running_pairs(model.scene, model.basis, np.full(2 * z, load), (angles, angles))
-    return law.build(pairs), reach_of(law, pairs)
+    return law_params(law, pairs), reach_of(law, pairs)
 
 
 def stiffer_than_hertz(model: Model, ball_load: float) -> bool:
