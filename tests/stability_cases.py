@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import time
 
+from raceway.studies.stability.study import Limit
+
 
 def hang(rows, bench):
     time.sleep(60.0)
@@ -15,4 +17,4 @@ def die(rows, bench):
 
 
 def answer(rows, bench, value=None):
-    rows.check("one", 1.0 + {"near": 0.05, "far": 1.0}[value], "why", near=1.0, within=0.1)
+    rows.check("one", 1.0 + {"near": 0.05, "far": 1.0}[value], "why", Limit.equal(1.0, 0.1))

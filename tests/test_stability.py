@@ -19,8 +19,8 @@ from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.studies.stability import scenes, systems
 from raceway.studies.stability.catalogue import BASE, SCENES, catalogue, laws_with, transient, with_law
-from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Rows, measured, rows_of, stability
-from raceway.studies.stability.systems import axial_displacement, axial_force, model_at
+from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, measured, rows_of, stability
+from raceway.studies.stability.systems import Bench, axial_displacement, axial_force
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
@@ -69,16 +69,16 @@ def test_every_law_and_transient_integrator_takes_part_and_a_third_partys_in_the
 @pytest.mark.parametrize(
     ("limit", "good", "bad"),
     [
-        ({"near": 2.0, "within": 0.01}, (2.019, 1.981), (2.021, 1.979)),
-        ({"near": -2.0, "within": 0.01}, (-2.019,), (-2.021, 2.0)),
-        ({"at_most": 1.0}, (1.0,), (1.1, math.nan, (0.5, math.nan))),
-        ({"at_least": 1.0}, (1.0, (1.0, 0.3)), (0.9, math.inf)),
+        (Limit.equal(2.0, 0.01), (2.019, 1.981), (2.021, 1.979)),
+        (Limit.equal(-2.0, 0.01), (-2.019,), (-2.021, 2.0)),
+        (Limit.at_most(1.0), (1.0,), (1.1, math.nan, (0.5, math.nan))),
+        (Limit.at_least(1.0), (1.0, (1.0, 0.3)), (0.9, math.inf)),
     ],
 )
 def test_expectations_judge(limit, good, bad):
     rows = Rows("c")
-    assert {rows.check("q", value, "", **limit).verdict for value in good} == {AS_EXPECTED}
-    assert {rows.check("q", value, "", **limit).verdict for value in bad} == {FAILED}
+    assert {rows.check("q", value, "", limit).verdict for value in good} == {AS_EXPECTED}
+    assert {rows.check("q", value, "", limit).verdict for value in bad} == {FAILED}
 
 
 def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
@@ -86,7 +86,7 @@ def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
         raise ConvergenceError("nothing loads the bearing")
 
     rows = Rows("c")
-    row = rows.check("q", refuse, "", at_most=1.0)
+    row = rows.check("q", refuse, "", Limit.at_most(1.0))
     assert row.verdict == FAILED and "unexpectedly: nothing loads" in row.note and row.observed is None
     assert rows.refused("nothing loads", "", refuse).verdict == AS_EXPECTED
     assert rows.refused("another message", "", refuse).verdict == FAILED
@@ -135,7 +135,7 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     """At 100 kN a compliance that varies with the contact angle pushes balls along the groove with 3 % of the load."""
     found = {}
     for load in (1e5, 1.001e5):
-        model = model_at(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY)
+        model = Bench(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY).model()
         found[load] = solve_equilibrium(model)
         # A difference over a thousandth of the penetration errs by the square of that.
         assert axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
@@ -271,7 +271,7 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
-    model = model_at(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY)
+    model = Bench(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
     own, found = axial_displacement(model), solve_equilibrium(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
@@ -282,7 +282,7 @@ def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_forc
 
 def test_the_axial_displacement_by_a_laws_own_force():
     """Of the cubic law in closed form: delta = (Q / 2e17)^(1/3) at both races."""
-    model = model_at(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry_with([CUBIC]))
+    model = Bench(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry_with([CUBIC])).model()
     axial, radial = np.add(model.geometry.rest, (axial_displacement(model), 0.0))
     approach = np.hypot(axial, radial) - model.geometry.centre_distance
     load = 2e17 * (0.5 * approach) ** 3
@@ -291,14 +291,14 @@ def test_the_axial_displacement_by_a_laws_own_force():
 
 @pytest.mark.parametrize(("law", "expected"), [("hertz", FAILED), ("cubic", AS_EXPECTED)])
 def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, expected, monkeypatch):
-    build = systems.model_at
+    build = Bench.model
 
-    def refuse(tables, changes, registry):
-        if changes["bodies.kind"] == "condensed":
+    def refuse(bench):
+        if bench.changes["bodies.kind"] == "condensed":
             raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
-        return build(tables, changes, registry)
+        return build(bench)
 
-    monkeypatch.setattr(systems, "model_at", refuse)
+    monkeypatch.setattr(Bench, "model", refuse)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
     arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
     (row,) = rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))

@@ -10,7 +10,7 @@ import numpy as np
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.strain import KINDS
 from raceway.elastic.linear_statics import solve_static
-from raceway.studies.stability.study import Rows
+from raceway.studies.stability.study import Limit, Rows
 
 _YOUNG, _POISSON, _DENSITY = 212e9, 0.29, 7810.0
 _STEPS = 400
@@ -31,11 +31,11 @@ def slender_steps(rows: Rows, _bench: None, aspect: float) -> None:
         fastest = np.linalg.eigvalsh(op.stiffness().toarray() / np.sqrt(mass[:, None] * mass))[-1]
         limit, setting = 2.0 / np.sqrt(fastest), {"elements": kind, "aspect": aspect}
         share, why = op.stable_step() / limit, "no mode of the mesh is faster than its fastest element"
-        rows.check("predicted safe step over the mesh's limit", share, why, at_most=1.0 + 1e-9, at=setting)
+        rows.check("predicted safe step over the mesh's limit", share, why, Limit.at_most(1.0 + 1e-9), at=setting)
         words = f"largest over first displacement, {_STEPS} steps"
         why = "1 / sqrt(1 - 0.98^2) = 5, and modes add up"
-        rows.check(words, _growth(op, 0.98 * limit), why, at_most=20.0, at={**setting, "step/limit": 0.98})
-        rows.check(words, _growth(op, 1.02 * limit), "1.49 a step", at_least=1e3, at={**setting, "step/limit": 1.02})
+        rows.check(words, _growth(op, 0.98 * limit), why, Limit.at_most(20.0), at={**setting, "step/limit": 0.98})
+        rows.check(words, _growth(op, 1.02 * limit), "1.49 a step", Limit.at_least(1e3), at={**setting, "step/limit": 1.02})
 
 
 def _growth(op: HexOperator, dt: float) -> float:
@@ -57,7 +57,7 @@ def slender_bar(rows: Rows, _bench: None, aspect: float, poisson: float, young: 
         matrix = HexOperator(points, cells, young, poisson, _DENSITY, kind).stiffness()
         setting = {"elements": kind, "aspect": aspect, "poisson": poisson, "young": young}
         value, near = partial(_lengthening, matrix, points, force), force * length / (young * side**2)
-        rows.check("lengthening [m]", value, why, near=near, within=1e-5, at=setting)
+        rows.check("lengthening [m]", value, why, Limit.equal(near, 1e-5), at=setting)
 
 
 def soft_on_hard(rows: Rows, _bench: None) -> None:
@@ -74,7 +74,7 @@ def soft_on_hard(rows: Rows, _bench: None) -> None:
             "uniform stress is exact; the stiffnesses differ by 1.6e5",
             {"elements": kind, "ratio of moduli": hard / soft},
         )
-        rows.check("shortening [m]", value, why, near=near, within=1e-6, at=setting)
+        rows.check("shortening [m]", value, why, Limit.equal(near, 1e-6), at=setting)
 
 
 def _lengthening(matrix: Any, points: np.ndarray, force: float) -> float:
@@ -84,17 +84,17 @@ def _lengthening(matrix: Any, points: np.ndarray, force: float) -> float:
     edge = (np.isclose(points[end, 1:], 0.0, atol=1e-9 * side) | np.isclose(points[end, 1:], side)).sum(axis=1)
     load, share = np.zeros_like(points), 0.5**edge  # of a node in the traction on a uniform grid
     load[end, 0] = force * share / share.sum()
-    found = solve_static(matrix, points, load, points == 0.0, tolerance=1e-7).displacement
-    return float(found[end, 0].mean())
+    displacement = solve_static(matrix, points, load, points == 0.0, tolerance=1e-7).displacement
+    return float(displacement[end, 0].mean())
 
 
 def locking(rows: Rows, _bench: None) -> None:
     """A nearly incompressible cantilever: elements that bend, and elements that are known to lock."""
     beam, words = _tip("mean_dilatation", 0.3), "tip deflection over that at Poisson's ratio 0.3, E the same"
     for kind in KINDS:
-        bound = {"at_most": 0.75} if kind in _LOCKS else {"at_least": 0.8}
+        limit = Limit.at_most(0.75) if kind in _LOCKS else Limit.at_least(0.8)
         setting = {"elements": kind, "poisson": 0.4999}
-        rows.check(words, _tip(kind, 0.4999) / beam, _LOCKS.get(kind, _BENDS), at=setting, **bound)  # type: ignore[arg-type]
+        rows.check(words, _tip(kind, 0.4999) / beam, _LOCKS.get(kind, _BENDS), limit, at=setting)
 
 
 def _tip(kind: str, poisson: float) -> float:

@@ -22,7 +22,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.resolve import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED
-from raceway.studies.stability.study import Rows
+from raceway.studies.stability.study import Limit, Rows
 from raceway.studies.stability.systems import Bench, Still, energy_of_contacts, inverted, mass_at
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def many_steps(rows: Rows, bench: Bench, integrator: str, steps: int, factor: fl
     words = "trend of the energy's block means over the motion's energy"
     note = "contacts open" if really else "all contacts stay closed"
     value = (slope if loses else abs(slope), worst)
-    rows.check(words, value, why, at_most=bound, at={"steps": steps, "step/limit": factor}, note=note)
+    rows.check(words, value, why, Limit.at_most(bound), at={"steps": steps, "step/limit": factor}, note=note)
 
 
 def _trend(at: Still, record: Record) -> tuple[float, float]:
@@ -116,11 +116,11 @@ def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) 
     energy = (departure / rebound) ** 2 - 1.0
     setting = {"speed [m/s]": speed, "steps a contact": steps}
     why = "one step lies up to a hundredth of the contact's time from the peak"
-    rows.check("greatest force [N]", (float(record.contact_force.max()), energy), why, near=force, within=0.02, at=setting)
+    rows.check("greatest force [N]", (float(record.contact_force.max()), energy), why, Limit.equal(force, 0.02), at=setting)
     within, why = 0.01, "the energy swings by the square of the phase a step; what is left of it when the contact opens"
     if method.dissipative:
         within, why = 0.1, "a dissipative method takes part of an impact that few steps resolve"
-    rows.check("speed of the rebound [m/s]", (departure, energy), why, near=rebound, within=within, at=setting)
+    rows.check("speed of the rebound [m/s]", (departure, energy), why, Limit.equal(rebound, within), at=setting)
 
 
 def _force(system: System, approach: float, rate: float = 0.0) -> float:
@@ -160,7 +160,7 @@ def deep_penetration(rows: Rows, bench: Bench, integrator: str, depth: float) ->
         energy = balance.kinetic + balance.stored - balance.work
         drift, words = float((energy - energy[0]).max() / np.abs(energy).max()), "largest gain of energy over the motion's"
     why = "the energy of so coarse a motion swings by (w dt)^2 / 4 = 0.3 % where smooth, more where contacts open"
-    rows.check(words, (drift, drift), why, at_most=0.03, at={"depth [m]": depth, "step/limit there": 0.05})
+    rows.check(words, (drift, drift), why, Limit.at_most(0.03), at={"depth [m]": depth, "step/limit there": 0.05})
 
 
 def settled_from_afar(rows: Rows, bench: Bench, guesses: list[float]) -> None:
@@ -173,7 +173,7 @@ def settled_from_afar(rows: Rows, bench: Bench, guesses: list[float]) -> None:
         return float(at.system.settle(np.array([guess, 0.2 * guess, 0.0, 0.0, 0.0]))[0][0])
 
     for guess in guesses:
-        rows.check(words, partial(axial, guess), why, near=x, within=1e-8, at={"first guess [m]": guess})
+        rows.check(words, partial(axial, guess), why, Limit.equal(x, 1e-8), at={"first guess [m]": guess})
 
 
 def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: float, chatters: bool) -> None:
@@ -204,14 +204,14 @@ def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: fl
     worst, opened, height = max(falls)
     note = f"most after a fall from {height:g} times the approach at rest: open in {opened:.0f} % of these steps"
     words = "contact force less the load over the load, rms of steps 301 to 400, largest of eight falls"
-    setting, bound, why = {**options, "step/period": step}, {"at_most": _AT_REST}, "at rest by then"
+    setting, limit, why = {**options, "step/period": step}, Limit.at_most(_AT_REST), "at rest by then"
     if chatters:
         alone = max(_unrest(_trapezoids(system, mass, load, h * q[0], dt), load) for h in _HEIGHTS)
         why = "at rest by then, as the same steps by bisection are with this law"
         if alone > _AT_REST:
-            bound = {"at_least": 0.1}
+            limit = Limit.at_least(0.1)
             why = "the known fault of average acceleration: the same steps by bisection show it with this law"
-    rows.check(words, worst, why, at=setting, note=note, **bound)
+    rows.check(words, worst, why, limit, setting, note)
 
 
 def _unrest(late: np.ndarray, load: float) -> float:
@@ -256,9 +256,11 @@ def small_motions(rows: Rows, bench: Bench, integrator: str) -> None:
     _around_the_limit(rows, bench.method(integrator), at.system, start, at.equilibrium.displacement, at.limit)
 
 
-def _around_the_limit(rows: Rows, method: Integrator, system: System, start: Motion, rest: np.ndarray, limit: float) -> None:
+def _around_the_limit(
+    rows: Rows, method: Integrator, system: System, start: Motion, still: np.ndarray, limit: float
+) -> None:
     weight = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
-    size = float(np.abs((start.q - rest) * weight).max())
+    size = float(np.abs((start.q - still) * weight).max())
 
     def growth(factor: float) -> float:
         """Largest displacement over the first; of a motion that was stopped, where it was stopped."""
@@ -266,21 +268,20 @@ def _around_the_limit(rows: Rows, method: Integrator, system: System, start: Mot
             moved = integrate(method, system, start, Schedule(factor * limit, _STEPS, 1)).displacement
         except ConvergenceError as stop:  # grown until the balls find no place, or beyond a metre
             moved = stop.state["q"]
-        return float(np.abs((moved - rest) * weight).max() / size)
+        return float(np.abs((moved - still) * weight).max() / size)
 
     words = f"largest over first displacement, {_STEPS} steps"
     for factor in FACTORS:
-        if method.implicit or factor < 1.0:
-            rows.check(words, growth(factor), _SWINGS, at_most=_BOUNDED, at={"step/limit": factor})
-        else:
-            rows.check(words, growth(factor), _GROWS, at_least=_GROWING, at={"step/limit": factor})
+        bounded = method.implicit or factor < 1.0
+        why, limit_of_growth = (_SWINGS, Limit.at_most(_BOUNDED)) if bounded else (_GROWS, Limit.at_least(_GROWING))
+        rows.check(words, growth(factor), why, limit_of_growth, at={"step/limit": factor})
     if not method.implicit:
         low, high = 0.5, 2.0
         while high - low > 1e-3:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if growth(middle) < _BOUNDED else (low, middle)
         why = "the limit is exact for linear motions; bisected to 1e-3"
-        rows.check("stable limit [s]", low * limit, why, near=limit, within=0.02)
+        rows.check("stable limit [s]", low * limit, why, Limit.equal(limit, 0.02))
 
 
 def orbit_at_the_safe_limit(rows: Rows, bench: Bench, integrator: str) -> None:
@@ -302,4 +303,4 @@ def orbit_at_the_safe_limit(rows: Rows, bench: Bench, integrator: str) -> None:
     away = float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size)
     why = "an unstable motion leaves its orbit by many times its size; steps so long cost a stable one percents"
     words = "distance from the orbit in turn 50 over its size"
-    rows.check(words, away, why, at_most=0.5, at={"contacts open": opens, "steps a turn": steps})
+    rows.check(words, away, why, Limit.at_most(0.5), at={"contacts open": opens, "steps a turn": steps})

@@ -26,7 +26,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.cost import series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient
-from raceway.studies.stability.study import FAILED, Measured, Rows, short
+from raceway.studies.stability.study import FAILED, Limit, Measured, Rows, short
 from raceway.studies.stability.systems import Bench, axial_displacement, axial_force, stiffer_than_hertz
 
 if TYPE_CHECKING:
@@ -102,14 +102,14 @@ def extreme(
             return (float("nan") if unbalanced is None else unbalanced), unbalanced
 
         if near is not None:
-            row = rows.check(words, motion, why, near=near, within=_Z_ERROR, at=setting)
+            row = rows.check(words, motion, why, Limit.equal(near, _Z_ERROR), at=setting)
             if row.verdict == FAILED and row.observed is not None:
                 stated = max((value for value in result().error.values() if isinstance(value, float)), default=float("nan"))
                 rows.written[-1] = attrs.evolve(row, note=f"the result itself states an error of {stated:.2g}")
         # Results tell no balance of energy for a law that loses some by itself.
         if near is None or (judge == "finer" and not bench.changed(by_name).scene.contact.law.dissipative):
             quantity = "completed; energy not balanced by the work"
-            rows.check(quantity, balance, _DRIFT_WHY, at_most=_DRIFT, at=setting, note=note)
+            rows.check(quantity, balance, _DRIFT_WHY, Limit.at_most(_DRIFT), at=setting, note=note)
 
 
 def _stiffness(result: Result) -> complex:
@@ -136,19 +136,19 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
     load = scene.load.axial
     if scene.bodies.name == "rigid":
         why = "an equilibrium is solved to a residual of 1e-11"
-        rows.check("sum of the balls' axial forces [N]", axial, why, near=load, within=1e-8)
+        rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(load, 1e-8))
     else:
         try:
             ratio = 0.5 * float(settled()[1].contact_force.sum()) / load
         except RacewayError:
             ratio = 1.0  # the row itself tells that there is no equilibrium
         words = "axial slope of the stored energy [N]"
-        rows.check(words, lambda: axial_force(*settled()), _SLOPE_WHY, near=load, within=_SLOPE * ratio)
+        rows.check(words, lambda: axial_force(*settled()), _SLOPE_WHY, Limit.equal(load, _SLOPE * ratio))
     if closed_form:
         model = bench.changed({"kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}).model()
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
         near, words = axial_displacement(model), "axial displacement [m]"
-        rows.check(words, lambda: float(solve_equilibrium(model).displacement[0]), why, near=near, within=1e-6)
+        rows.check(words, lambda: float(solve_equilibrium(model).displacement[0]), why, Limit.equal(near, 1e-6))
 
 
 def _too_stiff(rows: Rows, bench: Bench) -> bool:
@@ -179,7 +179,7 @@ def hertz_factor(rows: Rows, bench: Bench) -> None:
     softness = float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0))
     near, words = series_factor(scene) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
     why = "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)"
-    rows.check(words, softness, why, near=near, within=0.05)
+    rows.check(words, softness, why, Limit.equal(near, 0.05))
 
 
 def _default_penalty(bench: Bench) -> float:
@@ -213,9 +213,9 @@ def condensed_at_rest(rows: Rows, bench: Bench) -> None:
     pressed = [ball for ball in balls if ball["contact_angle_inner_deg"] is not None]
     axial = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in pressed)
     x, near = (float(result.equilibrium.displacement[0]) for result in results)
-    rows.check("axial displacement [m], predicted by Hertz on these bodies", x, _COARSE, near=near, within=0.06)
+    rows.check("axial displacement [m], predicted by Hertz on these bodies", x, _COARSE, Limit.equal(near, 0.06))
     why = "a ball's angle is that of its centre, the resultant of its pressures leans by a degree from it"
-    rows.check("sum of the balls' axial forces [N]", axial, why, near=results[0].model.scene.load.axial, within=0.02)
+    rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(results[0].model.scene.load.axial, 0.02))
 
 
 def turn(rows: Rows, bench: Bench, integrator: str) -> None:
@@ -224,7 +224,7 @@ def turn(rows: Rows, bench: Bench, integrator: str) -> None:
         each.changed({"integrator.kind": kind}) for each, kind in ((_calibrated(bench), "periodic"), (bench, integrator))
     )
     near, stiffness = (abs(_stiffness(each.result())) for each in (steady, stepped))
-    rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, near=near, within=0.05)
+    rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, Limit.equal(near, 0.05))
 
 
 def calibrated_at_rest(rows: Rows, bench: Bench) -> None:
@@ -233,16 +233,16 @@ def calibrated_at_rest(rows: Rows, bench: Bench) -> None:
     result = bench.over(COARSE).result()
     why = "elements of 3.2 mm, two through a wall, bend too little: 1 % as a rule; twice that"
     near, value = float(condensed.displacement[0]), float(result.equilibrium.displacement[0])
-    rows.check("axial displacement [m], predicted by condensed bodies", value, why, near=near, within=0.02)
+    rows.check("axial displacement [m], predicted by condensed bodies", value, why, Limit.equal(near, 0.02))
     near, value = float(condensed.stiffness[1, 1]), float(result.equilibrium.stiffness[1, 1])
-    rows.check("radial stiffness [N/m], predicted by condensed bodies", value, why, near=near, within=0.02)
+    rows.check("radial stiffness [N/m], predicted by condensed bodies", value, why, Limit.equal(near, 0.02))
     _on_the_seat(rows, result)
 
 
 def _on_the_seat(rows: Rows, result: Result) -> None:
     seat, load = -float(result.to_dict()["model"]["reaction_n"]["x"]), result.model.scene.load.axial
     why = "an equilibrium of all nodes is solved to 1e-7 of its forces"
-    rows.check("axial force on the outer seat [N]", seat, why, near=load, within=1e-5)
+    rows.check("axial force on the outer seat [N]", seat, why, Limit.equal(load, 1e-5))
 
 
 def points_at_rest(rows: Rows, bench: Bench) -> None:
@@ -263,7 +263,7 @@ def points_at_rest(rows: Rows, bench: Bench) -> None:
 
     why = "points are looked up anew on the race's facets after 0.02 of a facet's half width, as on another mesh"
     words = "change of the stored energy over the axial way [N]"
-    rows.check(words, slope, why, near=(1.0 + 0.5 * _MORE) * load, within=0.02)
+    rows.check(words, slope, why, Limit.equal((1.0 + 0.5 * _MORE) * load, 0.02))
 
 
 def _loaded_at_rest(bench: Bench) -> tuple[Any, Motion, Equilibrium]:
@@ -287,7 +287,7 @@ def sudden_force(rows: Rows, bench: Bench, integrator: str) -> None:
 
     why = "steps of nanoseconds follow all but the waves of single elements, which carry little"
     setting = {"steps": steps, "step/limit": step / limit}
-    rows.check("energy not balanced by the work", balance, why, at_most=_UNBALANCED, at=setting)
+    rows.check("energy not balanced by the work", balance, why, Limit.at_most(_UNBALANCED), at=setting)
     if not method.implicit:
         far = partial(integrate, method, ring, start, Schedule(1.02 * limit, 10, 1))
         rows.refused("above the stable limit", "it is refused before it blows up", far, {"steps": 1, "step/limit": 1.02})
@@ -301,7 +301,7 @@ def rubbing(rows: Rows, bench: Bench) -> None:
     energies = integrate(bench.method("newmark", _TOLERANCE), ring, start, Schedule(step, steps, 1)).energies
     worst = drift(energies) or 0.0
     why = "a period of the ring takes forty of these steps; waves of single elements carry little"
-    rows.check("energy not balanced by the work", (worst, worst), why, at_most=_UNBALANCED, at=setting)
+    rows.check("energy not balanced by the work", (worst, worst), why, Limit.at_most(_UNBALANCED), at=setting)
     share = float(energies["friction"][-1] / (energies["external"][-1] - energies["external"][0]))
     why = "the rims of contacts slip at any force; rounding is 1e-12, and without friction it is nothing"
-    rows.check("energy that friction took over the work", (share, worst), why, at_least=1e-6, at=setting)
+    rows.check("energy that friction took over the work", (share, worst), why, Limit.at_least(1e-6), at=setting)

@@ -5,7 +5,6 @@ A case writes rows: a number beside its limit, or a message that must come.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import time
@@ -21,7 +20,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
 from raceway.points.engine import Item, local, processor_time, work_through
-from raceway.points.store import RowStore, program_key
+from raceway.points.store import RowStore, program_key, tables_key
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 
@@ -86,6 +85,29 @@ class Row:
 
 
 @attrs.frozen
+class Limit:
+    """Bounds of a number, in words too; ``near``: the value that it is expected to equal."""
+
+    words: str
+    least: float = -math.inf
+    most: float = math.inf
+    near: float | None = None
+
+    @classmethod
+    def equal(cls, near: float, within: float) -> Limit:
+        """A value, relatively ``within``."""
+        return cls(f"equal within {within:.2g}", near - within * abs(near), near + within * abs(near), near)
+
+    @classmethod
+    def at_most(cls, most: float) -> Limit:
+        return cls(f"at most {most:.3g}", most=most)
+
+    @classmethod
+    def at_least(cls, least: float) -> Limit:
+        return cls(f"at least {least:.3g}", least)
+
+
+@attrs.frozen
 class Rows:
     """What a case writes: its name, the setting of all its rows, the rows so far."""
 
@@ -94,30 +116,27 @@ class Rows:
     written: list[Row] = attrs.field(factory=list)
 
     def check(
-        self, quantity: str, value: Measured | Callable[[], Measured], why: str, *, near: float | None = None, within: float = 0.0,
-        at_most: float | None = None, at_least: float | None = None, at: Tables | None = None, note: str = "",
+        self, quantity: str, value: Measured | Callable[[], Measured], why: str, limit: Limit, at: Tables | None = None, note: str = ""
     ) -> Row:  # fmt: skip
-        """A number against ``near``, relatively ``within``, or a bound; an error of a function, or no number, fails.
+        """A number against its limit; an error of a function, or no number, fails.
 
         Parameters
         ----------
         why : the reason of the limit;  at : setting of this row alone
         """
-        least, most = at_least, at_most
-        if near is not None:
-            words, least, most = f"equal within {within:.2g}", near - within * abs(near), near + within * abs(near)
-        else:
-            words = f"at least {at_least:.3g}" if at_most is None else f"at most {at_most:.3g}"
         observed = drift = None
         try:
             measured = value() if callable(value) else value
             observed, drift = measured if isinstance(measured, tuple) else (measured, None)
-            if not all(math.isfinite(each) for each in (observed, drift or 0.0)):
+            if not all(math.isfinite(number) for number in (observed, drift or 0.0)):
                 note, observed, drift = f"not a number: {observed}, energy {drift}", None, None
         except RacewayError as error:
             note = f"refused, unexpectedly: {short(error)}"
-        good = observed is not None and (least is None or observed >= least) and (most is None or observed <= most)
-        return self._write(good, why, note, at, quantity, words, near, observed, drift)
+        good = observed is not None and limit.least <= observed <= limit.most
+        number = None if observed is None else float(observed)
+        row = self._row(good, quantity, limit.words, why, note, at)
+        self.written[-1] = attrs.evolve(row, predicted=limit.near, observed=number, energy_drift=drift)
+        return self.written[-1]
 
     def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> Row:
         """What must be refused, with a message that holds ``words``."""
@@ -126,25 +145,22 @@ class Rows:
             work()
         except RacewayError as error:
             good, note = words in str(error), short(error)
-        return self._write(good, why, note, at, "message", f"refused: '{words}'")
+        return self._row(good, "message", f"refused: '{words}'", why, note, at)
 
     def warned(self, words: str, why: str, warnings: Iterable[str]) -> Row:
         """A warning that holds ``words``."""
         text = next((text for text in warnings if words in text), None)
-        return self._write(text is not None, why, text or "no such warning", None, "warning", f"warned: '{words}'")
+        return self._row(text is not None, "warning", f"warned: '{words}'", why, text or "no such warning")
 
     def lost(self, why: str, at: Tables | None = None) -> Row:
         """A case, or a part of it, that ended without an answer."""
-        return self._write(False, "", why, at, "answer", "an answer or a refusal")
+        return self._row(False, "answer", "an answer or a refusal", "", why, at)
 
-    def _write(
-        self, good: bool, why: str, note: str, at: Tables | None, quantity: str, words: str, near: float | None = None,
-        value: float | None = None, drift: float | None = None,
-    ) -> Row:  # fmt: skip
-        setting, number = {**self.setting, **(at or {})}, None if value is None else float(value)
+    def _row(self, good: bool, quantity: str, expected: str, why: str, note: str = "", at: Tables | None = None) -> Row:
         verdict = AS_EXPECTED if good else FAILED
-        self.written.append(Row(self.case, setting, quantity, words, near, number, drift, verdict, why, note))
-        return self.written[-1]
+        row = Row(self.case, {**self.setting, **(at or {})}, quantity, expected, None, None, None, verdict, why, note)
+        self.written.append(row)
+        return row
 
 
 def short(error: BaseException) -> str:
@@ -247,17 +263,16 @@ def measured(
     patience : time after which a case of another process is given up [s]
     """
     program = program_key(registry)
-    keys = (json.dumps([attrs.asdict(case), program], sort_keys=True, default=str) for case in cases)
-    items = [Item(hashlib.sha256(k.encode()).hexdigest()[:24], case.name, case) for k, case in zip(keys, cases, strict=True)]
+    items = [Item(tables_key(attrs.asdict(case), registry, program=program), case.name, case) for case in cases]
     executor = local(registry, processes, **({"patience": patience} if processes else {}))
-    done, reused = work_through(
-        _plain, items, store or RowStore(None), executor, registry, plugins, on_progress,
+    answers, reused = work_through(
+        _answer, items, store or RowStore(None), executor, registry, plugins, on_progress,
         lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.given.setting).lost(reason))]},
     )  # fmt: skip
-    return [Row(**row) for each in done for row in each["rows"]], reused
+    return [Row(**row) for answer in answers for row in answer["rows"]], reused
 
 
-def _plain(case: Case, registry: Registry) -> Tables:
+def _answer(case: Case, registry: Registry) -> Tables:
     return {"rows": [attrs.asdict(row) for row in rows_of(case, registry)]}
 
 

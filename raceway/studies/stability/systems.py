@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from math import atan2, sin, sqrt
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import attrs
 import numpy as np
@@ -30,7 +30,7 @@ from raceway.points.axes import tables_at
 from raceway.scene.changes import without
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import ContactLaw, Integrator
@@ -44,19 +44,6 @@ _ANGLES = 6
 _LOADS = (1.0, 5.0)
 #: Step of a difference over the deepest penetration: its error is the square of that.
 _PART = 1e-3
-
-
-def scene_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Scene:
-    """A scene with some keys changed; a value None takes the key out."""
-    changed = tables_at(tables, {key: value for key, value in changes.items() if value is not None}, registry)
-    for key in (key for key, value in changes.items() if value is None):
-        changed = without(changed, key)
-    return scene_from_dict(changed, registry)
-
-
-def model_at(tables: ReadTables, changes: ReadTables, registry: Registry) -> Model:
-    """The bearing of such a scene."""
-    return build_model(scene := scene_at(tables, changes, registry), make_plan(scene))
 
 
 def mass_at(position: float, speed: float = 0.0, acceleration: float = 0.0) -> Motion:
@@ -112,10 +99,16 @@ class Bench:
 
     @property
     def scene(self) -> Scene:
-        return scene_at(self.tables, self.changes, self.registry)
+        """The scene; a change to None takes the key out."""
+        tables = tables_at(
+            self.tables, {key: value for key, value in self.changes.items() if value is not None}, self.registry
+        )
+        for key in (key for key, value in self.changes.items() if value is None):
+            tables = without(tables, key)
+        return scene_from_dict(tables, self.registry)
 
     def model(self) -> Model:
-        return model_at(self.tables, self.changes, self.registry)
+        return build_model(scene := self.scene, make_plan(scene))
 
     def result(self) -> Result:
         return run(self.scene, self.registry)
@@ -131,10 +124,9 @@ class Bench:
 
     def method(self, name: str, tolerance: float | None = None) -> Integrator:
         """An integrator; an implicit one with another tolerance of its steps."""
-        method: Any = self.registry.find("integrator", name).plugin()
-        if tolerance is not None and "tolerance" in attrs.fields_dict(type(method)):
-            method = attrs.evolve(method, tolerance=tolerance)
-        return cast("Integrator", method)
+        plugin = self.registry.find("integrator", name).plugin
+        options = {} if tolerance is None or "tolerance" not in attrs.fields_dict(plugin) else {"tolerance": tolerance}
+        return cast("Integrator", plugin(**options))
 
 
 def inverted(function: Callable[[float], float], value: float, first: float) -> float:
