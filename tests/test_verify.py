@@ -12,8 +12,8 @@ from raceway import hookimpl
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import Newmark
-from raceway.points.engine import reference_cases
 from raceway.studies.verify import study as module
+from raceway.studies.verify.reference import reference_cases
 from raceway.studies.verify.study import COMPUTED, Verification, verify
 
 
@@ -79,7 +79,7 @@ def fails(case, registry):
 
 
 def no_number(case, registry):
-    yield module.Number("x", 1.0, float("nan"), 1.0)
+    yield case.row("x", 1.0, float("nan"), 1.0)
 
 
 @pytest.mark.parametrize(("computed", "said"), [(fails, "no static equilibrium"), (no_number, "not a finite number")])

@@ -16,7 +16,6 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from functools import cache
 from importlib.metadata import version
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -82,66 +81,6 @@ def differences(wanted: ReadTables, there: ReadTables) -> list[str]:
     if not words and wanted["program"] != there["program"]:
         words.append("the sources of raceway or of a plug-in differ, under the same version")
     return words
-
-
-#: Where the numbers of a case come from: what a document tells numbers of a source from.
-BASES = {
-    "published": "published numbers",
-    "closed form": "numbers of closed forms",
-    "own": "numbers of this program by two ways",
-}
-
-
-@attrs.frozen
-class Case:
-    """One case, in the units of its source (they are part of each key: ``Dw_mm``).
-
-    Attributes
-    ----------
-    basis : where ``outputs`` come from, a key of ``BASES``
-    inputs, outputs : what the source states and what it gives
-    rel_tol : relative agreement asked for, one number or one for each group of outputs
-    conventions : frame, signs and normalisation of the source, in words
-    source : where it was published
-    role : "check...", or "information..." for what this program need not compute
-    """
-
-    id: str
-    kind: str
-    basis: str
-    title: str
-    inputs: Tables
-    outputs: Tables
-    rel_tol: Any
-    conventions: str
-    source: str
-    role: str
-
-    @property
-    def checked(self) -> bool:
-        """Whether ``raceway verify`` computes it."""
-        return self.role.startswith("check")
-
-
-@attrs.frozen
-class Number:
-    """One computed number beside that of the case, both in the source's unit, with the largest relative error allowed.
-
-    ``computed`` is None when ``note`` says why there is none.
-    """
-
-    quantity: str
-    reference: float
-    computed: float | None
-    tolerance: float
-    note: str = ""
-
-
-@cache
-def reference_cases() -> dict[str, Case]:
-    """All cases by id, in the file's order."""
-    text = files("raceway").joinpath("data/cases.json").read_text(encoding="utf-8")
-    return {case["id"]: Case(**case) for case in json.loads(text)["cases"]}
 
 
 #: One at a time in a process: kernels may be compiling, and a run's cost is the process's.

@@ -133,7 +133,7 @@ def beam(
 
 def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Deflection, its derivative, section's rotation and its derivative (4,) at x in 0..1 for w_0, s_0, w_1, s_1."""
-    one = 1.0 / (1.0 + phi)
+    share = 1.0 / (1.0 + phi)
     half = 0.5 * phi * length
     w = [
         1.0 - 3.0 * x**2 + 2.0 * x**3 + phi * (1.0 - x),
@@ -159,7 +159,7 @@ def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray
         6.0 * (1.0 - 2.0 * x) / length,
         6.0 * x - 2.0 + phi,
     ]
-    return one * np.array(w), one * np.array(slope) / length, one * np.array(turn), one * np.array(bend) / length
+    return share * np.array(w), share * np.array(slope) / length, share * np.array(turn), share * np.array(bend) / length
 
 
 #: Longest element over the shaft's diameter: halving it moves no answer of the rig by 1e-6.
@@ -231,17 +231,17 @@ def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
     model : another model of the shaft
     """
     model = model or shaft(rig)
-    left, right = (2 * model.node(position) for position in rig.bearings)
+    near, far = (2 * model.node(position) for position in rig.bearings)
     disc, sensor = 2 * model.node(0.5 * rig.shaft_length), 2 * model.node(rig.sensor)
     sign = 1.0 if rig.arrangement == "DB" else -1.0
     loads = np.zeros((len(model.stiffness), 3))
     loads[disc, 0] = 1.0
-    loads[[left, right], 1] = -1.0
-    loads[left + 1, 2], loads[right + 1, 2] = -sign, sign
+    loads[[near, far], 1] = -1.0
+    loads[near + 1, 2], loads[far + 1, 2] = -sign, sign
     answer = np.linalg.solve(model.dynamic(speed, speed), loads)
     return Rotor(
         speed=speed,
-        ring=np.array([answer[left], sign * answer[left + 1]]),
+        ring=np.array([answer[near], sign * answer[near + 1]]),
         sensor=answer[sensor],
         unbalance_force=rig.unbalance * speed**2,
     )

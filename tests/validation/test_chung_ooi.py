@@ -13,8 +13,8 @@ import pytest
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
-from raceway.points.engine import reference_cases
 from raceway.studies.verify.cases import impact_of, measure, transient_integrators
+from raceway.studies.verify.reference import reference_cases
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]

@@ -23,7 +23,7 @@ from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import tables_at
-from raceway.points.engine import Clocks, Item, local, reference_cases, work_through
+from raceway.points.engine import Clocks, Item, local, work_through
 from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
@@ -32,6 +32,7 @@ from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import CLAIMED, excitation_of, friction_of
 from raceway.studies.article.study import failure
+from raceway.studies.verify.reference import reference_cases
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
@@ -492,7 +493,7 @@ def elastic_article(
 
 def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
     """Planned time of runs one after the other [s]: what is made once for bodies at rest, or in motion, counts in the first alone."""
-    seconds, made = [], set[tuple[str, bool]]()
+    seconds, prepared = [], set[tuple[str, bool]]()
     for scene in scenes:
         try:
             plan = make_plan(scene)
@@ -500,6 +501,6 @@ def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
             seconds.append(0.0)
             continue
         bodies = scene.bodies.name, scene.excitation is not None
-        seconds.append(max(plan.predicted_wall_s - (plan.predicted_once_s if bodies in made else 0.0), 0.0))
-        made.add(bodies)
+        seconds.append(max(plan.predicted_wall_s - (plan.predicted_once_s if bodies in prepared else 0.0), 0.0))
+        prepared.add(bodies)
     return seconds

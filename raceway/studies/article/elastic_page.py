@@ -76,7 +76,7 @@ def drawings(content: ReadTables) -> list[Picture]:
             Picture("article-elastic-pressures", "Peak pressure against Hertz at the same ball load", tuple(panels))
         )
     if static:
-        panels = [_loads_panel(case, some) for case, some in _by_case(static).items()]
+        panels = [_loads_panel(case, of_case) for case, of_case in _by_case(static).items()]
         pictures.append(Picture("article-elastic-ball-loads", "Ball loads on the inner race", tuple(panels)))
     if moving:
         quantities = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))

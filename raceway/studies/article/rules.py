@@ -233,10 +233,10 @@ def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", for
     """The range of the values at each tilt boundary, for each kind of friction."""
     texts = {}
     for friction in dict.fromkeys(finding.at.get("friction") for finding in findings):
-        some = [finding for finding in findings if finding.at.get("friction") == friction]
+        with_friction = [finding for finding in findings if finding.at.get("friction") == friction]
         parts = []
-        for tilt in dict.fromkeys(finding.at["tilt"] for finding in some):
-            values = [scale * f.value for f in some if f.at["tilt"] == tilt and f.value is not None]
+        for tilt in dict.fromkeys(finding.at["tilt"] for finding in with_friction):
+            values = [scale * f.value for f in with_friction if f.at["tilt"] == tilt and f.value is not None]
             ends = dict.fromkeys(f"{value:{form}}" for value in (min(values), max(values))) if values else {}
             parts.append(f"{TILT_WORDS[tilt]}: {' to '.join(ends)}{unit}" if ends else f"{TILT_WORDS[tilt]}: no number")
         texts[str(friction)] = "; ".join(parts)

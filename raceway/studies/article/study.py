@@ -25,7 +25,7 @@ from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
-from raceway.points.engine import Item, local, processor_time, reference_cases, without_mesh, work_through
+from raceway.points.engine import Item, local, processor_time, without_mesh, work_through
 from raceway.points.store import RowStore, program_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
@@ -45,6 +45,7 @@ from raceway.studies.article.design import (
 )
 from raceway.studies.article.rules import Verdict
 from raceway.studies.verify import study as verification
+from raceway.studies.verify.reference import reference_cases
 
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
 SWAPS: dict[str, Tables] = {

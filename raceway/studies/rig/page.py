@@ -244,8 +244,8 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     )
     columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
     out.table(columns, map(_truth, rows), "The tested bearing in the rig, and K as it is identified; uncertainty at 95 %")
-    seen = "K over speed for each axial load, true and by each procedure"
-    out.figures([(drawn["procedures"], seen, "K by each procedure")])
+    alternative = "K over speed for each axial load, true and by each procedure"
+    out.figures([(drawn["procedures"], alternative, "K by each procedure")])
     for point in study.failed:
         out.text(f"Failed: {_failed(point)}", kind="note")
     out.section("The article's procedure")
@@ -275,8 +275,8 @@ def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str
     ])  # fmt: skip
     out.section("Where the error comes from")
     out.text("One cause at a time is switched on, all others off. Dashed: 1 % and 3 %; a dot for each speed and load.")
-    seen = "dots of error for each cause on a logarithmic scale"
-    out.figures([(drawn["error-split"], seen, "Error of K by its causes")], wide=True)
+    alternative = "dots of error for each cause on a logarithmic scale"
+    out.figures([(drawn["error-split"], alternative, "Error of K by its causes")], wide=True)
     causes_of_points = zip(*(row["split"] for row in rows), strict=True)
     lines = [
         [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]

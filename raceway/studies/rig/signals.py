@@ -24,6 +24,7 @@ import attrs
 import numpy as np
 
 from raceway.scene.tables import Rig, Signals
+from raceway.storage.tables import Tables
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.rig import changed_rotors, invert, with_moment, with_tilt_of
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
@@ -180,11 +181,8 @@ def readings(rig: Rig, tested: Bearing, speed: float, component: complex) -> lis
         "simply supported beam, amplified bow": (supported(rig.span) * elastic, half),
         "simply supported beam, amplified bow and force": (supported(rig.span) * elastic, half * elastic),
     }
-    rows = []
-    for correction, (bow, share) in corrections.items():
-        z = share / (component - bow)
-        rows.append(Reading(correction, z.real + tested.mass * speed**2, z.imag / speed))
-    return rows
+    impedances = {name: share / (component - bow) for name, (bow, share) in corrections.items()}
+    return [Reading(name, z.real + tested.mass * speed**2, z.imag / speed) for name, z in impedances.items()]
 
 
 #: No noise to speak of: below the rounding of a double.
@@ -215,24 +213,16 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
         ("none", "clean signals, order tracking, beam inverted", identify_recording(clean, rig, tested).state)
     ]
     causes += [("correction", row.correction, row) for row in readings(rig, tested, state.speed, component)]
-    for kind, words, disturbed, rolled in (
-        (
-            "noise",
-            f"white noise, {signals.noise_db:g} dB below the response",
-            attrs.evolve(quiet, noise_db=signals.noise_db),
-            False,
-        ),
-        ("noise", f"drift of {1e6 * signals.drift:g} µm", attrs.evolve(quiet, drift=signals.drift), False),
-        (
-            "run-out",
-            f"{1e6 * signals.run_out:g} µm, slow roll subtracted",
-            attrs.evolve(quiet, run_out=signals.run_out),
-            True,
-        ),
-        ("run-out", f"{1e6 * signals.run_out:g} µm, left in", attrs.evolve(quiet, run_out=signals.run_out), False),
-        ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", attrs.evolve(quiet, speed_drift=_SPEED_DRIFT), False),
-    ):
-        causes.append((kind, words, _disturbed(rig, tested, state, disturbed, rolled)))
+    run_out: Tables = {"run_out": signals.run_out}
+    disturbances: list[tuple[str, str, Tables, bool]] = [
+        ("noise", f"white noise, {signals.noise_db:g} dB below the response", {"noise_db": signals.noise_db}, False),
+        ("noise", f"drift of {1e6 * signals.drift:g} µm", {"drift": signals.drift}, False),
+        ("run-out", f"{1e6 * signals.run_out:g} µm, slow roll subtracted", run_out, True),
+        ("run-out", f"{1e6 * signals.run_out:g} µm, left in", run_out, False),
+        ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", {"speed_drift": _SPEED_DRIFT}, False),
+    ]
+    for kind, words, disturbance, rolled in disturbances:
+        causes.append((kind, words, _disturbed(rig, tested, state, attrs.evolve(quiet, **disturbance), rolled)))
     words = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
     causes.append(("window", words, invert(free, tested, _highest_line(clean) * state.sensor / abs(state.sensor))))
     thin, sensor = rotor(rig, state.speed, shaft(rig, shear=False)), state.sensor

@@ -28,10 +28,10 @@ from raceway.framework.registry import Entry, Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
-from raceway.points.engine import Case, Number
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
+from raceway.studies.verify.reference import Case, Row
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Excitation, Integrator
@@ -39,20 +39,20 @@ if TYPE_CHECKING:
 
 INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
-Numbers = Iterator[Number]
+Rows = Iterator[Row]
 
 
 def _scene(case: Case, registry: Registry, **tables: Tables) -> Scene:
     return scene_from_dict({"title": case.id, **tables}, registry)
 
 
-def _numbers(case: Case, computed: dict[str, tuple[str, float]]) -> Numbers:
+def _numbers(case: Case, computed: dict[str, tuple[str, float]]) -> Rows:
     """What the case states, beside the quantity and number that were computed for its key."""
     for key, reference in case.outputs.items():
-        yield Number(computed[key][0], reference, float(computed[key][1]), case.rel_tol)
+        yield case.row(computed[key][0], reference, float(computed[key][1]), case.rel_tol)
 
 
-def masta(case: Case, registry: Registry) -> Numbers:
+def masta(case: Case, registry: Registry) -> Rows:
     """Displacements of a deep-groove bearing with tilts free.
 
     Notes
@@ -75,7 +75,7 @@ def masta(case: Case, registry: Registry) -> Numbers:
     })  # fmt: skip
 
 
-def race_ellipse(case: Case, registry: Registry) -> Numbers:
+def race_ellipse(case: Case, registry: Registry) -> Rows:
     """Ellipse, approach and pressure of the inner race at a load and contact angle (the loaded one)."""
     bearing = {"preset": "ACB21-HARRIS-MINDEL", "contact_angle_deg": case.inputs["alpha_deg"]}
     inner = _model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * POUND})).inner
@@ -88,16 +88,16 @@ def race_ellipse(case: Case, registry: Registry) -> Numbers:
     })  # fmt: skip
 
 
-def ellipse_table(case: Case, registry: Registry) -> Numbers:
+def ellipse_table(case: Case, registry: Registry) -> Rows:
     """a*, b* and delta* for a column of curvature differences: no bearing, so the Hertz functions themselves."""
     for difference, a_star, b_star, delta_star in case.outputs["rows"]:
         contact, where = ellipse(1.0, difference, 1.0), f"at F(rho) = {difference:g}"
-        yield Number(f"a* {where}", a_star, contact.a_star, case.rel_tol)
-        yield Number(f"b* {where}", b_star, contact.b_star, case.rel_tol)
-        yield Number(f"delta* {where}", delta_star, contact.delta_star, case.rel_tol)
+        yield case.row(f"a* {where}", a_star, contact.a_star, case.rel_tol)
+        yield case.row(f"b* {where}", b_star, contact.b_star, case.rel_tol)
+        yield case.row(f"delta* {where}", delta_star, contact.delta_star, case.rel_tol)
 
 
-def nsk_pair(case: Case, registry: Registry) -> Numbers:
+def nsk_pair(case: Case, registry: Registry) -> Rows:
     """Stiffness of a mounted duplex pair, tilts locked: twice the tangent of one row at an axial load equal to the
     preload, as the source's conventions say, and from a scene that is the pair itself."""
     preset = "7206C-NSK" if case.inputs["alpha_deg"] == 15 else "7206A-NSK"
@@ -110,11 +110,11 @@ def nsk_pair(case: Case, registry: Registry) -> Numbers:
             scene = _scene(case, registry, **({"bearing": paired} if words else row))
             stiffness = run(scene, registry).equilibrium.stiffness
             where = f"of the pair at {preload} N{words} [N/um]"
-            yield Number(f"axial stiffness {where}", ka, factor * 1e-6 * float(stiffness[0, 0]), case.rel_tol["ka"])
-            yield Number(f"radial stiffness {where}", kr, factor * 1e-6 * float(stiffness[1, 1]), case.rel_tol["kr"])
+            yield case.row(f"axial stiffness {where}", ka, factor * 1e-6 * float(stiffness[0, 0]), case.rel_tol["ka"])
+            yield case.row(f"radial stiffness {where}", kr, factor * 1e-6 * float(stiffness[1, 1]), case.rel_tol["kr"])
 
 
-def rig_force(case: Case, registry: Registry) -> Numbers:
+def rig_force(case: Case, registry: Registry) -> Rows:
     """The rig's unbalance force, read off what the excitations' compiled kernels put out over a turn."""
     inputs, out = case.inputs, case.outputs
     moment = inputs["m_g"] * 1e-3 * inputs["e_mm"] * 1e-3
@@ -128,9 +128,9 @@ def rig_force(case: Case, registry: Registry) -> Numbers:
         for rpm, total, half, frequency in zip(inputs["rpm"], out["F0_N"], out["Ftr_N"], out["f_Hz"], strict=True):
             where = f"{kind}, {rpm} r/min"
             rotor, bearing = (excited(kind, rpm, share) for share in (1.0, 0.5))
-            yield Number(f"force of the rotor, {where} [N]", total, _largest_force(rotor), case.rel_tol)
-            yield Number(f"force on each bearing, {where} [N]", half, _largest_force(bearing), case.rel_tol)
-            yield Number(f"frequency, {where} [Hz]", frequency, bearing.frequency_hz, case.rel_tol)
+            yield case.row(f"force of the rotor, {where} [N]", total, _largest_force(rotor), case.rel_tol)
+            yield case.row(f"force on each bearing, {where} [N]", half, _largest_force(bearing), case.rel_tol)
+            yield case.row(f"frequency, {where} [Hz]", frequency, bearing.frequency_hz, case.rel_tol)
 
 
 def _largest_force(excitation: Excitation) -> float:
@@ -194,20 +194,20 @@ def transient_integrators(registry: Registry) -> list[Entry]:
     return [entry for entry in integrators if entry.plugin.inertial and not entry.plugin.steady]
 
 
-def impact_of_spheres(case: Case, registry: Registry) -> Iterator[Number]:
+def impact_of_spheres(case: Case, registry: Registry) -> Rows:
     """Closed formulas with the factor of ``raceway.core.contact.hertz``, then each integrator."""
     impact, out = impact_of(case.inputs), case.outputs
-    yield Number("peak force, closed form [N]", out["Fmax_N"], impact.largest_force, case.rel_tol)
-    yield Number("largest approach, closed form [m]", out["dmax_m"], impact.largest_approach, case.rel_tol)
-    yield Number("contact time, closed form [s]", out["tc_s"], impact.contact_time, case.rel_tol)
+    yield case.row("peak force, closed form [N]", out["Fmax_N"], impact.largest_force, case.rel_tol)
+    yield case.row("largest approach, closed form [m]", out["dmax_m"], impact.largest_approach, case.rel_tol)
+    yield case.row("contact time, closed form [s]", out["tc_s"], impact.contact_time, case.rel_tol)
     for entry in transient_integrators(registry):
         note, force, time = "", None, None
         try:
             force, time = worst_measured(entry.plugin(), impact, STEPS_PER_CONTACT)
         except Exception as why:  # a third party's own code: it is reported by name
             note = f"integrator '{entry.name}' of {entry.distribution} fails: {type(why).__name__}: {why}"
-        yield Number(f"peak force, {entry.name} [N]", out["Fmax_N"], force, TRANSIENT_TOLERANCE, note)
-        yield Number(f"contact time, {entry.name} [s]", out["tc_s"], time, TRANSIENT_TOLERANCE, note)
+        yield case.row(f"peak force, {entry.name} [N]", out["Fmax_N"], force, TRANSIENT_TOLERANCE, note)
+        yield case.row(f"contact time, {entry.name} [s]", out["tc_s"], time, TRANSIENT_TOLERANCE, note)
 
 
 def worst_measured(method: Integrator, impact: Impact, steps: int) -> tuple[float, float]:
@@ -245,7 +245,7 @@ def measure(method: Integrator, impact: Impact, steps: int, phase: float) -> tup
     return float(record.contact_force.max()), release - touch
 
 
-def article_pressures(case: Case, registry: Registry) -> Iterator[Number]:
+def article_pressures(case: Case, registry: Registry) -> Rows:
     """Largest nodal pressure of each race in each load case, and what fewer points would have given.
 
     Notes
@@ -269,13 +269,13 @@ def article_pressures(case: Case, registry: Registry) -> Iterator[Number]:
         reference, computed = _hertz(model(axial, radial)), _nodal(model(axial, radial, int(inputs["points"])))
         for race in ("inner", "outer"):
             quantity = f"peak pressure, {race} race, {where} [MPa]"
-            yield Number(quantity, reference[race], computed[race], tolerance["pressure"])
+            yield case.row(quantity, reference[race], computed[race], tolerance["pressure"])
     axial, radial = inputs["loads_n"][int(inputs["heaviest"])]
     most, fewer = inputs["independence_points"]
     fine, coarse = (_nodal(model(axial, radial, int(n))) for n in (most, fewer))
     for race in ("inner", "outer"):
         quantity = f"mesh independence: {race} race, {axial:g} N axial, {fewer} points per semi-axis against {most} [MPa]"
-        yield Number(quantity, fine[race], coarse[race], tolerance["mesh"])
+        yield case.row(quantity, fine[race], coarse[race], tolerance["mesh"])
 
 
 def _model(scene: Scene) -> Model:

@@ -49,7 +49,7 @@ def _screen(verification: Verification, every: bool) -> RenderableType:
     from rich.text import Text
 
     from raceway.out.table import micro, number
-    from raceway.points.engine import BASES
+    from raceway.studies.verify.reference import BASES
 
     table = Table(header_style="bold", box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
     table.add_column("number" if every else "case: the worst of its numbers", min_width=28)

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from math import isfinite
+from collections.abc import Callable, Iterable
 
 import attrs
 
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
-from raceway.points.engine import BASES, Case, Number, reference_cases
 from raceway.storage.tables import Tables
 from raceway.studies.verify.cases import (
+    Rows,
     article_pressures,
     ellipse_table,
     impact_of_spheres,
@@ -21,43 +20,18 @@ from raceway.studies.verify.cases import (
     race_ellipse,
     rig_force,
 )
+from raceway.studies.verify.reference import BASES, Case, Row, reference_cases
 
 OnProgress = Callable[[str, int, int], None]
 
 #: How each case is computed.
-COMPUTED: dict[str, Callable[[Case, Registry], Iterator[Number]]] = {
+COMPUTED: dict[str, Callable[[Case, Registry], Rows]] = {
     "masta-dgbb-1": masta, "masta-dgbb-3": masta, "masta-dgbb-5": masta,
     "harris-mindel-1973-hertz-inner": race_ellipse, "harris-table-6.1": ellipse_table,
     "nsk-7206C-stiffness": nsk_pair, "nsk-7206A-stiffness": nsk_pair,
     "chung-ooi-1-glass": impact_of_spheres, "chung-ooi-3-alumina": impact_of_spheres,
     "seed-unbalance": rig_force, "seed-static-pressures": article_pressures,
 }  # fmt: skip
-
-
-@attrs.frozen
-class Row:
-    """One line of the table.
-
-    Attributes
-    ----------
-    case, quantity : which number, with its unit
-    reference, computed : in the unit of the source
-    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is kept
-    source : where the case, or its inputs, were published
-    basis : where the reference comes from, a key of ``reference.BASES``
-    note : why there is no computed number (then computed and error are None, and ok is False), or ""
-    """
-
-    case: str
-    quantity: str
-    reference: float | None
-    computed: float | None
-    error: float | None
-    tolerance: float | None
-    ok: bool
-    source: str
-    basis: str
-    note: str = ""
 
 
 @attrs.frozen
@@ -108,24 +82,24 @@ def verify(
         A case that does not exist (with the nearest name) or that is there for information only.
     """
     registry = registry or default_registry()
-    cases, rows, tell = _cases(only), list[Row](), on_progress or (lambda *_: None)
+    cases, rows, report = _cases(only), list[Row](), on_progress or (lambda *_: None)
     for number, case in enumerate(cases):
-        tell(case.id, number, len(cases))
+        report(case.id, number, len(cases))
         rows += compute(case, registry)
-    tell("", len(cases), len(cases))
+    report("", len(cases), len(cases))
     return Verification(tuple(rows))
 
 
 def _cases(only: str | Iterable[str] | None) -> list[Case]:
     """The cases to compute, in the file's order."""
-    every = reference_cases()
-    checked = {name: case for name, case in every.items() if case.checked}
+    cases = reference_cases()
+    checked = {name: case for name, case in cases.items() if case.checked}
     names = list(checked) if only is None else [only] if isinstance(only, str) else list(only)
     faults = []
     for name in names:
         if name not in checked:
             why = f"no such case{nearest(str(name), checked)}; known"
-            why = f"is not computed: {every[name].role}; computed are" if name in every else why
+            why = f"is not computed: {cases[name].role}; computed are" if name in cases else why
             faults.append(Mistake("only", name, f"{why}: {', '.join(checked)}"))
     if faults:
         raise SceneError(faults)
@@ -136,18 +110,8 @@ def compute(case: Case, registry: Registry) -> list[Row]:
     """The rows of one case; a solver that fails makes a row that says why."""
     rows: list[Row] = []
     try:
-        for number in COMPUTED[case.id](case, registry):
-            rows.append(_row(case, number))
+        for row in COMPUTED[case.id](case, registry):
+            rows.append(row)
     except RacewayError as why:
-        rows.append(Row(case.id, "the rest of the case", None, None, None, None, False, case.source, case.basis, str(why)))
+        rows.append(case.row("the rest of the case", None, None, None, str(why)))
     return rows
-
-
-def _row(case: Case, number: Number) -> Row:
-    computed, note = number.computed, number.note
-    if computed is not None and not isfinite(computed):
-        computed, note = None, f"computed {computed}: not a finite number"
-    error = None if computed is None else abs(computed - number.reference) / abs(number.reference)
-    ok = error is not None and error <= number.tolerance
-    numbers = (number.quantity, number.reference, computed, error, number.tolerance, ok)
-    return Row(case.id, *numbers, case.source, case.basis, note)

@@ -200,8 +200,8 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, state),
             "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."],
         }  # fmt: skip
-        seen = [(image.content, image.alternative, image.caption) for image in images.values()]
-        files["view.html"] = view_page(bearing, state, words, seen).html().encode()
+        pictures = [(image.content, image.alternative, image.caption) for image in images.values()]
+        files["view.html"] = view_page(bearing, state, words, pictures).html().encode()
     content: Tables = {
         "title": result.title,
         "shown": when,
@@ -222,20 +222,20 @@ def _images(
         on_progress(f"drawing {name}", 0, 0)
         loads, widened = _loads(state), _widened(bearing, state)
         content = overview(bearing, state, f"{title}\n{when}: {loads}\n{widened}")
-        seen = f"the bearing cut open, balls coloured by their load, {when}"
-        yield name, _Image(content, seen, f"Loads {when}: {loads}; {widened}")
+        alternative = f"the bearing cut open, balls coloured by their load, {when}"
+        yield name, _Image(content, alternative, f"Loads {when}: {loads}; {widened}")
     on_progress("drawing contacts.png", 0, 0)
     state, when = list(moments.values())[-1]
     content = figure_png(contacts(bearing, state, f"{title}, {when}"), _DOTS_PER_INCH)
-    seen = "section of the rings with the ball, and its two contact ellipses"
+    alternative = "section of the rings with the ball, and its two contact ellipses"
     caption = f"Section and contact ellipses of the most loaded ball {when}; Hertz's pressure"
-    yield "contacts.png", _Image(content, seen, caption)
-    for name, seen, caption in (
+    yield "contacts.png", _Image(content, alternative, caption)
+    for name, alternative, caption in (
         ("ball_loads", "ball loads by azimuth", "Ball loads on the inner race by azimuth"),
         ("orbit", "orbit of the inner ring", "Orbit of the inner ring's reference point"),
     )[: len(moments)]:  # at rest there is no orbit
         content = figure_png(picture(result, name), _DOTS_PER_INCH)
-        yield f"{name.replace('_', '-')}.png", _Image(content, seen, caption)
+        yield f"{name.replace('_', '-')}.png", _Image(content, alternative, caption)
 
 
 def _stresses(result: Result, images: dict[str, _Image], on_progress: OnProgress) -> dict[str, bytes]:
