@@ -156,7 +156,7 @@ def test_what_a_class_cannot_say_is_refused(tables, given, words):
 def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path):
     file = tmp_path / "scene.toml"
     file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
-    told = invoke("band", str(file), "--out", str(tmp_path), "--count", "16", "--processes", "0")
+    told = invoke("band", str(file), "--out", str(tmp_path), "--samples", "16", "--processes", "0")
     content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
     row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
     assert float(row.split()[2]) == pytest.approx(1e-6 * content["value"], rel=1e-4)

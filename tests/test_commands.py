@@ -65,7 +65,6 @@ COMMANDS = {
     "run, static": ("run", "STATIC", "--set", "supports.tilt=free", "--out", "OUT"),
     "plan": ("plan", ARTICLE),
     "plan, elastic": ("plan", EXAMPLES / "b7206_elastic.toml"),
-    "check": ("check", ARTICLE),
     "compare": ("compare", ARTICLE, *FAST, *FIVE, "--out", "OUT"),
     "verify": ("verify", "--only", "harris-table-6.1"),
     "verify, all": ("verify", "--only", "harris-table-6.1", "--all"),
@@ -75,7 +74,7 @@ COMMANDS = {
     "plot": ("plot", "STORE", "--value", "stiffness:y,y"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "study rig": ("study", "rig", EXAMPLES / "test_rig.toml", *RIG, "--no-pictures", "--out", "OUT"),
-    "identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
+    "fit, identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
     "fit": ("fit", "DATA", "--scene", "STATIC", "--free", "bearing.contact_angle_deg", "--out", "OUT"),
     "fit, signals": (
         *("fit", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000"),
@@ -87,21 +86,21 @@ COMMANDS = {
     "catalogue": ("catalogue", "7014C"),
     "catalogue, list": ("catalogue", "79*"),
     "catalogue, materials": ("catalogue", "--materials"),
-    "law": ("law", "penalty", "--set", "contact.damping=300"),
-    "sensitivities": ("sensitivities", MINIMAL, "--by", "load.axial", "--by", "bearing.contact_angle_deg", "--out", "OUT"),
-    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--count", "4", "--processes", "0", "--out", "OUT"),
+    "dev law": ("dev", "law", "penalty", "--set", "contact.damping=300"),
+    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--samples", "4", "--processes", "0", "--out", "OUT"),
+    "band, derivatives": ("sensitivities", MINIMAL, "--by", "load.axial", "--by", "bearing.contact_angle_deg", "--out", "OUT"),
     "follow": ("follow", MINIMAL, "--over", "excitation.speed_rpm=9000:9500", "--points", "5", "--out", "OUT"),
     "view": ("view", MINIMAL, "--out", "OUT"),
     "mesh": ("mesh", MINIMAL, *COARSE, "--out", "OUT"),
-    "plugins": ("plugins",),
-    "check-plugin": ("check-plugin", "hertz"),
-    "new-plugin": ("new-plugin", "contact_law", "my_law", "--out", "OUT"),
-    "new-scene": ("new-scene", "--out", "OUT/own.toml"),
-    "schema": ("schema",),
-    "cache": ("cache",),
+    "dev plugins": ("dev", "plugins",),
+    "dev check-plugin": ("dev", "check-plugin", "hertz"),
+    "dev new-plugin": ("dev", "new-plugin", "contact_law", "my_law", "--out", "OUT"),
+    "dev new-scene": ("dev", "new-scene", "--out", "OUT/own.toml"),
+    "dev schema": ("dev", "schema",),
+    "dev cache": ("dev", "cache",),
 }  # fmt: skip
 #: Commands that are done before anybody waits, whatever they are given.
-QUICK = {"plan", "check", "plugins", "new-plugin", "new-scene", "schema", "catalogue"}
+QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema", "catalogue"}
 
 
 #: Commands with a scene of their own and those that write more than their answer: no run of theirs is repeated in quick tests.
@@ -120,13 +119,12 @@ TOLD = {
     ),
     "run, static": ("static scene", "kyy tilts follow"),
     "plan": ("Kept", "Left out", "degrees of freedom", "time step", "wall time"),
-    "check": ("no mistakes",),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),
     "export": ("moments on the ring", "r/min"),
     "mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
-    "plugins": ("newmark", "hertz"),
-    "new-scene": ("raceway run",),
+    "dev plugins": ("newmark", "hertz"),
+    "dev new-scene": ("raceway run",),
 }
 #: Studies that go on where they were stopped, and what they keep.
 GOES_ON = {
@@ -265,7 +263,8 @@ def test_help(command, monkeypatch):
 
 def test_the_list_of_commands_says_what_each_says_itself():
     text = invoke("--help").stdout
-    listed = dict(line.split(maxsplit=1) for line in text.split("Commands:\n")[1].splitlines() if line[2] != " ")
+    lines = [line for part in text.split(":\n")[2:] for line in part.splitlines()]
+    listed = dict(line.split(maxsplit=1) for line in lines if line[:2] == "  " and line[2:3] != " ")
     assert list(listed) == list(LISTED) and "Exit codes" in text
     assert all(one.short_help.startswith(listed[name]) for name, one in LISTED.items())
     assert rw.__version__ in invoke("--version").stdout
@@ -426,9 +425,9 @@ SLIPS = {
     "unknown option": (["run", ARTICLE, "--jsn"], "--json", ""),
     "no axis": (["compare", ARTICLE], "--vary", ""),
     "unknown case": (["verify", "--only", "nobody"], "no such case", ""),
-    "unknown bearing": (["new-scene", "b7206c"], "the nearest: B7206C, ", ""),
-    "file for a bearing": (["new-scene", "mine.toml"], "raceway new-scene B7206C --out mine.toml", ""),
-    "file that is there": (["new-scene", "--out", MINIMAL], "exists", ""),
+    "unknown bearing": (["dev", "new-scene", "b7206c"], "the nearest: B7206C, ", ""),
+    "file for a bearing": (["dev", "new-scene", "mine.toml"], "raceway dev new-scene B7206C --out mine.toml", ""),
+    "file that is there": (["dev", "new-scene", "--out", MINIMAL], "exists", ""),
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),
     "unknown format": (["mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, vtu", ""),
     "format that only reads": (["mesh", MINIMAL, "--format", "msh"], "'msh' only reads; files are written as abaqus, vtu", ""),
@@ -488,7 +487,7 @@ def test_pictures_of_a_command_leave_pyplot_alone():
     """Figures of their own; only ``plot()``, in a notebook, hands out those of pyplot."""
     sources = Path(rw.__file__).parent.rglob("*.py")
     having = {path.name for path in sources if "import pyplot" in path.read_text(encoding="utf-8")}
-    assert having == {"pictures.py"}
+    assert having == {"pictures.py", "picture.py"}
 
 
 def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):
@@ -541,10 +540,10 @@ def test_json_of_the_commands_that_compute_nothing(tmp_path):
     assert {"kept", "left_out", "dofs", "time_step_s", "predicted_wall_s"} <= set(
         json.loads(invoke("plan", ARTICLE, "--json").stdout)
     )
-    assert json.loads(invoke("check", ARTICLE, "--json").stdout) == {"errors": []}
-    assert json.loads(invoke("schema").stdout)["$schema"].endswith("2020-12/schema")
+    assert json.loads(invoke("check", ARTICLE, "--json").stdout)["errors"] == []
+    assert json.loads(invoke("dev", "schema").stdout)["$schema"].endswith("2020-12/schema")
     (tmp_path / "listed.py").write_text(LAW.format(name="listed_law", kernel="        return None"))
-    content = json.loads(invoke("plugins", "--plugin", tmp_path / "listed.py", "--json").stdout)
+    content = json.loads(invoke("dev", "plugins", "--plugin", tmp_path / "listed.py", "--json").stdout)
     listed = {one["name"]: one for one in content["plugins"]}
     assert content["errors"] == [] and listed["listed_law"]["distribution"] == "listed.py"
     newmark = listed["newmark"]
@@ -555,18 +554,18 @@ def test_json_of_the_commands_that_compute_nothing(tmp_path):
 
 def test_cache_is_seen_and_cleared(tmp_path, monkeypatch):
     monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
-    empty = json.loads(invoke("cache", "--json").stdout)
+    empty = json.loads(invoke("dev", "cache", "--json").stdout)
     assert empty["folders"] == []
     for name, size in ((empty["current"], 100), ("older", 7)):
         folder = tmp_path / "kernels" / name / "core"
         folder.mkdir(parents=True)
         (folder / "kernel.1.nbc").write_bytes(b"x" * size)
         (folder / "kernel.nbi").write_bytes(b"x")
-    found = json.loads(invoke("cache", "--json").stdout)
+    found = json.loads(invoke("dev", "cache", "--json").stdout)
     assert [(f["current"], f["kernels"], f["bytes"]) for f in found["folders"]] == [(True, 1, 101), (False, 1, 8)]
-    assert "current" in invoke("cache").stdout
-    assert json.loads(invoke("cache", "--clear", "--json").stdout)["folders"] == []
-    assert not (tmp_path / "kernels").exists() and "the next run compiles" in invoke("cache").stdout
+    assert "current" in invoke("dev", "cache").stdout
+    assert json.loads(invoke("dev", "cache", "--clear", "--json").stdout)["folders"] == []
+    assert not (tmp_path / "kernels").exists() and "the next run compiles" in invoke("dev", "cache").stdout
 
 
 def test_the_light_key_is_the_one_that_kernels_are_kept_under():

@@ -16,7 +16,7 @@ import numpy as np
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.shown import read_in
-from raceway.plugins.pictures import new_figure
+from raceway.out.picture import new_figure
 from raceway.points.axes import is_number, shown
 from raceway.points.axes import shown as _text
 from raceway.scene.changes import parse_value

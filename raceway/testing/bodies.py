@@ -23,7 +23,6 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
-from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
@@ -31,6 +30,7 @@ from raceway.planning.resolve import resolve
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.testing.integrator import FromPython, has_both
 from raceway.testing.scenes import b7206c, settled

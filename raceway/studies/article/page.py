@@ -16,11 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.out.page import Cell, Page
+from raceway.out.picture import save_figure
 from raceway.out.table import written
 from raceway.out.wrapping import Words
-from raceway.pipeline.result import write_json
-from raceway.plugins.pictures import save_figure
-from raceway.storage.files import write_whole
+from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, TILT_WORDS, Setting
 from raceway.studies.article.figures import Picture, drawings, named

@@ -29,12 +29,11 @@ from raceway.cli.frame import (
 )
 from raceway.framework.registry import registry_with
 from raceway.out.page import Page
+from raceway.out.picture import new_figure, save_figure
 from raceway.out.table import rows_table, written
 from raceway.out.wrapping import Words
-from raceway.pipeline.result import write_json
-from raceway.plugins.pictures import new_figure, save_figure
 from raceway.scene.reading import rig_of
-from raceway.storage.files import writable
+from raceway.storage.files import writable, write_json
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.picture import figures
 
