@@ -34,7 +34,7 @@ from raceway.cli.frame import (
     slug,
     tell_faults,
 )
-from raceway.errors import SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.answer import Answer, Interrupted
 from raceway.storage.files import writable
@@ -178,7 +178,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     arguments |= {name: value for name, value in shared.items() if name in known}
     stopped = None
     with _resumable(rows):
-        with show_progress() as progress, _flags(about):
+        with show_progress() as progress:
             if "progress" in known:
                 arguments["progress"] = progress
             try:
@@ -186,13 +186,15 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                     [arguments.pop(name) for name in list(known)[: list(known).index("changes")]] if changed_by_front else []
                 )
                 answer: Answer = front(*first, *(changes if changed_by_front else ()), **arguments)
+            except SceneError as error:
+                raise _by_flags(about, error) or error from None
             except Interrupted as stop:
                 if stop.partial is None:
                     raise
                 answer, stopped = stop.partial, stop  # what is finished is written and shown first
         content, files = answer.to_dict(), list[str]()
         failed = None if folder is None else attempt(lambda: answer.save(folder, pictures and stopped is None), files)
-        show(content, as_json, failed or answer.failure(), lambda: answer.screen(files))
+        show(content, as_json, failed or _by_flags(about, answer.failure()), lambda: answer.screen(files))
         if stopped is not None:
             raise stopped
     return 0 if answer.passed else 1
@@ -220,16 +222,12 @@ def _resumable(rows: Path | None) -> Iterator[None]:
         raise
 
 
-@contextmanager
-def _flags(about: Command) -> Iterator[None]:
-    """Mistakes in arguments of the front, under the names that the command line has for them."""
-    try:
-        yield
-    except SceneError as error:
-        flags = {
-            name: f"--{option.flag or name}" for name, option in about.options.items() if option and not option.positional
-        }
-        raise SceneError([attrs.evolve(m, path=flags.get(str(m.path), m.path)) for m in error.mistakes]) from None
+def _by_flags(about: Command, error: RacewayError | None) -> RacewayError | None:
+    """Mistakes in arguments of the front under the names that the command line has for them."""
+    if not isinstance(error, SceneError):
+        return error
+    flags = {name: f"--{option.flag or name}" for name, option in about.options.items() if option and not option.positional}
+    return SceneError([attrs.evolve(m, path=flags.get(str(m.path), m.path)) for m in error.mistakes])
 
 
 def _sections(front: Callable[..., Value]) -> tuple[str, str]:

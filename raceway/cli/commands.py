@@ -84,9 +84,6 @@ ANSWERS = (
         "fit", "raceway.studies.fit.command:fit", "Numbers of a scene, or K and C of a rig's bearing, from measured data."
     ),
     Later(
-        "identify", "raceway.studies.fit.command:identify", "The same as fit: without --free K and C from a rig's signals."
-    ),
-    Later(
         "catalogue", "raceway.studies.catalogue.command:catalogue", "List, search and draw the bearings of the catalogue."
     ),
     Later(

@@ -47,7 +47,7 @@ class DeveloperCommands(CommandsByName):
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = {"Commands": DEVELOPERS}
 
 
-@click.group(cls=DeveloperCommands, short_help="For those who write plug-ins: templates, conformance, laws, caches.")
+@click.group(cls=DeveloperCommands, short_help="Plug-ins: templates, conformance, laws, schema, caches.")
 def dev() -> None:
     """For those who write plug-ins: templates, conformance, contact laws on one contact, caches, schema.
 

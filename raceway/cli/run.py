@@ -106,7 +106,7 @@ def run(options: RunOptions) -> int:
     return 0
 
 
-@click.command(short_help="Say what would be built and what not.")
+@click.command(short_help="Is a scene right, what would be built, and what not.")
 @on_scene
 @plugin_files
 @common

@@ -443,6 +443,10 @@ def uncertainty(
         As ``band`` and ``sensitivities``.
     """
     if samples:
+        if keys:
+            raise SceneError.at(
+                "keys", ", ".join(keys), "asks for derivatives, which samples do not give: leave it or the samples out"
+            )
         return band(
             scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
         )
