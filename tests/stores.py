@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from raceway.out.quantities import STIFFNESS
 from raceway.testing import b7206c
 
 DOFS = ["x", "y", "z", "tilt_y", "tilt_z"]
@@ -69,7 +70,7 @@ def made(axes: dict[str, Any], tables: dict[str, Any] | None = None, **changed: 
         name: (names, array, {"units": unit, "long_name": name.replace("_", " ")}) for name, (unit, array) in values.items()
     }
     spring = changed["stiffness"](at) if "stiffness" in changed else spring
-    variables["stiffness"] = ([*names, "dof", "dof2"], spring, {"units": "N/m", "long_name": "tangent stiffness"})
+    variables["stiffness"] = ([*names, "dof", "dof2"], spring, STIFFNESS.labels)
     variables["status"] = (names, np.full(shape, "done", dtype=object))
     coords: dict[str, Any] = {
         key: (key, list(values), {"units": UNITS.get(key, "1"), "long_name": key}) for key, values in axes.items()

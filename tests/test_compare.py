@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
-from raceway.out.answer import Interrupted
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes, points
-from raceway.points.compare import compare_points, tables_at
+from raceway.points.compare import StudyInterrupt, compare_points, tables_at
 from raceway.points.effects import Row, percent
 from raceway.testing import default_registry, run
 
@@ -200,7 +199,7 @@ def test_interruption_keeps_the_finished_rows():
         if done == 2:
             raise KeyboardInterrupt
 
-    with pytest.raises(Interrupted) as caught:
+    with pytest.raises(StudyInterrupt) as caught:
         compare_points(SCENE, ["excitation.speed_rpm=12000:13000:3"], on_progress=stop)
     partial = caught.value.partial
     assert len(partial.rows) == 2 and partial.table() and partial.words
@@ -265,10 +264,10 @@ def test_the_words_rank_the_effects_and_tell_the_course_where_an_axis_changes_it
     made = _synthetic(_k)
     ranking, text = made.words[0], "\n".join(made.words)
     assert ranking.startswith(
-        "K(w) lies between 40.00 and 200.00 N/µm. On average, the strongest first: supports.tilt from locked"
+        "K lies between 40.00 and 200.00 N/µm. On average, the strongest first: supports.tilt from locked"
     )
     assert ranking.index("supports.tilt") < ranking.index("excitation.amplitude")
-    assert "K(w) hardly depends on excitation.kind (+0.00 %)" in text
+    assert "K hardly depends on excitation.kind (+0.00 %)" in text
     assert "falls in 4 of 4 settings (-2.0 %)" in text and "rises in 4 of 4 settings (+1.0 % to +20.0 %)" in text
 
 
@@ -312,7 +311,7 @@ def test_what_lies_between_the_ends_of_an_axis_is_told_where_it_is_beyond_them(a
     """The first sentence gave the range of the ends as that of all runs, and passed over an axis whose ends are alike."""
     made = _made(axes, k_of)
     k = [1e-6 * k_of(row.point) for row in made.rows]
-    assert made.words[0].startswith(f"K(w) lies between {min(k):.2f} and {max(k):.2f} N/µm. On average")
+    assert made.words[0].startswith(f"K lies between {min(k):.2f} and {max(k):.2f} N/µm. On average")
     assert said in made.words[0] and "of the variation" not in made.words[0]
     assert not any("hardly depends on " + axes[0].partition("=")[0] in words for words in made.words)
 
@@ -355,7 +354,7 @@ def test_a_doubtful_row_between_the_ends_is_left_out_of_the_course():
     found = with_error(_synthetic(_k), 1.2, **ONE)
     text = "\n".join(found.words)
     assert "doubtful runs between the ends left out: 1" in text and "1 of 24 runs" in text
-    assert "the estimated error of K(w) is as large as its value" in text
+    assert "the estimated error of K is as large as its value" in text
     assert all(t["trend"] != "not monotonic" for t in found.trends)
 
 
@@ -369,7 +368,7 @@ def test_one_inexact_corner_hides_no_large_effect():
     assert "supports.tilt from locked to free changes it by -78.8 %" in text
     # 2 / 16 of -ln(1 - 0.03 |Z| / K), K = 40 and |Z| = 37.8 N/µm at the corner; |Z| itself a little more.
     assert "the runs' own errors move them by at most 0.38 %" in text
-    assert "K(w) hardly depends on excitation.kind" in text  # 0 +- 0.36 % is surely below 0.5 %
+    assert "K hardly depends on excitation.kind" in text  # 0 +- 0.36 % is surely below 0.5 %
 
 
 def test_a_small_effect_within_the_errors_is_not_told_as_one():
@@ -382,14 +381,12 @@ def test_a_small_effect_within_the_errors_is_not_told_as_one():
         found["dynamic_stiffness"] = {"real": k, "imag": 0.0, "abs": k}
         rows.append(Row(point, {"identification": found, "error": {"total": 0.021 if k == 0.355e8 else 1e-6}}))
     text = "\n".join(Comparison("made up", axes, tuple(rows)).words)
-    assert (
-        "K(w) lies between 35.50 and 234.20 N/µm. On average supports.tilt from locked to free changes it by -84.7 %" in text
-    )
+    assert "K lies between 35.50 and 234.20 N/µm. On average supports.tilt from locked to free changes it by -84.7 %" in text
     assert (
         "within the runs' errors of 1.1 % and so not resolved: excitation.kind (+0.78 %; with supports.tilt = locked -0.13 %)"
         in text
     )
-    assert "K(w): no interaction is resolved from the runs' errors (the largest would be +0.91 %)" in text
+    assert "K: no interaction is resolved from the runs' errors (the largest would be +0.91 %)" in text
     assert "with free by" not in text and "no axis moves it" not in text
 
 

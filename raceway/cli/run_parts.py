@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from raceway.framework.shown import in_micro, within
+from raceway.framework.shown import in_micro
+from raceway.out.quantities import FORCE_AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, PHASE_LAG, Z_IMAG, Z_REAL, X, read_in
 from raceway.out.table import Row, number, tilt_words
 from raceway.storage.tables import ReadTables
 
@@ -110,7 +111,7 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     moved, dynamic = found["displacement"], result["identification"] is not None
     rows = [
         ("Equilibrium under the constant loads", "", ""),
-        ("displacement x", number(1e6 * moved["x"], "µm"), "axial, positive seats the bearing"),
+        X.fact(result, "axial, positive seats the bearing"),
         ("displacement y, z", f"{in_micro(moved['y'])}, {in_micro(moved['z'])} µm", "radial"),
     ]
     if tilt != "locked":
@@ -183,20 +184,33 @@ def _hertz(one: ReadTables, speed: float, *names: str) -> str:
     return ", ".join(f"{one[name + '_hz']:.5g}" for name in names) + " Hz" if speed else ""
 
 
+def tolerance_rows(found: ReadTables | None) -> list[Row]:
+    """The band over the scene's tolerances to first order; of each answer the tolerance that makes most of it."""
+    if not found:
+        return []
+    rows: list[Row] = [("Tolerances, 95 % to first order", "", found["why"])]
+    for name, one in found["quantities"].items():
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
+        key, share = max(one["shares"].items(), key=lambda item: item[1], default=("", 0.0))
+        told = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
+        told += [one["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
+        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(told)))
+    rows += [("", "", f"without {one['key']}: {one['reason']}") for one in found["left_out"]]
+    return rows
+
+
 def stiffness_rows(result: ReadTables) -> list[Row]:
     """Parts of Z and the force that they belong to."""
     found = result["identification"]
     if found is None:
         return []
-    z, across, definition = found["dynamic_stiffness"], found["dynamic_stiffness_imag_error"], found["definition"]
     excited = result["scene"]["excitation"]["kind"]
-    lag = found["phase_lag_deg"], found["phase_lag_error_deg"]
     return [
-        ("Dynamic stiffness Z", "", definition.partition(", ")[0]),
-        ("force", number(found["force_amplitude_n"], "N"), f"{excited}, {found['frequency_hz']:g} Hz"),
-        ("Z real", number(1e-6 * z["real"], "N/µm"), "force over displacement"),
-        within("Z imaginary", z["imag"], across, 1e-6, "N/µm", "w C"),
-        within("phase lag", *lag, 1.0, "deg", "displacement behind force"),
+        ("Dynamic stiffness Z", "", found["definition"].partition(", ")[0]),
+        FORCE_AMPLITUDE.fact(result, f"{excited}, {found['frequency_hz']:g} Hz"),
+        Z_REAL.fact(result, "force over displacement"),
+        Z_IMAG.fact(result, "w C"),
+        PHASE_LAG.fact(result),
     ]
 
 
@@ -235,9 +249,9 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 def cost_rows(cost: ReadTables) -> list[Row]:
     """Time and memory."""
     memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
-    kept = "kernels were in the cache (raceway dev cache)"
+    kept = "kernels were in the cache (raceway cache)"
     if cost["compile_s"]:
-        kept = "once; kept for the next run (raceway dev cache)"
+        kept = "once; kept for the next run (raceway cache)"
         if not cost.get("compiled_kept", True):
             kept = "not kept: the cache cannot be written; the next run compiles again"
     processor = f"{number(cost['cpu_s'], 'CPU-s', 3)}, " if "cpu_s" in cost else ""
@@ -260,16 +274,11 @@ def stability_rows(found: ReadTables) -> list[Row]:
 def tangent_rows(result: ReadTables) -> list[Row]:
     """kxx, kyy, and kyy with tilts that follow."""
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
-    k = found["stiffness"]
-    rows = [
-        ("tangent kxx", number(1e-6 * k[0][0], "N/µm"), "axial, other motions held"),
-        ("tangent kyy", number(1e-6 * k[1][1], "N/µm"), "radial, tilts and other motions held"),
-    ]
+    rows = [KXX.fact(result), KYY.fact(result)]
     if tilt != "locked":
-        follow = number(1e-6 * found["kyy_tilts_follow_n_per_m"], "N/µm")
-        rows.append(("kyy tilts follow", follow, f"{tilt_words(tilt)}: tilts follow, x and z held"))
+        rows.append(KYY_TILTS_FOLLOW.fact(result, f"{tilt_words(tilt)}: tilts follow, x and z held"))
     if found["stiffness_rows_held"] is not None:
-        held = number(1e-6 * found["stiffness_rows_held"][0][0], "N/µm")
+        held = KXX.text(found["stiffness_rows_held"][0][0])
         rows.append(("kxx, rows held", held, "rows on the spring held as within a motion; above they follow"))
     return rows
 

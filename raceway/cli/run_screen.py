@@ -18,9 +18,26 @@ from raceway.cli.run_parts import (
     stability_rows,
     stiffness_rows,
     tangent_rows,
+    tolerance_rows,
 )
-from raceway.framework.shown import percents, within
-from raceway.out.table import Row, micro, number, sections, tilt_words, written
+from raceway.framework.shown import percents
+from raceway.out.quantities import (
+    C_ERROR,
+    KYY,
+    KYY_TILTS_FOLLOW,
+    MASS,
+    ORBIT_MAJOR,
+    ORBIT_MINOR,
+    PHASE_LAG,
+    SPEED,
+    Z_IMAG,
+    Z_REAL,
+    C,
+    K,
+    Quantity,
+    Z,
+)
+from raceway.out.table import Row, micro, sections, tilt_words, written
 from raceway.out.wrapping import Words
 from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
@@ -50,9 +67,9 @@ def dry_damping_note(content: ReadTables) -> str | None:
     found = content["identification"]
     if found is None:
         return None
-    error, damping = found["equivalent_damping_error"], found["equivalent_damping"]
+    error, damping = C_ERROR.of(content), C.of(content)
     resolved = error is None or abs(damping) > error
-    return dry_damping_words(damping if resolved else None, found["equivalent_stiffness"])
+    return dry_damping_words(damping if resolved else None, K.of(content))
 
 
 def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _REMEDY) -> str | None:
@@ -71,7 +88,7 @@ def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _RE
 _LINE = 1e-9
 #: Rows that stand or fall with Z.
 _OF_Z = (
-    "equivalent stiffness K", "equivalent damping C", "|Z|", "Z real", "Z imaginary", "loss factor", "phase lag", "orbit, semi-axes",
+    *(quantity.label for quantity in (K, C, Z, Z_REAL, Z_IMAG, PHASE_LAG)), "loss factor", "orbit, semi-axes",
 )  # fmt: skip
 #: Relative change of a stiffness by a hypothesis below which it is not told.
 LEAST_CHANGE = 1e-3
@@ -82,25 +99,17 @@ def answer_rows(result: ReadTables) -> list[Row]:
     found = result["identification"]
     if found is None:
         return _static(result)
-    z, orbit, mass = found["dynamic_stiffness"], found["orbit"], found["mass_used_kg"]
-    thin = orbit["minor_m"] <= _LINE * orbit["major_m"]
-    minor = "0" if thin else f"{1e6 * orbit['minor_m']:.4g}"
-    dry, remark = dry_damping_note(result), f"K = Re Z + m w^2, m = {mass:.4g} kg"
+    major, minor = ORBIT_MAJOR.of(result), ORBIT_MINOR.of(result)
+    thin, dry = minor <= _LINE * major, dry_damping_note(result)
+    axes = f"{ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{ORBIT_MINOR.read(minor):.4g}'} {ORBIT_MAJOR.read_unit}"
     return [
-        (f"Answer at {found['speed_rpm']:g} r/min, {tilt_words(found['tilt'])}", "", ""),
+        (f"Answer at {SPEED.of(result):g} r/min, {tilt_words(found['tilt'])}", "", ""),
         # The error of Z: larger than the same share of K where m w^2 cancels K.
-        within(
-            "equivalent stiffness K",
-            found["equivalent_stiffness"],
-            found["equivalent_stiffness_error"],
-            1e-6,
-            "N/µm",
-            remark,
-        ),
-        *model_rows(result, "equivalent_stiffness", "kyy_tilts_follow", "kyy"),
-        *damping_rows(found),
-        ("|Z|", number(1e-6 * z["abs"], "N/µm"), "dynamic stiffness, force over displacement"),
-        ("orbit, semi-axes", f"{1e6 * orbit['major_m']:.4g} x {minor} µm", f"1x motion{', a line' if thin else ''}"),
+        K.fact(result, f"{K.words}, m = {MASS.of(result):.4g} kg"),
+        *model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
+        *damping_rows(result),
+        Z.fact(result, "dynamic stiffness, force over displacement"),
+        ("orbit, semi-axes", axes, f"1x motion{', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
 
@@ -112,30 +121,26 @@ def only_resolved(rows: Sequence[Row], error: ReadTables) -> list[Row]:
     return [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
 
 
-def damping_rows(found: ReadTables) -> list[Row]:
+def damping_rows(result: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
-    band, origin = found["band"], found["damping_origin"]
+    band, origin = result["identification"]["band"], result["identification"]["damping_origin"]
     if band is None:
-        damping, error = found["equivalent_damping"], found["equivalent_damping_error"]
-        return [within("equivalent damping C", damping, error, 1.0, "N s/m", origin)]
+        return [C.fact(result, origin)]
+    low, high = band["loss_factor"]
     return [
-        ("equivalent damping C", _range(band["equivalent_damping"], "N s/m"), origin),
-        ("loss factor", _range(band["loss_factor"]), "w C / K at both ends; all else is that of the low end"),
-        ("phase lag", _range(band["phase_lag_deg"], "deg"), "displacement behind force"),
+        (C.label, C.span(band[C.name], 3), origin),
+        ("loss factor", f"{low:.3g} to {high:.3g}", "w C / K at both ends; all else is that of the low end"),
+        (PHASE_LAG.label, PHASE_LAG.span(band["phase_lag_deg"], 3), PHASE_LAG.words),
     ]
 
 
-def _range(ends: Sequence[float], unit: str = "") -> str:
-    return f"{ends[0]:.3g} to {ends[1]:.3g} {unit}".rstrip()
-
-
-def model_rows(result: ReadTables, *quantities: str) -> list[Row]:
+def model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
     """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
     spread, why = result["error"]["model"], result["error"]["short"]["model"]
     if spread is None:
         return [("", "", f"model: change by hypotheses left at their defaults {why}")] if why else []
-    name = next((one for one in quantities if spread[one] is not None), "")
-    of = "" if name in ("", "equivalent_stiffness") else f"{name.replace('_', ' ')} "
+    name = next((quantity.name for quantity in quantities if spread[quantity.name] is not None), "")
+    of = "" if name in ("", K.name) else f"{name.replace('_', ' ')} "
     rows: list[Row] = []
     for key, what in (("kinematics.gyroscopic", "gyroscopic moments"), ("kinematics.ring_growth", "ring growth")):
         changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
@@ -149,7 +154,7 @@ def _static(result: ReadTables) -> list[Row]:
     return [
         ("Answer of a static scene", "", "without a table [excitation] there is no K(w), C or orbit to identify"),
         *tangent_rows(result),
-        *model_rows(result, "kyy_tilts_follow", "kyy"),
+        *model_rows(result, KYY_TILTS_FOLLOW, KYY),
         *loaded_balls(result, ["most"]),
     ]
 
@@ -170,7 +175,7 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
         *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
         *stiffness_rows(result),
-        *_tolerances(result),
+        *tolerance_rows(result.get("tolerances")),
         *error_rows(result),
     ]
     rows = only_resolved(rows, result["error"])
@@ -187,14 +192,6 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
         Words("notes in full: result.json", "dim"),
     ]
     return Group(*parts, *written(files))
-
-
-def _tolerances(result: ReadTables) -> list[Row]:
-    if not result.get("tolerances"):
-        return []
-    from raceway.pipeline.gradient import tolerance_rows
-
-    return tolerance_rows(result["tolerances"])
 
 
 def _left_out(result: ReadTables) -> str:

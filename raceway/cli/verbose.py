@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.framework.hookspecs import hookimpl
+from raceway.out.quantities import K
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
@@ -54,7 +55,7 @@ class _Listener:
         LOGGER.info("run finished in %.2f s: %s", cost["wall_s"], ", ".join(parts) or "nothing to build")
         found = result.identification
         if found is not None:
-            LOGGER.info("K = %.5g N/µm at %g r/min", 1e-6 * found.equivalent_stiffness, 60.0 * found.frequency_hz)
+            LOGGER.info("K = %s at %g r/min", K.text(K.of(result)), 60.0 * found.frequency_hz)
 
     @hookimpl
     def raceway_run_failed(self, error: Exception) -> None:

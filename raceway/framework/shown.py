@@ -15,8 +15,6 @@ from raceway.storage.tables import ReadTables
 Fact = tuple[str, str, str]
 #: Lines of text, the title's and the line of what is left out included, and characters of a line, at most.
 LINES, WIDTH = 15, 100
-#: Units that people read, with their factors.
-_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm"), "Pa": (1e-6, "MPa")}
 _TABLE = "border-collapse:collapse;max-width:46em;font-size:14px;line-height:1.35"
 _CELL = "text-align:left;vertical-align:top;padding:2px 14px 2px 0;border:0"
 #: Numbers are never broken; words of a remark are, rather than that the table is wider than the screen.
@@ -97,12 +95,6 @@ def race_words(race: str) -> str:
     return "both races" if race == "both" else f"{race} race"
 
 
-def read_in(value: float, unit: str) -> tuple[float, str]:
-    """A stiffness, a length or a pressure of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
-    factor, word = _READ.get(unit, (1.0, unit))
-    return factor * value, word
-
-
 def number(value: float | None, unit: str = "", digits: int = 5) -> str:
     """Significant digits and unit; a dash for what is not there."""
     if value is None:
@@ -124,13 +116,3 @@ def percents(*changes: float) -> str:
     """Both ends of relative changes in percent, or the one that there is."""
     ends = (f"{100.0 * one:+.{'2g' if abs(one) < 0.995 else '0f'}}" for one in (min(changes), max(changes)))
     return f"{' to '.join(dict.fromkeys(ends))} %"
-
-
-def within(name: str, value: float, error: float | None, scale: float, unit: str, remark: str) -> Fact:
-    """A number with its error; what is smaller than its error is no number."""
-    if error is None:
-        return name, number(scale * value, unit), f"error not estimated; {remark}"
-    told = number(scale * error, unit, 2)
-    if abs(value) < error:
-        return name, "not resolved", f"below its error of {told}; {remark}"
-    return name, number_within(scale * value, scale * error, unit), f"+- {told}; {remark}"

@@ -38,7 +38,7 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
-from raceway.planning.resolve import fits
+from raceway.planning.resolve import compares_with_steady_motion, fits, remembers_its_start
 from raceway.plugins.identifiers import Fft1x
 from raceway.storage.tables import Tables
 
@@ -144,7 +144,7 @@ def error_warnings(error: dict[str, Any], identified: bool) -> list[str]:
 def _motion_errors(run: Identified) -> dict[str, Part]:
     step, second = _time_step(run)
     transient = _transient(run, step)
-    if run.model.problem.depends_on_start and transient.size is not None:
+    if remembers_its_start(run.model.scene) and transient.size is not None:
         transient = _from_other_start(run, second or Run.of(run.motion), transient)
     return {"time_step": step, "transient": transient, "identification": _identification(run)}
 
@@ -196,7 +196,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
     limits = [motion.critical_time_step for motion in run.motions if motion.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
-    count = second_steps or other_steps(steps, bound)
+    count = second_steps or _other_steps(steps, bound)
     turns = model.plan.turns if count < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, count, model.system.ball_count):
         return Part(None, Estimate.SECOND_RUN_TOO_LARGE(steps=count)), None
@@ -207,7 +207,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         ]
     except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, Estimate.SECOND_RUN_FAILED(steps=count, why=why)), None
-    second = Run.of(again[-1]) if count < steps and model.problem.depends_on_start else None
+    second = Run.of(again[-1]) if count < steps and remembers_its_start(model.scene) else None
     # Several speeds are told apart by the identifier alone.
     fine, coarse = (without_free_vibration(motion) if len(run.motions) == 1 else None for motion in (first, again[-1]))
     ratio = (steps / count) ** method.order - 1.0
@@ -230,7 +230,7 @@ def _over(model: Model, turns: int) -> Model:
     return model if turns == model.plan.turns else attrs.evolve(model, plan=attrs.evolve(model.plan, turns=turns))
 
 
-def other_steps(steps: int, least: float = 0.0) -> int:
+def _other_steps(steps: int, least: float = 0.0) -> int:
     """Steps a turn of the second run: half, or as few as the stable limit leaves; half as many more where that tells nothing.
 
     Parameters
@@ -312,7 +312,7 @@ def _transient(run: Identified, step: Part) -> Part:
     memory = not model.system.conservative or model.scene.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, Estimate.EQUILIBRIA())
-    if model.problem.compared_with_steady:
+    if compares_with_steady_motion(model.scene):
         try:
             settled = settled_value(run)
         except BeyondPlanError as why:
@@ -409,7 +409,7 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
 
 def misfit_warnings(model: Model, error: Tables) -> list[str]:
     """Says where Z over the whirl speeds is not what K and C make of it."""
-    several_speeds = model.problem.several_speeds
+    several_speeds = model.scene.excitation is not None and "speeds" in model.scene.identifier.method.needs
     if not several_speeds or (error["identification"] or 0.0) <= _MISFIT:
         return []
     return [

@@ -14,7 +14,7 @@ limits of 95 % are taken.  Tolerances that bend the answer within their range ne
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 
 import attrs
@@ -29,11 +29,13 @@ from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System, by_address, surrogate
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.shown import Fact, race_words, read_in, tilt_words
+from raceway.framework.shown import race_words, tilt_words
+from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X
 from raceway.pipeline.equilibrium import race_of
 from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
 from raceway.scene.changes import Key, key_of
-from raceway.scene.tolerance import stated_tolerances, tolerances_of
+from raceway.scene.inputs import leaves
+from raceway.scene.tolerance import tolerances_of
 from raceway.storage.tables import Tables
 
 #: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none.
@@ -44,17 +46,6 @@ _LARGEST, _SHARE = 3e-5, 0.03
 #: a motion over its size.
 _RATES, _LEFT, _ROUNDING = 12, 1e-7, 1e-11
 _NO_PLACE = "the balls find no place between the races"
-#: Names with units, in the order of columns; what a scene does not have is left out.
-UNITS = {
-    "K": "N/m",
-    "C": "N s/m",
-    "amplitude": "m",
-    "kxx": "N/m",
-    "kyy": "N/m",
-    "kyy_tilts_follow": "N/m",
-    "x": "m",
-    "largest_ball_load": "N",
-}
 #: Part of |Z| below which w C is no number that an orbit resolves.
 _RESOLVED = 1e-6
 #: Share of the answers in a band; points of a density.
@@ -312,36 +303,31 @@ class Gradients:
 
 
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
-    """The numbers that a scene has, by their names in ``UNITS``: of the steady orbit, and at rest."""
+    """The numbers that a scene has, by their symbols: of the steady orbit, and at rest."""
     numbers: dict[str, float] = {}
     if orbit is not None:
         real, damping, stiffness, amplitude = orbit.line.tolist()
-        numbers |= {"K": stiffness, "amplitude": amplitude}
+        numbers |= {K.symbol: stiffness, AMPLITUDE.symbol: amplitude}
         if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
-            numbers["C"] = damping
+            numbers[C.symbol] = damping
     numbers |= _at_rest(equilibrium, equilibrium)
     if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
-        numbers["kyy_tilts_follow"] = follows
-    return {name: numbers[name] for name in UNITS if name in numbers}
+        numbers[KYY_TILTS_FOLLOW.symbol] = follows
+    return {name: numbers[name] for name in DIFFERENTIABLE if name in numbers}
 
 
 def described(name: str, value: float, words: dict[str, str]) -> Tables:
     """A number as JSON files hold it; ``words`` as ``definitions`` has them."""
-    return {"value": value, "unit": UNITS[name], "definition": words[name]}
+    return {"value": value, "unit": DIFFERENTIABLE[name].unit, "definition": words[name]}
 
 
 def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:
     """What each number of ``values`` is."""
     inner, outer = equilibrium.contact_force.reshape(2, -1).max(axis=1).tolist()
     return {
-        "K": "Re Z + m w^2",
-        "C": "Im Z / w",
-        "amplitude": "of the 1x motion along the force",
-        "kxx": "axial, other motions held",
-        "kyy": "radial, tilts and other motions held",
-        "kyy_tilts_follow": f"radial, {tilt_words(model.scene.supports.tilt)}: tilts follow, x and z held",
-        "x": "axial displacement under the constant loads",
-        "largest_ball_load": f"static, {race_words(race_of(inner, outer))}; the larger of both",
+        **{symbol: quantity.words for symbol, quantity in DIFFERENTIABLE.items()},
+        KYY_TILTS_FOLLOW.symbol: f"radial, {tilt_words(model.scene.supports.tilt)}: tilts follow, x and z held",
+        LARGEST_BALL_LOAD.symbol: f"static, {race_words(race_of(inner, outer))}; the larger of both",
     }
 
 
@@ -350,21 +336,21 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
     statics, motion = gradient.statics, gradient.motion
     slopes: dict[str, float] = {}
     if motion is not None:
-        slopes |= {"K": motion.equivalent_stiffness, "C": motion.equivalent_damping, "amplitude": motion.amplitude}
+        slopes |= {quantity.symbol: getattr(motion, quantity.name) for quantity in (K, C, AMPLITUDE)}
     slopes |= _at_rest(equilibrium, statics)
     if (tilt := model.scene.supports.tilt) != "locked":
         by = float(statics.key.path == "supports.tilt")
-        slopes["kyy_tilts_follow"] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
+        slopes[KYY_TILTS_FOLLOW.symbol] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
     return slopes
 
 
 def _at_rest(equilibrium: Equilibrium, state: Equilibrium | StaticGradient) -> dict[str, float]:
     """The numbers that every scene has, of the equilibrium or of its slopes."""
     return {
-        "kxx": float(state.stiffness[0, 0]),
-        "kyy": float(state.stiffness[1, 1]),
-        "x": float(state.displacement[0]),
-        "largest_ball_load": float(state.contact_force[np.argmax(equilibrium.contact_force)]),
+        KXX.symbol: float(state.stiffness[0, 0]),
+        KYY.symbol: float(state.stiffness[1, 1]),
+        X.symbol: float(state.displacement[0]),
+        LARGEST_BALL_LOAD.symbol: float(state.contact_force[np.argmax(equilibrium.contact_force)]),
     }
 
 
@@ -376,10 +362,8 @@ def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | st
     return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
 
 
-def first_order_band(
-    model: Model, equilibrium: Equilibrium, tolerances: Iterable[str] | Mapping[str, str] = ()
-) -> Tables | None:
-    """The table ``tolerances`` of result.json, of the scene's own tolerances or of others; None without any.
+def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
+    """The table ``tolerances`` of result.json; None where the scene has none.
 
     Returns
     -------
@@ -387,9 +371,8 @@ def first_order_band(
     why : why there are no quantities, or none of the motion; empty else
     """
     scene = model.scene
-    if not tolerances and "tolerances" not in scene.source:
+    if "tolerances" not in scene.source:
         return None
-    ranges = tolerances_of(scene, tolerances or stated_tolerances(scene))
     try:
         gradients = Gradients(model, equilibrium)
     except SceneError as refusal:
@@ -400,7 +383,7 @@ def first_order_band(
     except (SceneError, ConvergenceError) as failure:
         why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
     words, slopes, left_out = definitions(model, equilibrium), {}, []
-    for tolerance in ranges:
+    for tolerance in tolerances_of(scene, dict(leaves(scene.source["tolerances"]))):
         key = tolerance.key
         try:
             statics = static_gradient(model, equilibrium, key)
@@ -422,21 +405,6 @@ def first_order_band(
             "shares": dict(zip(slopes, shares.tolist(), strict=True)),
         }
     return {"quantities": quantities, "left_out": left_out, "why": why}
-
-
-def tolerance_rows(band: Tables | None) -> list[Fact]:
-    """The band over the scene's tolerances to first order, as rows of a screen; of each answer the tolerance that makes most of it."""
-    if not band:
-        return []
-    rows: list[Fact] = [("Tolerances, 95 % to first order", "", band["why"])]
-    for name, quantity in band["quantities"].items():
-        (low, unit), (high, _) = (read_in(quantity[end], quantity["unit"]) for end in ("low", "high"))
-        key, share = max(quantity["shares"].items(), key=lambda item: item[1], default=("", 0.0))
-        remarks = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
-        remarks += [quantity["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
-        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(remarks)))
-    rows += [("", "", f"without {left_out['key']}: {left_out['reason']}") for left_out in band["left_out"]]
-    return rows
 
 
 def limits(ends: Sequence[Sequence[float]], share: float = _COVERAGE) -> tuple[float, float]:

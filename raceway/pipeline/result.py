@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from functools import cached_property
 from itertools import zip_longest
@@ -14,16 +15,17 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
-from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words, within
+from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words
+from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
-from raceway.pipeline.plausible import NEGLIGIBLE
+from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import plot
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
-from raceway.storage.files import without_nan, write_json
+from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -127,10 +129,22 @@ class Result(Shown):
         return None if self.identification is None else self.identification.equivalent_damping
 
     @property
+    def dynamic_stiffness_imag_error(self) -> float | None:
+        """Estimated absolute error of Im Z [N/m]; None where it is not estimated."""
+        across, z = self._across(), self.identification
+        return None if across is None or z is None else across * abs(z.dynamic_stiffness)
+
+    @property
     def equivalent_damping_error(self) -> float | None:
         """Estimated absolute error of C [N s/m]; None where it is not estimated.  A smaller C is not resolved."""
-        across, z = self._across(), self.identification
-        return None if across is None or z is None else across * abs(z.dynamic_stiffness) / z.speed
+        error, z = self.dynamic_stiffness_imag_error, self.identification
+        return None if error is None or z is None else error / z.speed
+
+    @property
+    def phase_lag_error_deg(self) -> float | None:
+        """Estimated absolute error of the lag [deg]; None where it is not estimated."""
+        across = self._across()
+        return None if across is None else math.degrees(across)
 
     def gradient(self, path: str) -> Gradient:
         """Derivatives by the number at one key: of displacement, stiffness and ball loads, and of Z, K, C where there is an excitation.
@@ -173,9 +187,33 @@ class Result(Shown):
     @cached_property
     def model_spread(self) -> tuple[Tables | None, Note]:
         """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
-        from raceway.pipeline.plausible import model_spread
-
         return model_spread(self.model, self.equilibrium, self.identification, self.simulation)
+
+    @property
+    def model_bound(self) -> float | None:
+        """Upper estimate of the relative change of kyy by hypotheses left at their defaults; None where there are none."""
+        return closed_bound(self.model, self.equilibrium)
+
+    @cached_property
+    def extremes(self) -> Tables:
+        """Mean axial displacement [m], ball loads [N] and pressures [Pa]: of the motion where there is one, else of the equilibrium."""
+        loads = self.equilibrium.contact_force
+        if self.simulation is not None:
+            record = self.simulation.record
+            table, loads = motion_table(self.model, record), record.contact_force
+        else:
+            table = largest_contacts(loads, pressures(self.model, loads), "peak")
+        each = {
+            f"{name}{suffix}": table[f"{key}{suffix}_{unit}"]
+            for name, key, unit in (("peak_ball_load", "peak_ball_load", "n"), ("p0", "peak_pressure", "pa"))
+            for suffix in ("", "_inner", "_outer")
+        }
+        least = loads[..., : self.model.system.ball_count].min()
+        return {
+            "axial_displacement": table.get("axial_displacement_m", self.displacement[0]),
+            "min_ball_load": least,
+            **each,
+        }
 
     @property
     def ball_pass(self) -> Tables:
@@ -268,7 +306,6 @@ class Result(Shown):
         z = self.identification
         if z is None:
             return None
-        across = self._across()
         lines = {
             "name": "name",
             "frequency_hz": "frequency_hz",
@@ -278,26 +315,10 @@ class Result(Shown):
         }
         return {
             "definition": z.definition,
-            "speed_rpm": self.speed_rpm,
-            "frequency_hz": z.frequency_hz,
-            "force_amplitude_n": z.force_amplitude,
-            "dynamic_stiffness": _complex(z.dynamic_stiffness),
-            "dynamic_stiffness_imag_error": None if across is None else across * abs(z.dynamic_stiffness),
-            "equivalent_stiffness": z.equivalent_stiffness,
-            "equivalent_stiffness_error": self.equivalent_stiffness_error,
-            "equivalent_damping": z.equivalent_damping,
-            "equivalent_damping_error": self.equivalent_damping_error,
+            **nested(IDENTIFIED, self)["identification"],
             "damping_origin": damping_origin(self.model.scene),
             "band": self.band,
-            "mass_used_kg": z.mass_used,
             "tilt": self.model.scene.supports.tilt,
-            "phase_lag_deg": z.phase_lag_deg,
-            "phase_lag_error_deg": None if across is None else math.degrees(across),
-            "forward_amplitude_m": z.forward_amplitude,
-            "backward_amplitude_m": z.backward_amplitude,
-            "orbit": {"major_m": z.orbit_major, "minor_m": z.orbit_minor},
-            "residual": z.residual,
-            "spread": z.spread,
             "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
             "series": [
                 {"speed_rpm": speed * 30.0 / math.pi, **_complex(value), "error": error}
@@ -332,12 +353,34 @@ def band_table(ends: list[Result]) -> Tables:
     assert len(identified) == len(ends), "static scenes have no band"
     return {
         "time_constant_s": list(TIME_CONSTANTS),
-        "equivalent_damping": [z.equivalent_damping for z in identified],
-        "equivalent_damping_error": [end.equivalent_damping_error for end in ends],
-        "equivalent_stiffness": [z.equivalent_stiffness for z in identified],
+        **{quantity.name: [quantity.of(end) for end in ends] for quantity in (C, C_ERROR, K)},
         "loss_factor": [z.equivalent_damping * z.speed / z.equivalent_stiffness for z in identified],
         "phase_lag_deg": [z.phase_lag_deg for z in identified],
     }
+
+
+def without_nan(value: Any) -> Any:
+    """The same tree with null for numbers that are not finite, and plain Python types."""
+    if isinstance(value, dict):
+        return {str(k): without_nan(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def write_json(content: object, path: Path) -> Path:
+    """Write JSON so that a reader sees the old file or the whole new one.
+
+    Raises
+    ------
+    RacewayError
+        Folder or disk that cannot be written.
+    """
+    return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)
 
 
 #: Of scenes without any damping.
@@ -377,21 +420,20 @@ def _identified_facts(result: Result) -> list[Fact]:
     if z is None:
         return []
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.scene.supports.tilt)}"
-    damping = within("damping C", z.equivalent_damping, result.equivalent_damping_error, 1.0, "N s/m", "Im Z / w")
+    damping = C.fact(result)
     if band is not None:
-        low, high = band["equivalent_damping"]
         remark = "both ends of the band of time constants; all else is the low end's"
-        damping = ("damping C", f"{low:.3g} to {high:.3g} N s/m", remark)
+        damping = C.label, C.span(band[C.name], 3), remark
     rows = [
-        within("stiffness K", z.equivalent_stiffness, result.equivalent_stiffness_error, 1e-6, "N/µm", speed),
+        K.fact(result, speed),
         damping,
-        ("|Z|", number(1e-6 * abs(z.dynamic_stiffness), "N/µm"), "force over displacement of the 1x line"),
+        Z.fact(result),
         ("orbit", f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm", "semi-axes of the 1x line"),
     ]
     rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
-    spread = (result.model_spread[0] or {}).get("equivalent_stiffness")
+    spread = K_MODEL.of(result)
     if spread and max(map(abs, spread)) >= NEGLIGIBLE:
-        rows.append(("model of K", percents(*spread), "hypotheses left at their defaults: .model_spread"))
+        rows.append((K_MODEL.label, percents(*spread), "hypotheses left at their defaults: .model_spread"))
     return [*rows, ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated")]
 
 
@@ -400,8 +442,8 @@ def _equilibrium_facts(result: Result) -> list[Fact]:
     follows = result.kyy_tilts_follow
     return [
         ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
-        *([] if follows is None else [("kyy tilts follow", f"{1e-6 * follows:.5g} N/µm", "static, x and z held")]),
-        ("displacement x", number(1e6 * result.displacement[0], "µm"), "static, axial"),
+        *([] if follows is None else [KYY_TILTS_FOLLOW.fact(result, "static, x and z held")]),
+        X.fact(result),
         ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
         *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
     ]

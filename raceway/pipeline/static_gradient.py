@@ -92,7 +92,7 @@ class Direction:
         return attrs.evolve(system, **{name: getattr(system, name) + by * slope for name, slope in self.slopes.items()})
 
 
-def direction_of(model: Model, key: Key) -> Direction:
+def _direction_of(model: Model, key: Key) -> Direction:
     """Derivatives of a model's arrays by one key.
 
     Raises
@@ -238,7 +238,7 @@ def static_gradient(model: Model, equilibrium: Equilibrium, key: Key) -> StaticG
     NoDerivative
         There is none, with the reason.
     """
-    direction = direction_of(model, key)
+    direction = _direction_of(model, key)
     try:
         return _gradient(model, direction, equilibrium)
     except ConvergenceError as why:

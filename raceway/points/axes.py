@@ -77,7 +77,7 @@ def parse_axes(
     pairs = given.items() if isinstance(given, Mapping) else ((text, None) for text in given)
     for text, values in pairs:
         try:
-            axis = parse_axis(text, option, most) if values is None else axis_of(text, values, option, most)
+            axis = parse_axis(text, option, most) if values is None else _axis_of(text, values, option, most)
         except SceneError as error:
             mistakes += error.mistakes
             continue
@@ -122,7 +122,7 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
     return _axis(key, _range(key, items[0], most) if ranges else [parse_value(item) for item in items])
 
 
-def axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
+def _axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
     """One axis of a mapping.
 
     Parameters
@@ -272,9 +272,9 @@ def refuse_mistakes(tables: ReadTables, axes: tuple[Axis, ...], registry: Regist
 
 
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
-MOST_SWEEP_POINTS = 1_000_000
+_MOST_SWEEP_POINTS = 1_000_000
 #: Bytes of a list of them at most: 256 for each.
-_LONGEST = 256 * MOST_SWEEP_POINTS
+_LONGEST = 256 * _MOST_SWEEP_POINTS
 #: Values of an axis that a message names one by one.
 _MOST_SHOWN = 9
 _FILE_FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
@@ -392,7 +392,7 @@ def grid(given: Iterable[str] | Mapping[str, Any]) -> Design:
     SceneError
         With every mistake in them.
     """
-    return Design(axes=parse_axes(given, "--grid", MOST_SWEEP_POINTS))
+    return Design(axes=parse_axes(given, "--grid", _MOST_SWEEP_POINTS))
 
 
 def listed_points(points: Iterable[Mapping[str, Any]]) -> Design:
@@ -494,8 +494,8 @@ def _listed(path: Path | str, points: object) -> Design:
     points = [dict(_dotted(point)) for point in points]
     if not points or not points[0]:
         raise SceneError.at(str(path), None, "has no points: nothing to sweep")
-    if len(points) > MOST_SWEEP_POINTS:
-        raise SceneError.at(str(path), None, f"has {len(points)} points, more than {MOST_SWEEP_POINTS}")
+    if len(points) > _MOST_SWEEP_POINTS:
+        raise SceneError.at(str(path), None, f"has {len(points)} points, more than {_MOST_SWEEP_POINTS}")
     keys = list(points[0])
     for number, point in enumerate(points, 1):
         if set(point) != set(keys):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -14,24 +14,22 @@ from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, default_registry
-from raceway.framework.shown import Fact, number, read_in
-from raceway.out.answer import Answer, Part
-from raceway.out.picture import new_figure
+from raceway.framework.shown import Fact, Shown, number
 from raceway.out.progress import telling
-from raceway.out.wrapping import Words
+from raceway.out.quantities import DIFFERENTIABLE, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import UNITS, Gradients, definitions, described, values
+from raceway.pipeline.gradient import Gradients, definitions, described, values
+from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
+from raceway.plugins.pictures import new_figure
 from raceway.points.engine import Item, local, work_through
-from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_number
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import as_scene, leaves
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of
-from raceway.storage.files import without_nan
+from raceway.scene.tolerance import Tolerance, tolerances_of
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -42,7 +40,7 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False)
-class Indices:
+class _Indices:
     """First-order and total Sobol indices, each (quantities, d)."""
 
     first: np.ndarray
@@ -64,7 +62,7 @@ def design(count: int, dimensions: int, seed: int) -> np.ndarray:
     return np.vstack([a, b, *mixed])
 
 
-def indices(values: np.ndarray, dimensions: int) -> Indices:
+def indices(values: np.ndarray, dimensions: int) -> _Indices:
     """Sobol indices of quantities (q, (d + 2) n) at the samples of ``design``."""
     from scipy.stats import sobol_indices
 
@@ -74,13 +72,13 @@ def indices(values: np.ndarray, dimensions: int) -> Indices:
     func = {"f_A": centred[:, 0], "f_B": centred[:, 1], "f_AB": np.moveaxis(centred[:, 2:], 1, 0)}
     found = sobol_indices(func=func, n=count)
     shape = len(values), dimensions  # scipy leaves out axes of length 1
-    return Indices(np.reshape(found.first_order, shape), np.reshape(found.total_order, shape))
+    return _Indices(np.reshape(found.first_order, shape), np.reshape(found.total_order, shape))
 
 
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
 
 
-def _draw(content: ReadTables) -> Figure:
+def draw(content: ReadTables) -> Figure:
     """A column a quantity: histogram of its samples, and bars of Sobol indices where they are known."""
     quantities, keys = content["quantities"], [one["key"] for one in content["tolerances"]]
     known = any(one["total"] is not None for one in quantities.values())
@@ -136,7 +134,7 @@ _ROUGH = 0.05
 
 
 @attrs.frozen(eq=False, repr=False)
-class Band(Answer):
+class Band(Shown):
     """95 % of the samples of each quantity, and what causes their spread.
 
     Attributes
@@ -153,8 +151,6 @@ class Band(Answer):
     >>> found.samples, found.lost
     (12, 0)
     """
-
-    stem: ClassVar[str] = "band"
 
     title: str
     tolerances: tuple[Tolerance, ...]
@@ -186,7 +182,11 @@ class Band(Answer):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         rows = [
-            (name, number(value, UNITS[name]), f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}")
+            (
+                name,
+                number(value, DIFFERENTIABLE[name].unit),
+                f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}",
+            )
             for name, value in self.nominal.items()
         ]
         return self.title, rows
@@ -215,36 +215,30 @@ class Band(Answer):
             )
         )
 
-    def draw(self) -> Figure:
-        """Histograms with their limits, and Sobol indices."""
-        return _draw(self.to_dict())
+    def save(self, folder: Path) -> Path:
+        """Write band.json.
 
-    def report(self) -> Iterator[Part]:
-        """A line a quantity; below it the tolerances, the definitions, and the samples that have no answer."""
-        yield Words(self.title, "italic")
-        yield [self._row(name) for name in self.nominal]
-        for tolerance in self.tolerances:
-            (low, unit), (high, _) = (read_in(end, tolerance.key.unit) for end in (tolerance.low, tolerance.high))
-            yield f"{tolerance.key.path}: {low:.6g} to {high:.6g} {unit}".rstrip()
-        yield from (f"{name.replace('_', ' ')}: {self.definitions[name]}" for name in self.nominal)
-        yield f"{self.samples} samples"
-        if self.lost:
-            yield f"{self.lost} have no answer, so that no indices are given: {self.why}"
-        yield from (f"warning: {text}" for text in self.remarks)
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        return write_json(self.to_dict(), folder / "band.json")
 
-    def _row(self, name: str) -> dict[str, str]:
-        ends = (self.nominal[name], self.low[name], self.high[name])
-        (value, unit), (low, _), (high, _) = (read_in(end, UNITS[name]) for end in ends)
-        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
-        row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
-        indices = self.total.get(name)
-        return row | {
-            f"total index, {tolerance.key.path}": "" if indices is None else f"{indices[k]:.3f}"
-            for k, tolerance in enumerate(self.tolerances)
-        }
+    def picture(self, folder: Path) -> Path:
+        """Draw band.png: histograms with their limits, and Sobol indices.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+
+        return save_figure(draw(self.to_dict()), folder / "band.png", 100)
 
 
-def band_of(
+def _band_of(
     scene: Scene,
     tolerances: Sequence[Tolerance],
     count: int,
@@ -321,7 +315,7 @@ def _summary(
     total: dict[str, list[float]] = {}
     if not lost:
         varied = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
-        found = indices(table[varied], dimensions) if varied else Indices(np.empty((0, 0)), np.empty((0, 0)))
+        found = indices(table[varied], dimensions) if varied else _Indices(np.empty((0, 0)), np.empty((0, 0)))
         for place, k in enumerate(varied):
             first[names[k]], total[names[k]] = found.first[place].tolist(), found.total[place].tolist()
     return Band(
@@ -393,9 +387,9 @@ def band(
         raise SceneError.at(
             "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
-    chosen = tolerances_of(read, tolerances or stated_tolerances(read))
+    chosen = tolerances_of(read, tolerances or dict(leaves(read.source.get("tolerances", {}))))
     with telling(progress) as told:
-        return band_of(
+        return _band_of(
             read,
             chosen,
             count,
@@ -406,48 +400,3 @@ def band(
             [Path(one) for one in plugins],
             told,
         )
-
-
-@door
-def uncertainty(
-    scene: Any,
-    tolerances: Mapping[str, str] | Iterable[str] = (),
-    keys: Iterable[str] = (),
-    *,
-    samples: int = 0,
-    seed: int = 1,
-    processes: int = 0,
-    kept: str | Path | None = None,
-    progress: ShowProgress = None,
-    plugins: Iterable[str | Path] = (),
-) -> Band | Sensitivities:
-    """How much the numbers and tolerances of a scene change its answer: K, C, stiffness, displacement and ball loads.
-
-    First-order derivatives by every number, and from them the 95 % band over the tolerances, without solving the scene again. With
-    --samples the band of samples and its Sobol indices instead, which see large tolerances, interactions and contacts that open.
-
-    Parameters
-    ----------
-    scene : Scene, path, TOML text or dict of tables
-    tolerances : as ``band`` takes them
-    keys : to differentiate by; none: every number of the scene
-    samples : n, a power of 2: (d + 2) n samples for d tolerances; 0: derivatives alone
-    seed : of the samples;  processes : that work on samples at a time; 0: in this one
-    kept : file of finished samples, read and added to
-    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
-    plugins : files of one-off plug-ins that the scene uses
-
-    Raises
-    ------
-    SceneError, ConvergenceError
-        As ``band`` and ``sensitivities``.
-    """
-    if samples:
-        if keys:
-            raise SceneError.at(
-                "keys", ", ".join(keys), "asks for derivatives, which samples do not give: leave it or the samples out"
-            )
-        return band(
-            scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
-        )
-    return sensitivities(scene, keys, tolerances=tolerances, progress=progress, plugins=plugins)

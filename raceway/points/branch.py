@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, ClassVar
+from pathlib import Path
 
 import attrs
 import numpy as np
@@ -18,21 +17,16 @@ from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
 from raceway.core.ring.orbit import States
 from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
-from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.wrapping import Words
+from raceway.framework.doors import door
+from raceway.pipeline.result import write_json
 from raceway.points.attractor import Attractor
+from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: Samples a turn: harmonics up to this order alias nothing.
 _SAMPLES = 360
 #: Samples of a span at which contacts are looked at.
 _CONTACTS = 72
-#: Special points and peaks that a screen shows at most; all are in the file.
-_SHOWN = 24
 #: Step of the difference quotient along the branch, over the motion's size.
 _ALONG = 1e-4
 #: Multipliers are outside the unit circle from here on.
@@ -41,7 +35,7 @@ _OUTSIDE = 1.0 + 1e-6
 PEAK, OPENS = "peak", "contact opens"
 
 #: Name of a number -> (unit, words).
-COLUMNS: dict[str, tuple[str, str]] = {
+_COLUMNS: dict[str, tuple[str, str]] = {
     "parameter": ("", "value of the key"),
     "arc": ("1", "length along the branch, in tenths of the range and sizes of the first orbit"),
     "speed": ("rad/s", "of the force"),
@@ -61,7 +55,7 @@ COLUMNS: dict[str, tuple[str, str]] = {
 
 @attrs.frozen
 class Orbit:
-    """Numbers of ``COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair".
+    """Numbers of ``_COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair".
 
     Attributes
     ----------
@@ -92,15 +86,16 @@ class Orbit:
         """C [N s/m]."""
         return self.z.imag / self.speed
 
-    @property
-    def phase_deg(self) -> float:
-        """Lag of the displacement behind the force [deg]."""
-        return float(np.degrees(np.angle(self.z)))
-
     def to_dict(self) -> Tables:
-        parts = {"z_real": self.z.real, "z_imag": self.z.imag}
-        names = (*COLUMNS, "verdict", "leaves_by")
-        return {name: parts[name] if name in parts else getattr(self, name) for name in names}
+        z, phase = self.z, float(np.degrees(np.angle(self.z)))
+        derived = {
+            "z_real": z.real,
+            "z_imag": z.imag,
+            "stiffness": self.stiffness,
+            "damping": self.damping,
+            "phase_deg": phase,
+        }
+        return {name: derived.get(name, getattr(self, name, None)) for name in (*_COLUMNS, "verdict", "leaves_by")}
 
 
 @attrs.frozen
@@ -122,8 +117,8 @@ class Label:
         return {"kind": self.kind, "angle_rad": self.angle, **self.row.to_dict()}
 
 
-@attrs.define(eq=False, repr=False)
-class Followed(Answer):
+@attrs.define(eq=False)
+class Followed:
     """The branch of steady orbits over a key of a scene.
 
     Attributes
@@ -141,8 +136,6 @@ class Followed(Answer):
     >>> curve.labels[0].kind, round(curve.labels[0].row.parameter)
     ('fold', 19574)
     """
-
-    stem: ClassVar[str] = "follow"
 
     key: str
     first: float
@@ -178,7 +171,7 @@ class Followed(Answer):
         """Everything, as plain tables for JSON."""
         return {
             **{name: getattr(self, name) for name in ("title", "key", "first", "last", "span_deg")},
-            "columns": {name: {"unit": unit, "what": words} for name, (unit, words) in COLUMNS.items()},
+            "columns": {name: {"unit": unit, "what": words} for name, (unit, words) in _COLUMNS.items()},
             "rows": [row.to_dict() for row in self.rows],
             "labels": [label.to_dict() for label in self.labels],
             "unstable": [[first.parameter, last.parameter] for first, last in self.unstable],
@@ -188,73 +181,31 @@ class Followed(Answer):
             "doubled": [branch.to_dict() for branch in self.doubled],
         }
 
-    def texts(self, pictures: bool) -> dict[str, str]:
-        """follow.csv, a line an orbit."""
-        content, text = self.to_dict(), io.StringIO()
-        rows = [{"branch": k, **row} for k, branch in enumerate((content, *content["doubled"])) for row in branch["rows"]]
+    @door
+    def write(self, folder: str | Path, picture: bool = True) -> list[Path]:
+        """Write follow.json, follow.csv and follow.png; the folder is made when it is missing.
+
+        Raises
+        ------
+        RacewayError
+            The folder cannot be written, or matplotlib is missing.
+        """
+        folder, content, text = Path(folder), self.to_dict(), io.StringIO()
+        branches = (content, *content["doubled"])
+        rows = [{"branch": k, **row} for k, branch in enumerate(branches) for row in branch["rows"]]
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
-        return {"csv": text.getvalue()}
-
-    def draw(self) -> Figure:
-        """Amplitude and K over the key."""
-        from raceway.points.follow_picture import draw
-
-        return draw(self.to_dict())
-
-    def _shown(self) -> tuple[str, list[Fact]]:
-        ends = (
-            [
-                (word, f"{row.parameter:.6g}", f"K {1e-6 * row.stiffness:.4g} N/µm")
-                for word, row in zip(("begins", "ends"), (self.rows[0], self.rows[-1]), strict=True)
-            ]
-            if self.rows
-            else []
-        )
-        special = [(label.kind, f"{label.row.parameter:.6g}", "") for label in self.labels]
-        return f"{len(self.rows)} steady orbits over {self.key}\n{self.title.splitlines()[0]}", [*ends, *special]
-
-    def report(self) -> Iterator[Part]:
-        """What was followed, the special points and peaks, the stretches of unstable orbits, how it ends."""
-        yield Words(f"{len(self.rows)} steady orbits over {self.key}, {_range(self)}", "bold")
-        yield Words(self.title, "dim")
-        points = [
-            ("begins", self.rows[0]),
-            *((label.kind, label.row) for label in self.labels[:_SHOWN]),
-            ("ends", self.rows[-1]),
+        files = [
+            write_json(content, folder / "follow.json"),
+            write_whole(text.getvalue().encode(), folder / "follow.csv"),
         ]
-        yield [_line(what, row) for what, row in points]
-        if len(self.labels) > _SHOWN:
-            yield f"{len(self.labels) - _SHOWN} more special points and peaks are in the file"
-        for first, last in self.unstable:
-            yield f"unstable from {first.parameter:.6g} to {last.parameter:.6g} along the branch"
-        for k, branch in enumerate(self.doubled, 1):
-            yield f"branch {k} of twice the period: {len(branch.rows)} orbits, {_range(branch)}"
-        for attractor in (a for branch in (self, *self.doubled) for a in branch.attractors):
-            table = attractor.to_dict()
-            yield f"beside the unstable orbit at {table['parameter']:.6g}: {table['words']}"
-        yield from self.notes
-        if self.end:
-            yield Words(self.end, "bold")
+        if picture:
+            from raceway.plugins.pictures import save_figure
+            from raceway.points.follow_picture import draw
 
-
-def _range(branch: Followed) -> str:
-    return f"{branch.rows[0].parameter:.6g} to {branch.rows[-1].parameter:.6g}"
-
-
-def _line(what: str, row: Orbit) -> dict[str, str]:
-    return {
-        "": what,
-        "value": f"{row.parameter:.7g}",
-        "K\nN/µm": f"{1e-6 * row.stiffness:.4g}",
-        "C\nN s/m": f"{row.damping:.4g}",
-        "1x\nµm": f"{1e6 * row.amplitude:.4g}",
-        "all harmonics\nµm": f"{1e6 * row.swing:.4g}",
-        "lag\ndeg": f"{row.phase_deg:.4g}",
-        "growth\na turn": f"{row.multiplier:.4g}",
-        "open\nballs": f"{row.lost}" if row.lost else "",
-    }
+            files.append(save_figure(draw(content), folder / "follow.png", 110))
+        return files
 
 
 def orbit_of(point: Point, arc: float, mass: float) -> Orbit:

@@ -1,4 +1,4 @@
-"""The commands ``sweep`` and ``plot``.  Part of ``raceway.cli.main``."""
+"""The command ``raceway sweep``.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -17,9 +17,15 @@ from raceway.cli.frame import (
     attempt,
     changed_tables,
     common,
+    has_matplotlib,
     has_netcdf,
+    keeping,
+    load,
+    on_scene,
+    out_folder,
     out_option,
     plugin_files,
+    processes_at_a_time,
     record,
     require_matplotlib,
     scene_file,
@@ -29,8 +35,9 @@ from raceway.cli.frame import (
     slug,
     tell_faults,
 )
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.registry import registry_with
+from raceway.out.quantities import read_in
 from raceway.out.table import micro, rows_table, written
 from raceway.out.wrapping import Words
 from raceway.storage.files import writable
@@ -276,6 +283,291 @@ def told(lines: list[str], *tables: RenderableType) -> RenderableType:
     return Group(*tables, *(Words(line) for line in lines if not line.startswith(WRITTEN)), *written(names))
 
 
+@click.command(short_help="One scene, some keys varied, everything else the same.")
+@on_scene
+@click.option("--vary", multiple=True, required=True, metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count.")
+@out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write the curves as PNG (default).")
+@plugin_files
+@common
+def compare(
+    scene: Path,
+    vary: tuple[str, ...],
+    changes: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Vary some keys of a scene and say which of them causes what: main effects and interactions.
+
+    Writes compare.json and compare.png. Finished runs are kept in DIR/compare-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway compare examples/b7206.toml --set integrator.kind=periodic \\
+          --vary excitation.kind=unidirectional,bidirectional \\
+          --vary excitation.speed_rpm=10980:15000:5
+    """
+    registry = registry_with(plugins)
+    tables, mistakes = changed_tables(scene, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    title = str(tables["title"])
+    folder = writable(out or RESULTS / f"{slug(title)}-compare")
+    pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "compare-rows.jsonl"
+    with show_progress() as progress:
+        from raceway.pipeline.result import write_json
+        from raceway.points.compare import StudyInterrupt
+        from raceway.points.compare import compare as study
+
+        stopped = None
+        try:
+            comparison = study(tables, vary, kept=kept, progress=progress)
+        except StudyInterrupt as stop:
+            if not stop.partial.rows:
+                raise
+            comparison, stopped = stop.partial, stop  # what is finished is shown and written first
+    content = comparison.to_dict()
+    files: list[str] = []
+    failed = attempt(lambda: [write_json(content, folder / "compare.json")], files) or comparison.fault
+    if pictures and failed is None and stopped is None:
+        failed = attempt(lambda: comparison.picture(folder), files)
+
+    show(content, as_json, failed, lambda: compare_screen(title, comparison.table(), comparison.short_words, files))
+    with keeping("runs", kept):
+        if stopped is not None:
+            raise stopped
+    return 0
+
+
+class PrecisionOptions(NamedTuple):
+    """What ``raceway precision`` is given."""
+
+    scene: Path
+    vary: tuple[str, ...]
+    reference: tuple[str, ...]
+    repeats: int
+    limit: float
+    changes: tuple[str, ...]
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
+
+
+@click.command(short_help="Error against run time: which setting is good enough.")
+@scene_file
+@click.option("--vary", multiple=True, metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design.")
+@click.option("--reference", multiple=True, metavar="A.B=C", help="Key of the reference; found by itself without.")
+@click.option("--repeats", type=click.IntRange(1, 1000), default=3, show_default=True, help="Runs of each setting.")
+@click.option(
+    "--limit", type=click.FloatRange(min=0.0, min_open=True), default=30.0, show_default=True, metavar="SECONDS",
+    help="Leave out what is predicted to take longer.",
+)  # fmt: skip
+@set_keys
+@out_option(f"{RESULTS}/TITLE-precision")
+@click.option("--pictures/--no-pictures", default=True, help="Draw error against run time as PNG (default).")
+@plugin_files
+@common
+@record(PrecisionOptions)
+def precision(given: PrecisionOptions) -> int:
+    """Run a scene with many settings and say what each costs and how far it is from a reference with a known bound.
+
+    Writes precision.json, precision.md and precision.png. Finished rows are kept in DIR/precision-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway precision examples/b7206.toml \\
+          --vary integrator.kind=newmark,central_difference \\
+          --vary integrator.steps_per_turn=45,90,180,360
+    """
+    registry = registry_with(given.plugins)
+    tables, mistakes = changed_tables(given.scene, given.changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    folder = writable(given.out or RESULTS / f"{slug(str(tables['title']))}-precision")
+    pictures = given.pictures and has_matplotlib()
+    tell_faults(registry)
+    kept = folder / "precision-rows.jsonl"
+    with keeping("rows", kept), show_progress() as progress:
+        from raceway.points.precision import precision as study
+
+        found = study(
+            tables,
+            given.vary,
+            reference=given.reference,
+            repeats=given.repeats,
+            limit_s=given.limit,
+            kept=kept,
+            progress=progress,
+        )
+    content, files = found.to_dict(), list[str]()
+    failed = attempt(lambda: found.write(folder, pictures), files) or found.fault
+    if failed is None:
+        failed = verdict(content, found.converged, bool(given.reference))
+
+    show(
+        content,
+        given.as_json,
+        failed,
+        lambda: precision_screen(content["title"], found.table(), content["words"], files),
+    )
+    return 0
+
+
+def verdict(content: dict, converged: bool, given: bool) -> ConvergenceError | SceneError | None:
+    """What makes a finished study worthless, after it has been shown."""
+    rows = content["rows"]
+    known = [row for row in rows if row["error"] is not None]
+    if given and known and all(row["at_bound"] for row in known):
+        message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+        return SceneError.at("--reference", None, message)
+    if not converged:
+        reasons = [row["reason"] for row in rows if row["reason"]]
+        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
+        return ConvergenceError(f"no setting converged{why}")
+    return None
+
+
+class BandOptions(NamedTuple):
+    """What ``raceway band`` is given."""
+
+    scene: Path
+    changes: tuple[str, ...]
+    tolerances: tuple[str, ...]
+    size: int
+    seed: int
+    processes: int
+    out: Path | None
+    pictures: bool
+    plugins: tuple[Path, ...]
+    as_json: bool
+
+
+@click.command(short_help="The range of an answer over the tolerances of its scene.")
+@on_scene
+@click.option(
+    "--tolerance", "tolerances", multiple=True, metavar="A.B=TEXT", help="'±10 %', '±1 deg', '+2 µm -1 µm', class=P4, balls=G5; repeat for more [the scene's tolerances]."
+)  # fmt: skip
+@click.option(
+    "--count", "size", type=int, default=512, show_default=True, help="n, a power of 2: (d + 2) n samples for d tolerances."
+)
+@click.option("--seed", type=int, default=1, show_default=True, help="Of the samples.")
+@processes_at_a_time
+@out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write histograms and bars as PNG (default).")
+@plugin_files
+@common
+@record(BandOptions)
+def band(given: BandOptions) -> int:
+    """95 % band of K, displacement and ball loads over tolerances, and the Sobol indices that say which of them causes it.
+
+    Writes band.json and band.png. Numbers are taken evenly from their ranges. Finished samples are kept in DIR/band-rows.jsonl and reused.
+
+    \b
+    Example:
+      raceway band examples/minimal.toml --tolerance load.axial="±10 %" \\
+          --tolerance bearing.contact_angle_deg="±1 deg"
+    """
+    registry = registry_with(given.plugins)
+    loaded = load(given.scene, given.changes, registry)
+    tell_faults(registry)
+    folder = writable(given.out or RESULTS / f"{slug(loaded.title)}-band")
+    kept = folder / "band-rows.jsonl"
+    with keeping("samples", kept), show_progress() as progress:
+        from raceway.points.band import band as compute
+
+        found = compute(
+            loaded, given.tolerances, count=given.size, seed=given.seed, processes=given.processes, kept=kept, progress=progress,
+            plugins=given.plugins,
+        )  # fmt: skip
+    content = found.to_dict()
+    files: list[str] = []
+    failed = attempt(lambda: [found.save(folder)], files)
+    if failed is None and given.pictures and has_matplotlib():
+        failed = attempt(lambda: [found.picture(folder)], files)
+    show(content, given.as_json, failed, lambda: _screen(content, files))
+    return 0
+
+
+def _screen(content: ReadTables, files: list[str]) -> RenderableType:
+    """A line a quantity; below it the samples that have no answer."""
+    from rich.console import Group
+    from rich.text import Text
+
+    from raceway.out.quantities import read_in
+    from raceway.out.table import rows_table
+
+    keys = [one["key"] for one in content["tolerances"]]
+    rows = []
+    for name, one in content["quantities"].items():
+        (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
+        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
+        row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
+        for k, key in enumerate(keys):
+            row[f"total index, {key}"] = "" if one["total"] is None else f"{one['total'][k]:.3f}"
+        rows.append(row)
+    lines = []
+    for one in content["tolerances"]:
+        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
+        lines.append(f"{one['key']}: {low:.6g} to {high:.6g} {unit}".rstrip())
+    lines += [f"{name.replace('_', ' ')}: {one['definition']}" for name, one in content["quantities"].items()]
+    lines.append(f"{content['samples']} samples")
+    if content["lost"]:
+        lines.append(f"{content['lost']} have no answer, so that no indices are told: {content['why_lost']}")
+    lines += [f"warning: {text}" for text in content["remarks"]]
+    lines += [f"written: {', '.join(files)}"] if files else []
+    return Group(rows_table(rows, content["title"]), *(Text(line) for line in lines))
+
+
+@click.command(short_help="How much each number of a scene changes the answer.")
+@on_scene
+@click.option(
+    "--by", "keys", multiple=True, metavar="A.B", help="Only this key; repeat for more [every number of the scene]."
+)
+@out_folder
+@click.option("--pictures/--no-pictures", default=True, help="Write the bars as PNG (default).")
+@plugin_files
+@common
+def sensitivities(
+    scene: Path,
+    changes: tuple[str, ...],
+    keys: tuple[str, ...],
+    out: Path | None,
+    pictures: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """Derivatives of K, displacement and ball loads by every number of a scene, without solving it again.
+
+    Writes sensitivities.json, sensitivities.csv and sensitivities.png. The motion is the steady orbit.
+
+    \b
+    Example:
+      raceway sensitivities examples/b7206.toml
+      raceway sensitivities examples/b7206.toml --by bearing.contact_angle_deg
+    """
+    registry = registry_with(plugins)
+    loaded = load(scene, changes, registry)
+    tell_faults(registry)
+    folder = writable(out or RESULTS / f"{slug(loaded.title)}-sensitivities")
+    with show_progress() as progress:
+        from raceway.points.sensitivities import sensitivities as compute
+
+        found = compute(loaded, keys, progress=progress)
+    content = found.to_dict()
+    files: list[str] = []
+    failed = attempt(lambda: found.save(folder), files)
+    if failed is None and pictures and has_matplotlib() and found.rows:
+        failed = attempt(lambda: found.picture(folder), files)
+
+    show(content, as_json, failed, lambda: sensitivities_screen(content, files))
+    return 0
+
+
 #: Points of a sweep that a screen shows one by one.
 _MOST_ROWS, _MOST_REASONS = 30, 5
 #: Numbers in a warning, which differ from point to point.
@@ -330,3 +622,71 @@ def _sweep_row(row: ReadTables) -> dict[str, str]:
         text["kyy tilts follow N/µm"] = f"{values['kyy_tilts_follow'] / 1e6:.3f}"
     error = values.get("error_total")
     return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}
+
+
+def compare_screen(title: str, rows: Sequence[ReadTables], words: Sequence[str], files: Sequence[str]) -> RenderableType:
+    """The effects, the largest first, a line for each point, and the other words."""
+    parts: list[RenderableType] = [Words(title, "bold"), *map(Words, words[:1]), rows_table(rows), *map(Words, words[1:])]
+    parts.append(Words("all quantities, courses and inertia in words: compare.json", "dim"))
+    return Group(*parts, *written(files))
+
+
+def precision_screen(title: str, rows: Sequence[ReadTables], words: Sequence[str], files: Sequence[str]) -> RenderableType:
+    """A line for each setting, and what they come to in words."""
+    # A column of blanks would cost the settings their room.
+    names = [name for name in rows[0] if any(row[name] for row in rows)]
+    parts: list[RenderableType] = [Words(title, "bold")]
+    parts.append(rows_table([{name: row[name] for name in names} for row in rows]))
+    parts.append(Words("* on the front; ~ known to the reference's bound only", "dim"))
+    return Group(*parts, *map(Words, words), *written(files))
+
+
+#: Influences below this part of the largest one are not shown, files have them.
+_SHOWN = 1e-6
+
+
+def sensitivities_screen(content: ReadTables, files: list[str]) -> RenderableType:
+    """Keys in the order of their influence; below, what has none, what has no derivative, and the files."""
+    from rich.console import Group
+    from rich.text import Text
+
+    quantities = content["quantities"]
+    heads = []
+    for name, one in quantities.items():
+        value, unit = read_in(one["value"], one["unit"])
+        heads.append(f"{name.replace('_', ' ')} {value:.5g} {unit}: {one['definition']}")
+    rows = []
+    for key in (one for one in content["keys"] if one["influence"]):
+        row = {"key": key["key"], "value": f"{key['value']:.6g} {key['unit']}".strip()}
+        for name in quantities:
+            row[f"{name.replace('_', ' ')} [% per %]"] = _share(key, name)
+        rows.append(row)
+    lines = [f"warning: {text}" for text in content["warnings"]]
+    lines += [f"cost: {_cost(content['cost'])}"]
+    zero = [key["key"] for key in content["keys"] if not key["influence"]]
+    lines += [f"0, so without a share; derivatives in the files: {', '.join(zero)}"] if zero else []
+    rough: dict[str, list[str]] = {}
+    for key in content["keys"]:
+        if key["remark"]:
+            rough.setdefault(key["remark"], []).append(key["key"])
+    lines += [f"{', '.join(keys)}: {why}" for why, keys in rough.items()]
+    if content["without_effect"]:
+        lines.append(f"without effect: {', '.join(content['without_effect'])}")
+    reasons: dict[str, list[str]] = {}
+    for one in content["refused"]:
+        reasons.setdefault(one["reason"], []).append(one["key"])
+    lines += [f"no derivative by {', '.join(keys)}: {why}" for why, keys in reasons.items()]
+    lines += [f"written: {', '.join(files)}"] if files else []
+    title = "\n".join([content["title"], *heads])
+    return Group(rows_table(rows, title), *(Text(line) for line in lines))
+
+
+def _share(key: ReadTables, name: str) -> str:
+    share = key["influence"].get(name)
+    if share is None:
+        return ""
+    return "0" if abs(share) < _SHOWN else f"{share:+.3g}"
+
+
+def _cost(cost: ReadTables) -> str:
+    return f"{cost['gradients_s']:.2g} s beside {cost['run_s']:.2g} s of the run, {cost['models']} models built"

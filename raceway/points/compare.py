@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -14,16 +14,16 @@ import numpy as np
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import Registry, default_registry, registry_with
-from raceway.framework.shown import Fact, number_within
-from raceway.out.answer import Answer, Interrupted, Part
+from raceway.framework.shown import Fact, Shown, number_within
 from raceway.out.progress import ShowProgress, telling
-from raceway.out.wrapping import Words
+from raceway.out.quantities import K_ERROR, C, Quantity, Z, named
+from raceway.pipeline.result import write_json
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.plugins.labelled import labelled_dataset, labels
+from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Axis, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
-from raceway.points.effects import MOVING, Findings, Quantity, Row, explain, in_few_words
+from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key, tables_key
 from raceway.scene.inputs import plain_tables
@@ -33,12 +33,11 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from xarray import Dataset
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Comparison(Answer, Findings):
+class Comparison(Shown, Findings):
     """One scene with some keys varied: the numbers, their effects, and both in words.
 
     Attributes
@@ -58,13 +57,7 @@ class Comparison(Answer, Findings):
     (('load.axial',), 27)
     """
 
-    stem: ClassVar[str] = "compare"
-
     fault: RacewayError | None = None
-
-    def failure(self) -> RacewayError | None:
-        """Why finished runs could not be kept."""
-        return self.fault
 
     @cached_property
     def words(self) -> list[str]:
@@ -125,7 +118,7 @@ class Comparison(Answer, Findings):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
-        label = about.label.removesuffix("(w)")
+        label = about.symbol
         changes = [
             (
                 " x ".join(names[key] for key in one["term"]),
@@ -144,43 +137,42 @@ class Comparison(Answer, Findings):
         names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
         return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
 
-    def draw(self) -> Figure:
-        """All quantities."""
+    def picture(self, folder: Path) -> list[Path]:
+        """Draw all quantities into a folder; the files written.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder that cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
         from raceway.points.compare_picture import draw
 
-        return draw(self.to_dict())
-
-    def report(self) -> Iterator[Part]:
-        """The effects, the largest first, a line for each point, and the other words."""
-        yield Words(self.title, "bold")
-        yield from self.short_words[:1]
-        yield self.table()
-        yield from self.short_words[1:]
-        yield Words("all quantities, courses and inertia in words: compare.json", "dim")
+        return [save_figure(draw(self.to_dict()), folder / "comparison.png", 100)]
 
 
 def _number_of(row: Row) -> tuple[str, str]:
     """The first quantity with its error, and what is to be known of it."""
     name, about = next(iter(row.quantities.items()))
-    value, z = row.value(name), row.value("dynamic_stiffness")
+    value, z = row.value(name), row.value(Z.name)
     if value is None:
         return "-", row.doubt or ""
     doubt = f"; in doubt: {row.doubt}" if row.doubt else ""
     if z is None:
-        return f"{about.label} {about.scale * value:.4g} {about.unit}", about.words + doubt
-    error = about.scale * row.error * z
-    known = f"+- {error:.2g} {about.unit}" if row.estimated else "error not known"
-    return f"K {number_within(about.scale * value, error, about.unit)}", known + doubt
+        return f"{about.symbol} {about.text(value, 4)}", about.words + doubt
+    error = row.error * z
+    known = f"+- {about.text(error, 2)}" if row.estimated else "error not known"
+    return f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}", known + doubt
 
 
 def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
     text = {name: shown(row.point[key]) for key, name in names.items()}
     for name, about in quantities.items():
         value = row.value(name)
-        text[f"{about.label.removesuffix('(w)')} {about.unit}"] = "" if value is None else f"{about.scale * value:.3f}"
+        text[f"{about.symbol} {about.read_unit}"] = "" if value is None else f"{about.read(value):.3f}"
     if quantities is MOVING:
-        text["C N s/m"] = row.damping_words
-        text["error %"] = "" if row.value("dynamic_stiffness") is None else f"{100.0 * row.error:.2g}"
+        text[f"{C.symbol} {C.unit}"] = row.damping_words
+        text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
     if noted:
         text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
     return text
@@ -203,25 +195,29 @@ def labelled(found: Findings) -> Dataset:
     keys = [axis.key for axis in found.axes]
     shape = tuple(len(axis.values) for axis in found.axes)
     moving = found.quantities is MOVING
-    extra_words = {
-        "equivalent_stiffness_error": ("N/m", "estimated error of K"),
-        "equivalent_damping": ("N s/m", "C = Im Z / w"),
-    }
-    words = {name: (one.si, one.words) for name, one in found.quantities.items()} | (extra_words if moving else {})
-    numbers = {name: np.full(shape, np.nan) for name in words}
+    quantities = found.quantities | (named(K_ERROR, C) if moving else {})
+    numbers = {name: np.full(shape, np.nan) for name in quantities}
     status = np.full(shape, "waiting", dtype=object)
     for row in found.rows:
         place = tuple(axis.values.index(row.point[axis.key]) for axis in found.axes)
         status[place] = row.result["status"] if row.failed else "done"
         values = {name: row.value(name) for name in found.quantities}
         if moving:
-            z = values["dynamic_stiffness"] if row.estimated else None
-            values |= {"equivalent_damping": row.damping, "equivalent_stiffness_error": None if z is None else row.error * z}
+            z = values[Z.name] if row.estimated else None
+            values |= {C.name: row.damping, K_ERROR.name: None if z is None else row.error * z}
         for name, value in values.items():
             numbers[name][place] = np.nan if value is None else value
-    variables = {name: (keys, values, labels(name, *words[name])) for name, values in numbers.items()}
+    variables = {name: (keys, values, quantities[name].labels) for name, values in numbers.items()}
     coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in found.axes}
     return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})
+
+
+class StudyInterrupt(KeyboardInterrupt):
+    """Ctrl-C in a study; ``partial``: the comparison of the runs that are finished."""
+
+    def __init__(self, partial: Comparison) -> None:
+        super().__init__()
+        self.partial = partial
 
 
 def compare_points(
@@ -244,7 +240,7 @@ def compare_points(
     ------
     SceneError
         A mistake in an axis or in the scene; nothing has been run.
-    Interrupted
+    StudyInterrupt
         On Ctrl-C, with the finished rows; they are in ``store``, too.
 
     Notes
@@ -260,8 +256,7 @@ def compare_points(
     try:
         work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
     except KeyboardInterrupt as stop:
-        partial = _comparison(title, axes, places, items, kept, notes)
-        raise Interrupted(partial if partial.rows else None) from stop
+        raise StudyInterrupt(_comparison(title, axes, places, items, kept, notes)) from stop
     return _comparison(title, axes, places, items, kept, notes)
 
 
@@ -290,7 +285,7 @@ def _result(tables: ReadTables, registry: Registry) -> Tables:
 
 
 #: Finished runs, and the answer, in the folder of the results.
-ROWS, CONTENT = "compare-rows.jsonl", "compare.json"
+_ROWS, _CONTENT = "compare-rows.jsonl", "compare.json"
 
 
 @door
@@ -345,12 +340,12 @@ def compare(
     """
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))
-    kept = folder / ROWS if folder is not None and kept is None else kept
+    kept = folder / _ROWS if folder is not None and kept is None else kept
     tables = plain_tables(scene, registry=registry)
     with telling(progress) as told:
         found = compare_points(tables, vary, registry, told, None if kept is None else Path(kept))
     if found.fault is not None:
         warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
-        found.save(folder)
+        write_json(found.to_dict(), folder / _CONTENT)
     return found

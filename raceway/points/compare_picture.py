@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import given_axes, new_figure
+from raceway.out.quantities import KXX, K, Quantity
+from raceway.plugins.pictures import given_axes, new_figure
 from raceway.points.axes import is_number
 from raceway.points.axes import shown as _text
-from raceway.points.effects import MOVING, STATIC, Quantity, Row
+from raceway.points.effects import MOVING, STATIC, Row
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ _MOST_COLUMNS = 4
 
 
 def draw(result: Tables) -> Figure:
-    """K(w) above |Z|, of static scenes kxx, kyy and x, over the axis of numbers with most values; without one, a dot for each run.
+    """K above |Z|, of static scenes kxx, kyy and x, over the axis of numbers with most values; without one, a dot for each run.
 
     Columns are the values of the axis that interacts with it most; colour, line and marker those of the next ones.
     """
@@ -40,7 +41,7 @@ def draw(result: Tables) -> Figure:
     styles = {key: [_text(v) for v in axes[key]] for key in others if key != column}
     columns = [_text(v) for v in axes[column]] if column else [""]
     figure = new_figure(12.8, 7.6)
-    quantities = quantities_of(result)
+    quantities = _quantities_of(result)
     one_scale = len({about.unit for about in quantities.values()}) == 1
     panels = figure.subplots(len(quantities), len(columns), sharex=True, sharey="col" if one_scale else "row", squeeze=False)
     for place, value in enumerate(columns):
@@ -48,11 +49,11 @@ def draw(result: Tables) -> Figure:
         for (quantity, about), panel in zip(quantities.items(), panels[:, place], strict=True):
             limits = _limits(rows, quantities) if one_scale else _limits(result["rows"], [quantity])
             _curves(panel, rows, quantity, along, styles, limits)
-            panel.set_ylabel(f"{about.label}  [{about.unit}]" if place == 0 else "")
+            panel.set_ylabel(about.axis if place == 0 else "")
         panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, place].set_xlabel(along)
     figure.suptitle(f"{_named(quantities)} over {along}: {result['title']}", fontsize=13)
-    _legend(figure, styles, any(map(in_doubt, result["rows"])))
+    _legend(figure, styles, any(map(_in_doubt, result["rows"])))
     return figure
 
 
@@ -68,34 +69,34 @@ def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
         panel.set_ylim(len(result["rows"]) - 0.5, -0.5)
         return panel
     styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
-    quantities = quantities_of(result)
+    quantities = _quantities_of(result)
     limits = _limits(result["rows"], quantities if quantity in MOVING else [quantity])
     _curves(panel, result["rows"], quantity, along, styles, limits)
     panel.set_xlabel(along)
-    panel.set_ylabel(f"{quantities[quantity].label}  [{quantities[quantity].unit}]")
-    if handles := _handles(styles, any(map(in_doubt, result["rows"]))):
+    panel.set_ylabel(quantities[quantity].axis)
+    if handles := _handles(styles, any(map(_in_doubt, result["rows"]))):
         panel.legend(handles=handles, frameon=False, fontsize=9)
     return panel
 
 
-def quantities_of(result: Tables) -> dict[str, Quantity]:
+def _quantities_of(result: Tables) -> dict[str, Quantity]:
     """What was compared."""
     rows = (Row(row["point"], row["result"]) for row in result["rows"])
     return next((row.quantities for row in rows if not row.failed), MOVING)
 
 
 def _named(quantities: Iterable[str]) -> str:
-    *labels, last = ((MOVING | STATIC)[name].label for name in quantities)
+    *labels, last = ((MOVING | STATIC)[name].symbol for name in quantities)
     return f"{', '.join(labels)} and {last}"
 
 
-def value_of(row: Tables, quantity: str) -> float | None:
+def _value_of(row: Tables, quantity: str) -> float | None:
     """A quantity of a row on the screen's scale; None where the run gave none."""
     value = Row(row["point"], row["result"]).value(quantity)
-    return None if value is None else (MOVING | STATIC)[quantity].scale * value
+    return None if value is None else (MOVING | STATIC)[quantity].read(value)
 
 
-def in_doubt(row: Tables) -> bool:
+def _in_doubt(row: Tables) -> bool:
     """Whether a row with a number is left out of the explanation."""
     return row.get("doubt") is not None and "reason" not in row["result"]
 
@@ -114,10 +115,10 @@ def _curves(
         found = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
         found = sorted(found, key=lambda row: row["point"][along])
         look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
-        bad = [row for row in found if in_doubt(row)]
-        good = [math.nan if row.get("doubt") or (v := value_of(row, quantity)) is None else v for row in found]
+        bad = [row for row in found if _in_doubt(row)]
+        good = [math.nan if row.get("doubt") or (v := _value_of(row, quantity)) is None else v for row in found]
         panel.plot([row["point"][along] for row in found], good, **look)
-        clipped = [min(max(value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
+        clipped = [min(max(_value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
         (cross,) = panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
         cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
     panel.set_ylim(limits)
@@ -128,8 +129,8 @@ def _curves(
 
 def _limits(rows: list[Tables], quantities: Iterable[str]) -> tuple[float, float]:
     """Range of quantities together, so that panels of a column have one scale; runs in doubt do not count."""
-    chosen = [row for row in rows if not in_doubt(row)] or rows
-    values = [v for row in chosen for quantity in quantities if (v := value_of(row, quantity)) is not None] or [0.0, 1.0]
+    chosen = [row for row in rows if not _in_doubt(row)] or rows
+    values = [v for row in chosen for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
     margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
     return min(values) - margin, max(values) + margin
 
@@ -173,7 +174,7 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
 
 def _dots(result: Tables, varied: list[str]) -> Figure:
     """A dot for each run, where no axis has numbers: one line a combination, the quantities side by side."""
-    rows, quantities = result["rows"], quantities_of(result)
+    rows, quantities = result["rows"], _quantities_of(result)
     figure = new_figure(12.8, 2.2 + 0.32 * len(rows))
     panels = figure.subplots(1, len(quantities), sharey=True)
     for quantity, panel in zip(quantities, panels, strict=True):
@@ -186,13 +187,13 @@ def _dots(result: Tables, varied: list[str]) -> Figure:
 
 def _dots_on(panel: Axes, rows: list[Tables], quantity: str) -> None:
     for place, row in enumerate(rows):
-        value = value_of(row, quantity)
+        value = _value_of(row, quantity)
         if value is not None:
-            panel.plot([value], [place], "x" if in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
+            panel.plot([value], [place], "x" if _in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
         else:
             words = row["result"].get("status", "no value")
             panel.annotate(words, (0.02, place), xycoords=("axes fraction", "data"), va="center")
-    panel.set_xlabel(f"{(MOVING | STATIC)[quantity].label}  [{(MOVING | STATIC)[quantity].unit}]")
+    panel.set_xlabel((MOVING | STATIC)[quantity].axis)
     panel.grid(True, color="#e3e7eb", linewidth=0.8)
     panel.spines[["top", "right"]].set_visible(False)
 
@@ -203,13 +204,11 @@ def _names(rows: list[Tables], varied: list[str]) -> list[str]:
 
 
 def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[str]:
-    """The axes, those first that change the effect of ``along`` on K(w) most."""
+    """The axes, those first that change the effect of ``along`` on K most."""
 
     def strength(key: str) -> float:
         found = [
-            abs(e["log_change"])
-            for e in effects
-            if e["quantity"] in ("equivalent_stiffness", "kxx") and set(e["term"]) == {key, along}
+            abs(e["log_change"]) for e in effects if e["quantity"] in (K.name, KXX.name) and set(e["term"]) == {key, along}
         ]
         return max(found, default=0.0)
 

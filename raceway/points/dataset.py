@@ -17,7 +17,8 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
-from raceway.plugins.labelled import labelled_dataset, labels
+from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
+from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import is_number
 from raceway.points.store import DAMAGED
 from raceway.points.survey import key_facts
@@ -39,90 +40,22 @@ if TYPE_CHECKING:
 #: Coordinates of the ring, in the order of ``displacement`` and ``stiffness``.
 DOF = ("x", "y", "z", "tilt_y", "tilt_z")
 
-#: Numbers: name -> (unit, words).
-NUMBERS: dict[str, tuple[str, str]] = {
-    "z_real": ("N/m", "real part of the dynamic stiffness Z = F/x"),
-    "z_imag": ("N/m", "imaginary part of the dynamic stiffness Z = F/x, w C"),
-    "equivalent_stiffness": ("N/m", "K = Re Z + m w^2"),
-    "equivalent_damping": ("N s/m", "C = Im Z / w"),
-    "force_amplitude": ("N", "amplitude of the 1x force"),
-    "frequency": ("Hz", "of the 1x line"),
-    "mass": ("kg", "m of K = Re Z + m w^2"),
-    "forward_amplitude": ("m", "forward part of the 1x orbit"),
-    "backward_amplitude": ("m", "backward part of the 1x orbit"),
-    "orbit_major": ("m", "major semi-axis of the 1x orbit"),
-    "orbit_minor": ("m", "minor semi-axis of the 1x orbit"),
-    "residual": ("1", "motion that is not 1x, rms over rms of 1x"),
-    "axial_displacement": ("m", "mean axial displacement"),
-    "kyy_tilts_follow": ("N/m", "radial tangent with tilts that follow as supports.tilt lets them, x and z held"),
-    "peak_ball_load": ("N", "largest load of a ball, of both races"),
-    "peak_ball_load_inner": ("N", "largest load of a ball on the inner race"),
-    "peak_ball_load_outer": ("N", "largest load of a ball on the outer race"),
-    "min_ball_load": ("N", "least load of a ball on the inner race, 0 where one is loose"),
-    "p0": ("Pa", "largest Hertz pressure, of both races"),
-    "p0_inner": ("Pa", "largest Hertz pressure on the inner race"),
-    "p0_outer": ("Pa", "largest Hertz pressure on the outer race"),
-    "error_total": ("1", "estimated relative error of Z"),
-    "error_time_step": ("1", "part of the time step in the relative error of Z"),
-    "error_transient": ("1", "part of the transient in the relative error of Z"),
-    "error_mesh": ("1", "part of the mesh in the relative error of Z"),
-    "error_contact": ("1", "part of the contact law in the relative error of Z"),
-    "error_identification": ("1", "part of the identification in the relative error of Z"),
-    "error_model_bound": ("1", "upper estimate of the change of kyy by hypotheses of [kinematics] left at their defaults"),
-}
-#: Arrays over ``dof``: name -> (dimensions, unit, words).
-ARRAYS: dict[str, tuple[tuple[str, ...], str, str]] = {
-    "displacement": (("dof",), "m, rad", "equilibrium under the constant loads"),
-    "stiffness": (
-        ("dof", "dof2"),
-        "N/m, N/rad, N m/m, N m/rad",
-        "tangent of the contacts at the equilibrium: kyy is y, y, tilts held",
-    ),
-    "damping": (("dof", "dof2"), "N s/m, N s/rad, N m s/m, N m s/rad", "damping of the contacts at the equilibrium"),
-}
+#: Arrays over ``DOF`` among the columns.
+_ARRAYS = {name: quantity for name, quantity in COLUMNS.items() if quantity.dims}
+_NUMBERS = [name for name in COLUMNS if name not in _ARRAYS]
+_WARNINGS = Quantity("warnings", "1", "number of warnings of the point: their words are in the JSON and the CSV")
 
 
 def values_of(result: Result) -> Tables:
     """Plain numbers and lists of a result; what it does not have is absent."""
-    from raceway.pipeline.plausible import closed_bound
-
-    found, still = result.identification, result.equilibrium
     values: Tables = {}
-    if found is not None:
-        z = found.dynamic_stiffness
-        values |= {
-            "z_real": z.real,
-            "z_imag": z.imag,
-            "frequency": found.frequency_hz,
-            "mass": found.mass_used,
-            **{name: getattr(found, name) for name in NUMBERS if hasattr(found, name)},
-        }
-    values |= {"kyy_tilts_follow": result.kyy_tilts_follow, **_loads(result)}
-    values |= {f"error_{name}": size for name, size in result.error.items() if name not in ("how", "unresolved")}
-    values["error_model_bound"] = closed_bound(result.model, still)
-    values = {name: float(value) for name, value in values.items() if value is not None and math.isfinite(value)}
-    return values | {name: getattr(still, name).tolist() for name in ARRAYS}
-
-
-def _loads(result: Result) -> Tables:
-    """Of the motion where there is one, else of the equilibrium."""
-    from raceway.pipeline.equilibrium import largest_contacts, motion_table, pressures
-
-    model, z = result.model, result.model.system.ball_count
-    if result.simulation is not None:
-        record = result.simulation.record
-        told, loads = motion_table(model, record), record.contact_force
-    else:
-        loads = result.equilibrium.contact_force
-        told = largest_contacts(loads, pressures(model, loads), "peak")
-    return {
-        "axial_displacement": told.get("axial_displacement_m", result.equilibrium.displacement[0]),
-        "min_ball_load": loads[..., :z].min(),
-        "peak_ball_load": told["peak_ball_load_n"],
-        "p0": told["peak_pressure_pa"],
-        **{f"peak_ball_load_{race}": told[f"peak_ball_load_{race}_n"] for race in ("inner", "outer")},
-        **{f"p0_{race}": told[f"peak_pressure_{race}_pa"] for race in ("inner", "outer")},
-    }
+    for name, quantity in (COLUMNS | named(ERROR_BODIES)).items():
+        value = quantity.of(result)
+        if quantity.dims:
+            values[name] = value.tolist()
+        elif value is not None and math.isfinite(value):
+            values[name] = float(value)
+    return values
 
 
 RESULTS, TABLE = "results.nc", "results.csv"
@@ -148,7 +81,7 @@ class Rows(Protocol):
 
 
 @attrs.frozen
-class Table:
+class _Table:
     """The labelled results of a store, before any library of arrays has them.
 
     Attributes
@@ -170,23 +103,21 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     RacewayError
         xarray is missing.
     """
-    found = table_of(store, registry)
+    found = _table_of(store, registry)
     return labelled_dataset(found.variables, found.coordinates, found.attributes)
 
 
-def table_of(store: Rows, registry: Registry | None = None) -> Table:
+def _table_of(store: Rows, registry: Registry | None = None) -> _Table:
     """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
     dims = design.keys if design.axes else ("point",)
     columns, status, warnings, damaged = _columns(store)
     variables: dict[str, Labelled] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
     if columns:
-        about = labels("warnings", "1", "number of warnings of the point: their words are in the JSON and the CSV")
-        variables["warnings"] = (dims, warnings.reshape(design.shape), about)
+        variables[_WARNINGS.name] = (dims, warnings.reshape(design.shape), _WARNINGS.labels)
     for name, column in columns.items():
-        more, unit, words = ARRAYS[name] if name in ARRAYS else ((), *NUMBERS[name])
-        shape = (*design.shape, *column.shape[1:])
-        variables[name] = ((*dims, *more), column.reshape(shape), labels(name, unit, words))
+        shape, quantity = (*design.shape, *column.shape[1:]), COLUMNS[name]
+        variables[name] = ((*dims, *quantity.dims), column.reshape(shape), quantity.labels)
     attributes = {
         "title": store.title,
         "scene": json.dumps(store.scene),
@@ -203,7 +134,7 @@ def table_of(store: Rows, registry: Registry | None = None) -> Table:
             f"`{store.path}`: {damaged} of {design.size} rows are damaged and read as waiting; --resume computes them again",
             stacklevel=3,
         )
-    return Table(variables, _coordinates(store, registry or default_registry()), attributes)
+    return _Table(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
 def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
@@ -219,8 +150,7 @@ def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray
             if name not in found:
                 found[name] = np.full((size, *np.shape(value)), np.nan)
             found[name][number] = value
-    order = [*NUMBERS, *ARRAYS]
-    return {name: found[name] for name in order if name in found}, status, warnings, damaged
+    return {name: found[name] for name in COLUMNS if name in found}, status, warnings, damaged
 
 
 def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
@@ -260,7 +190,7 @@ def write_netcdf(store: Rows) -> Path:
         import h5netcdf
     except ImportError as why:
         raise RacewayError(f"NetCDF needs h5netcdf and h5py: {extra('sweep')} ({why})") from None
-    table, memory = table_of(store), io.BytesIO()
+    table, memory = _table_of(store), io.BytesIO()
     # In memory first: the HDF5 library takes the whole process down where a disk is full.
     with h5netcdf.File(memory, "w") as file:
         file.attrs.update(table.attributes)
@@ -301,12 +231,12 @@ def write_csv(store: Rows, path: Path) -> Path:
 
 
 def _lines(store: Rows) -> Iterator[list[object]]:
-    places = {name: list(product(DOF, repeat=len(dims))) for name, (dims, _, _) in ARRAYS.items()}
-    heads = [f"{name}_{'_'.join(place)}" for name in ARRAYS for place in places[name]]
-    yield [*store.design.keys, "status", "reason", "warnings", *NUMBERS, *heads]
+    places = {name: list(product(DOF, repeat=len(quantity.dims))) for name, quantity in _ARRAYS.items()}
+    heads = [f"{name}_{'_'.join(place)}" for name in _ARRAYS for place in places[name]]
+    yield [*store.design.keys, "status", "reason", "warnings", *_NUMBERS, *heads]
     for row in store.rows():
         values = row["values"]
-        arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in ARRAYS]
+        arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in _ARRAYS]
         point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
         words = [row["status"], row["reason"], "; ".join(row["warnings"])]
-        yield [*point, *words, *(values.get(n, "") for n in NUMBERS), *(v for a in arrays for v in a)]
+        yield [*point, *words, *(values.get(n, "") for n in _NUMBERS), *(v for a in arrays for v in a)]

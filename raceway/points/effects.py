@@ -27,12 +27,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import combinations, product
-from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.framework.doors import member
+from raceway.out.quantities import C_ERROR, KXX, KYY, RESIDUAL, C, K, Quantity, X, Z, named
 from raceway.points.axes import Axis, shown
 from raceway.storage.tables import Tables
 
@@ -172,36 +172,12 @@ def trend(values: Sequence[float], errors: Sequence[float]) -> str:
     return {(False, False): "level", (True, False): "rises", (False, True): "falls", (True, True): "not monotonic"}[up, down]
 
 
-@attrs.frozen
-class Quantity:
-    """What is explained: label, its place in result.json, unit on the screen with the factor to it, SI unit and words."""
-
-    label: str
-    path: tuple[Any, ...]
-    unit: str
-    scale: float
-    si: str
-    words: str
-
-
-#: Of runs with an excitation, and of static ones.
-MOVING = {
-    "equivalent_stiffness": Quantity(
-        "K(w)", ("identification", "equivalent_stiffness"), "N/µm", 1e-6, "N/m", "K = Re Z + m w^2"
-    ),
-    "dynamic_stiffness": Quantity(
-        "|Z|", ("identification", "dynamic_stiffness", "abs"), "N/µm", 1e-6, "N/m", "size of Z = F/x"
-    ),
-}
-STATIC = {
-    "kxx": Quantity("kxx", ("equilibrium", "stiffness", 0, 0), "N/µm", 1e-6, "N/m", "axial tangent stiffness, tilts held"),
-    "kyy": Quantity("kyy", ("equilibrium", "stiffness", 1, 1), "N/µm", 1e-6, "N/m", "radial tangent stiffness, tilts held"),
-    "x": Quantity("x", ("equilibrium", "displacement", "x"), "µm", 1e6, "m", "axial displacement"),
-}
+#: What is explained of runs with an excitation, and of static ones.
+MOVING, STATIC = named(K, Z), named(KXX, KYY, X)
 #: A row whose error is as large as its value, or whose motion is less 1x than other, is no basis for an explanation.
-MOST_ERROR, MOST_RESIDUAL = 1.0, 1.0
+_MOST_ERROR, _MOST_RESIDUAL = 1.0, 1.0
 #: Terms of third and higher order are listed from this size on.
-LEAST_HIGH_ORDER = 0.005
+_LEAST_HIGH_ORDER = 0.005
 
 
 @attrs.frozen
@@ -222,27 +198,22 @@ class Row:
 
     def value(self, quantity: str) -> float | None:
         """One of ``quantities`` in SI; None where the run has none."""
-        value: Any = self.result
-        for step in (MOVING | STATIC)[quantity].path:
-            if value is not None:
-                value = value[step] if isinstance(value, list) else value.get(step)
-        return value
+        value = (MOVING | STATIC)[quantity].of(self.result)
+        return None if value is None else float(value)
 
     @property
     def damping(self) -> float | None:
         """C [N s/m]; None where the run has none, and where it is below its error.  Of a band the low end."""
-        found = self.result.get("identification") or {}
-        value, error = found.get("equivalent_damping"), found.get("equivalent_damping_error")
+        value, error = C.of(self.result), C_ERROR.of(self.result)
         return None if value is None or (error is not None and abs(value) <= error) else float(value)
 
     @property
     def damping_words(self) -> str:
         """C [N s/m] in short: one number, both ends of a band, or that it is not resolved."""
-        found = self.result.get("identification") or {}
-        if found.get("equivalent_damping") is None:
+        if C.of(self.result) is None:
             return ""
-        if found.get("band"):
-            return " to ".join(f"{value:.4g}" for value in found["band"]["equivalent_damping"])
+        if band := self.result["identification"].get("band"):
+            return " to ".join(f"{value:.4g}" for value in band[C.name])
         return "not resolved" if self.damping is None else f"{self.damping:.4g}"
 
     @property
@@ -252,7 +223,7 @@ class Row:
 
     def error_of(self, quantity: str) -> float:
         """Relative error of a quantity: of K that of Z over its own size, since m w^2 has none; 0 of static ones, solved to rounding."""
-        own, z = self.value(quantity), self.value("dynamic_stiffness")
+        own, z = self.value(quantity), self.value(Z.name)
         return self.error * (z or 0.0) / own if own and quantity in MOVING else 0.0
 
     @property
@@ -267,11 +238,11 @@ class Row:
             return f"{self.result['status']}: {self.result['reason']}"
         for name, quantity in self.quantities.items():
             value = self.value(name)
-            if value is None or not math.isfinite(value) or (value <= 0.0 and quantity.si == "N/m"):
-                return f"{quantity.label} is not positive"
-            if self.error_of(name) >= MOST_ERROR:
-                return f"the estimated error of {quantity.label} is as large as its value"
-        if ((self.result.get("identification") or {}).get("residual") or 0.0) > MOST_RESIDUAL:
+            if value is None or not math.isfinite(value) or (value <= 0.0 and quantity.unit == K.unit):
+                return f"{quantity.symbol} is not positive"
+            if self.error_of(name) >= _MOST_ERROR:
+                return f"the estimated error of {quantity.symbol} is as large as its value"
+        if (RESIDUAL.of(self.result) or 0.0) > _MOST_RESIDUAL:
             return "the motion is larger at other frequencies than at the excitation's"
         return None
 
@@ -354,7 +325,7 @@ class Findings:
         found = []
         for quantity, factorial in self.factorials.items():
             for effect in factorial.effects:
-                if len(effect.term) <= 2 or abs(effect.log_change) >= LEAST_HIGH_ORDER:
+                if len(effect.term) <= 2 or abs(effect.log_change) >= _LEAST_HIGH_ORDER:
                     plain = attrs.asdict(effect)
                     found.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
         return found
@@ -399,7 +370,7 @@ def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> Table
 
 
 #: A change of less than half a percent "hardly matters".
-HARDLY = math.log(1.005)
+_HARDLY = math.log(1.005)
 _MOST_INTERACTIONS = 5
 
 
@@ -452,13 +423,13 @@ def _settings(point: Tables) -> str:
 def _courses(comparison: Findings) -> list[str]:
     """How the first quantity runs along each axis of numbers, at each value of the axis that changes this most."""
     quantity, factorial = next(iter(comparison.factorials.items()))
-    label, words = comparison.quantities[quantity].label, []
+    label, words = comparison.quantities[quantity].symbol, []
     for axis in (axis for axis in comparison.varied if axis.numeric and axis.key in factorial.keys):
         trends = [
             t for t in comparison.trends if (t["axis"], t["quantity"]) == (axis.key, quantity) and t["percent"] is not None
         ]
         changes = [math.log1p(t["percent"] / 100.0) for t in trends]
-        if len(trends) < 2 or max(changes) - min(changes) < HARDLY:
+        if len(trends) < 2 or max(changes) - min(changes) < _HARDLY:
             continue
         others = [key for key in factorial.keys if key != axis.key]
         partner = comparison.axis(max(others, key=lambda key: _together(factorial, axis.key, key)))
@@ -490,7 +461,7 @@ def _inertia(comparison: Findings) -> list[str]:
     force = [m * (2.0 * math.pi * run["frequency_hz"]) ** 2 for m, run in zip(masses, runs, strict=True)]
     mass = f"{min(masses):.3f}" if max(masses) - min(masses) < 5e-4 else f"{min(masses):.3f} to {max(masses):.3f}"
     return [
-        f"|Z| is K(w) less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
+        f"|Z| is K less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
     ]
 
 
@@ -539,15 +510,15 @@ def _why_no_effects(comparison: Findings) -> str:
 
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     factorial, about = comparison.factorials[quantity], comparison.quantities[quantity]
-    label, unit = about.label, about.unit
-    values = [about.scale * (row.value(quantity) or 0.0) for row in comparison.rows if row.doubt is None]
+    label, unit = about.symbol, about.read_unit
+    values = [about.read(row.value(quantity) or 0.0) for row in comparison.rows if row.doubt is None]
     beyond = {key: span for key in factorial.keys if (span := _between(comparison, quantity, comparison.axis(key)))}
     main = [e for e in factorial.effects if len(e.term) == 1]
     parts, hidden, weak, inert = [], [], [], []
     largest = factorial.effects[0]
     for effect in sorted(main, key=lambda e: -max(map(abs, (e.log_change, *beyond.get(e.term[0], ("", []))[1])))):
         key = effect.term[0]
-        if key in beyond or (effect.resolved and abs(effect.log_change) >= HARDLY):
+        if key in beyond or (effect.resolved and abs(effect.log_change) >= _HARDLY):
             if key in beyond:
                 share = f"; to {beyond[key][0]} by {_span(beyond[key][1])}"
             elif beyond:  # shares are those of the ends
@@ -557,11 +528,11 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             else:
                 share = f"; {100.0 * effect.share:.3g} % of the variation"
             mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
-            change = f"{percent(effect.log_change)} ({about.scale * (effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
+            change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
             parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
-        elif abs(effect.log_change) + factorial.error >= HARDLY and not effect.resolved:
+        elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
             hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
-        elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < HARDLY:
+        elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < _HARDLY:
             inert.append(f"{key} ({percent(effect.log_change)})")
         else:
             weak.append(f"{key} ({percent(effect.log_change)})")
@@ -589,7 +560,7 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
             others = repr([number for key, number in row.point.items() if key != axis.key])
             lines.setdefault(others, {})[repr(row.point[axis.key])] = math.log(value)
     first, *amid, last = map(repr, axis.values)
-    farthest, least = None, HARDLY + comparison.factorials[quantity].error
+    farthest, least = None, _HARDLY + comparison.factorials[quantity].error
     for value, name in zip(axis.values[1:-1], amid, strict=True):
         changes = [
             (one[name] - one[first], one[last] - one[first]) for one in lines.values() if {first, name, last} <= one.keys()
@@ -619,8 +590,8 @@ def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str
 
 
 def _interactions(comparison: Findings, quantity: str) -> list[str]:
-    factorial, label = comparison.factorials[quantity], comparison.quantities[quantity].label
-    large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= HARDLY and e.resolved]
+    factorial, label = comparison.factorials[quantity], comparison.quantities[quantity].symbol
+    large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     words = []
     for effect in large[:_MOST_INTERACTIONS]:
         given, moved = _ordered(comparison, factorial, effect)
@@ -629,13 +600,13 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
             f"{label}, interaction of {given.key} and {moved.key}: with {given.key} = {shown(given.ends[0])}, "
             f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
         )
-    high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= HARDLY and e.resolved]
+    high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     if high:
         terms = "; ".join(f"{' x '.join(e.term)} ({percent(e.log_change)})" for e in high[:3])
         words.append(f"{label}, three or more axes together: {terms}.")
     if not large and not high and len(factorial.keys) > 1:
         most = max(abs(e.log_change) for e in factorial.effects if len(e.term) > 1)
-        if most + factorial.error < HARDLY:
+        if most + factorial.error < _HARDLY:
             words.append(f"{label} has no interaction above 0.5 %: the axes act independently.")
         else:
             words.append(

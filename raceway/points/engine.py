@@ -25,6 +25,7 @@ from raceway import __version__
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Answer, Batch, Lost, Refused
 from raceway.framework.registry import Registry
+from raceway.out.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
 from raceway.points.store import RowStore, program_key, row_key
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
@@ -60,7 +61,7 @@ def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
     }
 
 
-def used_by(wanted: ReadTables) -> list[tuple[str, str]]:
+def _used_by(wanted: ReadTables) -> list[tuple[str, str]]:
     """(kind, name) of the plug-ins of an identity."""
     return [(kind, name) for kind, _, name in (text.partition(":") for text in wanted["plugins"])]
 
@@ -116,7 +117,7 @@ class Work:
         mark = (json.dumps(self.wanted, sort_keys=True), *self.plugins)
         if mark not in _FAULTS:
             try:
-                there = identity(registry_of(self.plugins), used_by(self.wanted))
+                there = identity(registry_of(self.plugins), _used_by(self.wanted))
                 _FAULTS[mark] = "; ".join(differences(self.wanted, there)) or None
             except PluginError as why:
                 _FAULTS[mark] = str(why)
@@ -249,6 +250,7 @@ def processor_time() -> float:
 #: No further repeat is begun once a setting has taken this long [s].
 PATIENCE_S = 10.0
 _PROCESS = Path("/proc/self")
+_COMPARED = named(Z_REAL, Z_IMAG, K, AXIAL_DISPLACEMENT, PEAK_BALL_LOAD, P0)
 
 
 def quantities(result: Tables) -> dict[str, float]:
@@ -258,17 +260,7 @@ def quantities(result: Tables) -> dict[str, float]:
     -------
     quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N] and pressure [Pa], of both races
     """
-    found: dict[str, float] = {}
-    known, motion = result["identification"], result["motion"]
-    if known is not None:
-        z = known["dynamic_stiffness"]
-        found |= {"z_real": z["real"], "z_imag": z["imag"], "equivalent_stiffness": known["equivalent_stiffness"]}
-    if motion is not None:
-        found |= {"axial_displacement": motion["axial_displacement_m"], "peak_ball_load": motion["peak_ball_load_n"]}
-        return found | {"p0": motion["peak_pressure_pa"]}
-    still = result["equilibrium"]
-    found |= {"axial_displacement": still["displacement"]["x"], "peak_ball_load": still["largest_ball_load_n"]}
-    return found | {"p0": still["largest_pressure_pa"]}
+    return {name: value for name, quantity in _COMPARED.items() if (value := quantity.of(result)) is not None}
 
 
 def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
@@ -300,7 +292,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
 
     begun, compiling = time.perf_counter(), 0.0
     runs: list[dict[str, float]] = []
-    own_peak, cold = reset_peak(), True
+    own_peak, cold = _reset_peak(), True
     while len(runs) < repeats and (not runs or time.perf_counter() - begun - compiling < PATIENCE_S):
         cpu = time.process_time()
         try:
@@ -318,7 +310,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         cost = result["cost"]
         compiling += cost["compile_s"]
         if cold and cost["compile_s"] > 0.0:
-            own_peak, cold = reset_peak(), False
+            own_peak, cold = _reset_peak(), False
             continue
         times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
@@ -339,7 +331,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
             "compile_s": compiling,
             "steps": cost["steps"],
             "iterations": cost["newton_iterations"],
-            **peak_memory("setting", own_peak),
+            **_peak_memory("setting", own_peak),
             "repeats": len(runs),
         },
     }
@@ -356,22 +348,22 @@ class Clocks:
     def __init__(self) -> None:
         from raceway.core.jit import working_process_time
 
-        self._counted_anew, self._clock = reset_peak(), working_process_time
+        self._counted_anew, self._clock = _reset_peak(), working_process_time
         self._cpu, self._wall = self._clock(), time.perf_counter()
 
     def read(self) -> tuple[float, float, Tables]:
-        """Processor time without what kernels took to compile, and wall time since then [s]; ``peak_memory`` of the run."""
-        return self._clock() - self._cpu, time.perf_counter() - self._wall, peak_memory("run", self._counted_anew)
+        """Processor time without what kernels took to compile, and wall time since then [s]; ``_peak_memory`` of the run."""
+        return self._clock() - self._cpu, time.perf_counter() - self._wall, _peak_memory("run", self._counted_anew)
 
 
-def peak_memory(counted: str, anew: bool) -> Tables:
+def _peak_memory(counted: str, anew: bool) -> Tables:
     """Peak of memory of this process [bytes], and whose it is: of what is ``counted`` where the count began ``anew`` with it."""
     scale = 1 if sys.platform == "darwin" else 1024
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale
     return {"peak_memory_bytes": peak, "peak_memory_of": counted if anew else "process so far"}
 
 
-def reset_peak() -> bool:
+def _reset_peak() -> bool:
     """Let the system count the peak of memory of this process anew (Linux); whether it does."""
     try:
         (_PROCESS / "clear_refs").write_bytes(b"5")

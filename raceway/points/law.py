@@ -10,9 +10,9 @@ contacts.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -24,10 +24,7 @@ from raceway.core.ring.system import compiled
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.table import sections
-from raceway.out.wrapping import Words
+from raceway.framework.shown import Fact, Shown
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.plan import make_plan
@@ -43,14 +40,14 @@ if TYPE_CHECKING:
 
 #: The bearing of the article under its load, where no scene is given, and the frequency of its cycle [Hz].
 BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-FREQUENCY = 200.0
+_FREQUENCY = 200.0
 RACES = ("inner", "outer")
 #: Ends and points of the curves, over the elastic approach of the equilibrium: from an open contact to some three times Hertz' load.
 _FIRST, _LAST, _POINTS = -0.2, 2.0, 111
 #: Approaches of the table over that of the equilibrium.
 _SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 #: Samples per period, and periods of a law with memory, of which the last is taken: by then it has forgotten how the motion began.
-SAMPLES, PERIODS = 720, 4
+SAMPLES, _PERIODS = 720, 4
 #: Of a mean of so many samples, over the largest force.
 _ROUNDING = 1e-13
 #: Colours of the picture.
@@ -143,7 +140,7 @@ class Cycle:
 
 
 @attrs.frozen(eq=False, repr=False)
-class LawCurves(Answer):
+class LawCurves(Shown):
     """What a contact law does with one contact of a bearing, beside Hertz' law.
 
     Attributes
@@ -163,8 +160,6 @@ class LawCurves(Answer):
     >>> [round(1e-6 * curves.cycle.stiffness, 1), round(curves.cycle.damping, 1)]  # N/um, N s/m
     [86.7, 300.0]
     """
-
-    stem: ClassVar[str] = "law"
 
     law: str
     title: str
@@ -192,41 +187,17 @@ class LawCurves(Answer):
             "cycle": {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in cycle.items()},
         }
 
-    def draw(self) -> Figure:
-        """Force, stiffness, damping and the cycle's loop."""
-        return _draw(self)
+    def picture(self, path: str | Path) -> Path:
+        """Draw force, stiffness, damping and the cycle's loop as a PNG file.
 
-    def report(self) -> Iterator[Part]:
-        """The contact, the law beside Hertz', the cycle."""
-        contact, loop = self.contact, self.cycle
-        load = f"{contact.load:.4g} N at an approach of {1e6 * contact.approach:.4g} µm"
-        yield Words(f"{self.law}: {contact.race} contact of ball {contact.ball}, {load}", "bold")
-        yield Words(self.title, "dim")
-        if contact.reach > 0.0:
-            yield f"it begins to carry at a gap of {1e6 * contact.reach:.4g} µm"
-        yield [
-            {
-                "approach\nµm": f"{1e6 * row['approach']:.4g}",
-                "force\nN": f"{row['force']:.5g}",
-                "F over\nHertz'": _ratio(row["force_ratio"]),
-                "stiffness\nN/µm": f"{1e-6 * row['stiffness']:.5g}",
-                "k over\nHertz'": _ratio(row["stiffness_ratio"]),
-                "damping\nN s/m": f"{row['damping']:.4g}",
-            }
-            for row in self.rows
-        ]
-        yield sections(
-            [
-                ("Cycle", "", ""),
-                ("amplitude", f"{1e6 * loop.amplitude:.4g} µm", f"about the equilibrium, at {loop.frequency:.4g} Hz"),
-                ("stiffness K", f"{1e-6 * loop.stiffness:.5g} N/µm", "in phase with the approach"),
-                ("damping C", f"{loop.damping:.4g} N s/m", "in phase with its rate"),
-                ("energy lost", f"{1e6 * loop.energy:.4g} µJ", f"a cycle; {self.damping_origin}"),
-                ("loss factor", _ratio(loop.loss_factor), "w C / K"),
-            ]
-        )
-        if loop.opens:
-            yield "the contact opens on the way"
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder that cannot be written.
+        """
+        from raceway.plugins.pictures import save_figure
+
+        return save_figure(draw(self), Path(path))
 
     def _shown(self) -> tuple[str, list[Fact]]:
         c, loop = self.contact, self.cycle
@@ -266,7 +237,7 @@ def law(
     Returns
     -------
     LawCurves
-        ``approach``, ``force``, ``stiffness``, ``damping``, ``hertz_force``, ``cycle``; ``picture(folder)``
+        ``approach``, ``force``, ``stiffness``, ``damping``, ``hertz_force``, ``cycle``; ``picture(path)``
 
     Raises
     ------
@@ -294,8 +265,8 @@ def law(
         raise SceneError.at("contact.damping", "band", rule)
     if frequency is None:
         period = None if read.excitation is None else read.excitation.period_s
-        frequency = FREQUENCY if period is None else 1.0 / period
-    contact = contact_of(read, race, ball)
+        frequency = _FREQUENCY if period is None else 1.0 / period
+    contact = _contact_of(read, race, ball)
     elastic = contact.approach + contact.reach
     size = amplitude * elastic
     approach = np.linspace(_FIRST, _LAST, _POINTS) * elastic - contact.reach
@@ -308,7 +279,7 @@ def law(
     )  # fmt: skip
 
 
-def contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
+def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
     """A contact of a scene with rigid bodies, in its equilibrium; arguments and errors as of ``law``."""
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
@@ -342,7 +313,7 @@ def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
     remembers = contact.system.law_state.size > 0
     step = Increment(0.0, 0.0, np.zeros_like(contact.system.law_state))  # no time has passed before the first sample
     force = np.empty(SAMPLES)
-    for _ in range(PERIODS if remembers else 1):
+    for _ in range(_PERIODS if remembers else 1):
         for k in range(SAMPLES):
             force[k], _, _, memory = contact.at(float(approach[k]), float(rate[k]), step)
             step = attrs.evolve(step, dt=1.0 / (frequency * SAMPLES), memory=memory)
@@ -354,13 +325,9 @@ def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
     )  # fmt: skip
 
 
-def _ratio(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
-
-
-def _draw(curves: LawCurves) -> Figure:
+def draw(curves: LawCurves) -> Figure:
     """Four panels over the approach: force, the loop of the cycle, stiffness and damping."""
-    from raceway.out.picture import new_figure
+    from raceway.plugins.pictures import new_figure
 
     figure = new_figure(9.6, 7.2)
     (force, loop), (stiffness, damping) = figure.subplots(2, 2)

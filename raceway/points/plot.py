@@ -15,8 +15,8 @@ import numpy as np
 
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.framework.shown import read_in
-from raceway.out.picture import new_figure
+from raceway.out.quantities import AXIAL_DISPLACEMENT, STIFFNESS, Z_REAL, K, entry_unit, read_in
+from raceway.plugins.pictures import new_figure
 from raceway.points.axes import is_number, shown
 from raceway.points.axes import shown as _text
 from raceway.scene.changes import parse_value
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 #: The dimension of a sweep over a list of points; a grid has one dimension for each key instead.
 LIST = "point"
-DONE = "done"
+_DONE = "done"
 #: Numbers of an axis that differ by less are one value [relative].
 _SAME = 1e-9
 _SHOWN = 8
@@ -224,7 +224,7 @@ def _unfinished(dataset: Dataset) -> dict[str, int]:
     if "status" not in dataset:
         return {}
     states, counts = np.unique(dataset["status"].values.astype(str), return_counts=True)
-    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != DONE}
+    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != _DONE}
 
 
 def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
@@ -465,7 +465,7 @@ def _numeric(values: Iterable[object]) -> bool:
 
 
 #: First that is there: what a sweep is made for, then what a static scene has.
-_DEFAULTS = ("equivalent_stiffness", "z_real", "stiffness:y,y", "axial_displacement")
+_DEFAULTS = (K.name, Z_REAL.name, f"{STIFFNESS.name}:y,y", AXIAL_DISPLACEMENT.name)
 _FIRST_X = ("excitation.speed_rpm", "kinematics.spin_speed_rpm")
 _MOST_COLOURS = 8
 _MOST_PANELS = 6
@@ -584,20 +584,8 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
     data = data.copy()  # its attributes change
     if own:
         data.name = text
-        data.attrs["units"] = unit_of(name, str(data.attrs.get("units", "")), given)
+        data.attrs["units"] = entry_unit(str(data.attrs.get("units", "")), given)
     return data, text
-
-
-def unit_of(name: str, unit: str, labels: Sequence[str]) -> str:
-    """The unit of one entry where a variable mixes translations and tilts."""
-    tilts = sum(label.startswith("tilt") for label in labels)
-    if name == "stiffness" and len(labels) == 2:
-        if not tilts:
-            return "N/m"
-        return "N m/rad" if tilts == 2 else ("N/rad" if labels[1].startswith("tilt") else "N m/m")
-    if name == "displacement":
-        return "rad" if tilts else "m"
-    return unit
 
 
 def names(dataset: Dataset) -> list[str]:

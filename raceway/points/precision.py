@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import Registry, default_registry, registry_with
-from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.picture import given_axes
+from raceway.framework.shown import Fact, Shown
 from raceway.out.progress import ShowProgress, telling
-from raceway.out.wrapping import Words
-from raceway.plugins.labelled import labelled_dataset, labels
+from raceway.out.quantities import PRECISION
+from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.pictures import given_axes
 from raceway.points.axes import shown
 from raceway.points.engine import measured_once
 from raceway.points.settings import (
@@ -43,7 +42,6 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from xarray import Dataset
 
     from raceway.pipeline.simulate import OnProgress
@@ -55,12 +53,12 @@ EXACT = 10.0
 #: Errors below this many times the reference's bound say nothing about an order.
 _ORDER_MARGIN = 5.0
 #: Axes along which errors have an order: the exponent of 1 / value (True) or of the value itself.
-LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
+_LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
 Row = Tables
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Precision(Answer):
+class Precision(Shown):
     """Findings of a precision study.
 
     Attributes
@@ -68,7 +66,7 @@ class Precision(Answer):
     rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
     references : by physics; ``base`` is the physics that the front and the other models refer to
     left_out : (family, values, reason) of the default design
-    fault : why rows could not be kept on disk;  named_reference : whether the user named the reference
+    fault : why rows could not be kept on disk
 
     Examples
     --------
@@ -80,8 +78,6 @@ class Precision(Answer):
     True
     """
 
-    stem: ClassVar[str] = "precision"
-
     title: str
     rows: tuple[Row, ...]
     references: dict[str, Reference]
@@ -89,7 +85,6 @@ class Precision(Answer):
     left_out: tuple[tuple[str, Tables, str], ...]
     notes: tuple[str, ...] = ()
     fault: RacewayError | None = None
-    named_reference: bool = False
 
     @cached_property
     def judged(self) -> list[Row]:
@@ -119,7 +114,7 @@ class Precision(Answer):
     def _orders(self, rows: list[Row]) -> dict[int, float]:
         """Order between each row and the next coarser one of its ladder."""
         found: dict[int, float] = {}
-        for key, inverse in LADDERS.items():
+        for key, inverse in _LADDERS.items():
             for places in _ladders(rows, key):
                 places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
                 for coarse, fine in zip(places, places[1:], strict=False):
@@ -206,10 +201,12 @@ class Precision(Answer):
                 lines.append(f"no setting is known to be within {percent}")
             else:
                 row = self.judged[place]
-                lines.append(f"cheapest within {percent}: {words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)")
+                lines.append(
+                    f"cheapest within {percent}: {_words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)"
+                )
         for model in self.models:
             if not model["base"] and model["difference"] is not None:
-                lines.append(f"model error: {words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
+                lines.append(f"model error: {_words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
         return [*lines, *self.notes]
 
     def to_dict(self) -> Tables:
@@ -281,11 +278,11 @@ class Precision(Answer):
         for threshold, place in self.cheapest(self.base).items():
             row = None if place is None else self.judged[place]
             name, value = f"cheapest within {100.0 * float(threshold):g} %", "none" if row is None else _time(row)
-            facts.append((name, value, "" if row is None else words_of(row["setting"])))
+            facts.append((name, value, "" if row is None else _words_of(row["setting"])))
         front = set(self.front(self.base))
         rows = [
             (
-                words_of(row["setting"]),
+                _words_of(row["setting"]),
                 "-" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}",
                 ("on the front, " if place in front else "")
                 + (f"{1e3 * row['cost']['time_s']:.3g} ms" if row["cost"] else row["status"]),
@@ -302,41 +299,17 @@ class Precision(Answer):
         front = set(self.front(self.base))
         return [_screen_row(row, place in front) for place, row in enumerate(self.judged)]
 
-    def texts(self, pictures: bool) -> dict[str, str]:
-        """precision.md."""
-        from raceway.points.precision_picture import page
+    def write(self, folder: Path, pictures: bool) -> list[Path]:
+        """precision.json, precision.md and, if wanted, precision.png.
 
-        return {"md": page(self.to_dict(), pictures)}
+        Raises
+        ------
+        RacewayError
+            A folder or disk that cannot be written, or matplotlib missing.
+        """
+        from raceway.points.precision_picture import PrecisionReport
 
-    def draw(self) -> Figure:
-        """Error against run time."""
-        from raceway.points.precision_picture import draw
-
-        return draw(self.to_dict())
-
-    def report(self) -> Iterator[Part]:
-        """A line for each setting, and what they come to in words."""
-        rows = self.table()
-        yield Words(self.title, "bold")
-        # A column of blanks would cost the settings their room.
-        yield [{name: row[name] for name in rows[0] if any(other[name] for other in rows)} for row in rows]
-        yield Words("* on the front; ~ known to the reference's bound only", "dim")
-        yield from self.words
-
-    def failure(self) -> RacewayError | None:
-        """Rows that could not be kept, a reference that is no better than they are, or no row that converged."""
-        if self.fault is not None:
-            return self.fault
-        rows = self.judged
-        errors = [row for row in rows if row["error"] is not None]
-        if self.named_reference and errors and all(row["at_bound"] for row in errors):
-            message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
-            return SceneError.at("reference", None, message)
-        if self.converged:
-            return None
-        reasons = [row["reason"] for row in rows if row["reason"]]
-        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
-        return ConvergenceError(f"no setting converged{why}")
+        return PrecisionReport(picture=pictures).write(self.to_dict(), folder)
 
 
 def _time(row: Row) -> str:
@@ -371,7 +344,7 @@ def _ladders(rows: list[Row], key: str) -> list[list[int]]:
     return [places for places in found.values() if len(places) > 1]
 
 
-def words_of(setting: Tables) -> str:
+def _words_of(setting: Tables) -> str:
     """A setting for people: the keys' last parts, or what kind of table it is."""
 
     def word(key: str, value: object) -> str:
@@ -389,7 +362,7 @@ def _text(threshold: float) -> str:
 
 def _screen_row(row: Row, on_front: bool) -> dict[str, str]:
     cost = row["cost"]
-    text = {"setting": ("* " if on_front else "  ") + words_of(row["setting"])}
+    text = {"setting": ("* " if on_front else "  ") + _words_of(row["setting"])}
     text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
     text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
     text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
@@ -409,20 +382,10 @@ def labelled(found: Precision) -> Dataset:
         xarray is missing.
     """
     content = found.to_dict()
-    about = {
-        "value": ("N/m", "size of Z, or of the tangent where nothing is identified"),
-        "error": ("1", "relative error against the reference of the row's model"),
-        "own_error": ("1", "relative error that the run estimates itself"),
-        "time_s": ("s", "of the fastest repeat, compiling apart"),
-    }
     rows = content["rows"]
     variables = {
-        name: (
-            "setting",
-            np.array([np.nan if row[name] is None else row[name] for row in rows], dtype=float),
-            labels(name, unit, words),
-        )
-        for name, (unit, words) in about.items()
+        quantity.name: ("setting", np.array([row[quantity.name] for row in rows], dtype=float), quantity.labels)
+        for quantity in PRECISION
     }
     names = np.array([text["setting"].lstrip("* ") for text in found.table()], dtype=object)
     more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
@@ -431,7 +394,7 @@ def labelled(found: Precision) -> Dataset:
 
 #: Runs of each setting, and the longest predicted run [s].
 REPEATS = 3
-LIMIT_S = 30.0
+_LIMIT_S = 30.0
 
 
 def measure_settings(
@@ -439,7 +402,7 @@ def measure_settings(
     vary: Iterable[str] | Mapping[str, Any] = (),
     reference: Iterable[str] | Mapping[str, Any] = (),
     repeats: int = REPEATS,
-    limit_s: float = LIMIT_S,
+    limit_s: float = _LIMIT_S,
     store: Path | None = None,
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
@@ -480,7 +443,7 @@ def measure_settings(
 
     found = []
     for setting in design.settings:
-        tell(words_of(setting.values))
+        tell(_words_of(setting.values))
         found.append(_row(setting, repeats, registry, rows))
         done += 1
     runner = Runner(registry, rows, limit_s, tell)
@@ -488,9 +451,7 @@ def measure_settings(
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, given)
         done += 1
-    return Precision(
-        design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault, bool(given)
-    )
+    return Precision(design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault)
 
 
 def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, Any], registry: Registry) -> Tables:
@@ -500,7 +461,7 @@ def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, 
     if given and first is not None:
         found = setting_at(first.tables, "reference", given, registry)
         if found.scene is None:
-            raise SceneError.at("reference", None, found.reason)
+            raise SceneError.at("--reference", None, found.reason)
     return given
 
 
@@ -530,7 +491,7 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) ->
 
 
 #: Finished rows, in the folder of the results.
-ROWS = "precision-rows.jsonl"
+_ROWS = "precision-rows.jsonl"
 
 
 @door
@@ -540,7 +501,7 @@ def precision(
     *,
     reference: Mapping[str, Any] | Iterable[str] = (),
     repeats: int = REPEATS,
-    limit_s: float = LIMIT_S,
+    limit_s: float = _LIMIT_S,
     out: str | Path | None = None,
     kept: str | Path | None = None,
     plugins: Iterable[str | Path] = (),
@@ -587,7 +548,7 @@ def precision(
     """
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))
-    kept = folder / ROWS if folder is not None and kept is None else kept
+    kept = folder / _ROWS if folder is not None and kept is None else kept
     tables = plain_tables(scene, registry=registry)
     with telling(progress) as told:
         found = measure_settings(
@@ -596,5 +557,5 @@ def precision(
     if found.fault is not None:
         warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
-        found.save(folder)
+        found.write(folder, pictures=False)
     return found

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
 
+import attrs
 import numpy as np
 
-from raceway.out.picture import new_figure
+from raceway.framework.options import between, option
+from raceway.out.quantities import P0, PEAK_BALL_LOAD, K
+from raceway.plugins.pictures import new_figure, save_figure
+from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -18,7 +24,7 @@ if TYPE_CHECKING:
 
 
 #: Text, the point that it belongs to in the axes' data, its colour.
-Label = tuple[str, tuple[float, float], str]
+_Label = tuple[str, tuple[float, float], str]
 
 _SIZE = 7.5
 #: Mean width of a letter and height of a line over the size of the letters.
@@ -29,7 +35,7 @@ _MARKER, _AWAY = 4.0, (6.0, 15.0, 26.0)
 _DIRECTIONS = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1), (0, 1), (0, -1), (1, 0), (-1, 0)], dtype=float)
 
 
-def put_beside(axes: Axes, labels: Sequence[Label]) -> None:
+def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
     """Write each label at the first place that is free, with a thin line where that is not beside its point.
 
     A label without a free place is left out.
@@ -68,6 +74,39 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 _GREY = "#555f6b"
 #: Errors below are drawn here: a logarithm has no zero.
 _LEAST = 1e-16
+
+
+@attrs.frozen
+class PrecisionReport:
+    """precision.json, precision.md and precision.png."""
+
+    name: ClassVar[str] = "precision"
+
+    picture: bool = option(True, help="whether to draw precision.png")
+    dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
+
+    def write(self, result: Tables, folder: Path) -> list[Path]:
+        """Write the files.
+
+        Parameters
+        ----------
+        result : the tables of ``raceway precision --json``
+        folder : path, made when it is missing
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        folder = Path(folder)
+        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
+        files = [
+            write_whole(text.encode(), folder / "precision.json"),
+            write_whole(page(result, self.picture).encode(), folder / "precision.md"),
+        ]
+        if self.picture:
+            files.append(save_figure(draw(result), folder / "precision.png", self.dots_per_inch))
+        return files
 
 
 def page(result: Tables, picture: bool = False) -> str:
@@ -137,7 +176,7 @@ def _models(models: list[Tables]) -> str:
     lines = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
     for model in models:
         parts = model["differences"]
-        signed = (parts.get(name) for name in ("equivalent_stiffness", "peak_ball_load", "p0"))
+        signed = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
         cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
         whole = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
         lines.append(_line((_words(model["model"]), whole, *cells, _number(model["reference"]["error"], 2))))
@@ -171,7 +210,7 @@ def draw(result: Tables) -> Figure:
     return figure
 
 
-def draw_on(panel: Axes, result: Tables) -> list[Label]:
+def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front; labels to be put."""
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
@@ -179,7 +218,7 @@ def draw_on(panel: Axes, result: Tables) -> list[Label]:
     base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and _of_base(row)]
     other = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
     series: dict[str, list[int]] = {}
-    labels: list[Label] = []
+    labels: list[_Label] = []
     for place in base:
         series.setdefault(_series(result["rows"][place]), []).append(place)
     for number, (name, places) in enumerate(series.items()):

@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)
-STARTS = ("orbit", "ramp", "static")
-TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
+_STARTS = ("orbit", "ramp", "static")
+_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
 #: Steps a turn of the transient's ladder.
-FINE_STEPS = 720
-FEW_STEPS, FEW_TURNS = (24, 45, 90, 180), 3
+_FINE_STEPS = 720
+_FEW_STEPS, _FEW_TURNS = (24, 45, 90, 180), 3
 #: Factors on the scene's element size.
-SIZES = (2.0, 1.414, 1.0, 0.707)
+_SIZES = (2.0, 1.414, 1.0, 0.707)
 BODIES = ("rigid", "condensed", "elastic")
 #: Tables whose keys choose how the equations are solved, not which.
-NUMERICAL = ("integrator", "mesh")
+_NUMERICAL = ("integrator", "mesh")
 _REASON = 160
 
 
@@ -84,9 +84,9 @@ class Design:
     notes: tuple[str, ...] = ()
 
 
-def is_numerical(key: str) -> bool:
+def _is_numerical(key: str) -> bool:
     """Whether a key changes how a model is solved (True) or the model itself."""
-    return key.partition(".")[0] in NUMERICAL
+    return key.partition(".")[0] in _NUMERICAL
 
 
 def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], limit_s: float, registry: Registry) -> Design:
@@ -109,7 +109,7 @@ def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], lim
         wanted = [("axes", point) for point in points(axes)]
     else:
         scene = scene_from_dict(tables, registry)
-        title, wanted = scene.title, default_points(scene, registry)
+        title, wanted = scene.title, _default_points(scene, registry)
     settings: list[Setting] = []
     left_out = []
     for family, values in wanted:
@@ -131,7 +131,7 @@ def setting_at(
 ) -> Setting:
     """One setting, checked and planned."""
     changed = tables_at(tables, values, registry, notes)
-    model = {key: value for key, value in values.items() if not is_numerical(key)}
+    model = {key: value for key, value in values.items() if not _is_numerical(key)}
     try:
         scene = scene_from_dict(changed, registry)
         plan = make_plan(scene)
@@ -156,33 +156,33 @@ def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> st
 
 def _physics(scene: Scene) -> str:
     inertial = not needs_motion(scene) or scene.integrator.method.inertial
-    content = {name: part for name, part in scene.to_dict().items() if name not in (*NUMERICAL, "title")}
+    content = {name: part for name, part in scene.to_dict().items() if name not in (*_NUMERICAL, "title")}
     return json.dumps([content, inertial], sort_keys=True, default=str)
 
 
-def default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:
+def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:
     """Family and values of every setting of the default design that has a meaning for the scene."""
     found: list[tuple[str, Tables]] = []
     if needs_motion(scene):
         methods: Tables = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
-        steady = [name for name, method in methods.items() if is_steady(method)]
+        steady = [name for name, method in methods.items() if _is_steady(method)]
         for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
             found.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
-        for name, tolerance in product(steady, TOLERANCES):
+        for name, tolerance in product(steady, _TOLERANCES):
             known = {field.name for field in attrs.fields(methods[name])}
             one: Tables = {"integrator.kind": name}
             found.append(("steady orbit", {**one, "integrator.tolerance": tolerance} if "tolerance" in known else one))
         own = scene.integrator.method
-        if own.inertial and not is_steady(type(own)):
-            for steps in FEW_STEPS:
-                found.append(("few turns", {"integrator.turns": FEW_TURNS, "integrator.steps_per_turn": steps}))
-            for start, turns in product(STARTS, TURNS):
-                values = {"integrator.start": start, "integrator.turns": turns, "integrator.steps_per_turn": FINE_STEPS}
+        if own.inertial and not _is_steady(type(own)):
+            for steps in _FEW_STEPS:
+                found.append(("few turns", {"integrator.turns": _FEW_TURNS, "integrator.steps_per_turn": steps}))
+            for start, turns in product(_STARTS, TURNS):
+                values = {"integrator.start": start, "integrator.turns": turns, "integrator.steps_per_turn": _FINE_STEPS}
                 found.append(("turns and start", values))
         found += [("models", {"integrator.kind": n}) for n, m in methods.items() if not m.inertial]
     size = getattr(scene.mesh, "element_size", None)
     if size is not None:
-        found += [("mesh", {"mesh.element_size": float(f"{size * factor:.3g}")}) for factor in SIZES]
+        found += [("mesh", {"mesh.element_size": float(f"{size * factor:.3g}")}) for factor in _SIZES]
     found.append(("models", {"contact.kind": scene.contact.kind}))
     others = {
         "contact.kind": [n for n in registry.names("contact_law") if n != scene.contact.kind],
@@ -195,7 +195,7 @@ def default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]
     return found
 
 
-def is_steady(method: type[Integrator]) -> bool:
+def _is_steady(method: type[Integrator]) -> bool:
     """Whether an integrator solves for the periodic motion itself."""
     return method.steady
 
@@ -207,14 +207,14 @@ def short(text: str) -> str:
 
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.
-FINER = 4
+_FINER = 4
 _LEAST_STEPS = 2880
 _LEAST_TURNS = 24
 #: Newmark's error has one sign, central differences' the other; the third where one of them cannot run.
-METHODS = ("newmark", "central_difference", "generalized_alpha")
-TIGHT = 1e-10
+_METHODS = ("newmark", "central_difference", "generalized_alpha")
+_TIGHT = 1e-10
 #: Smallest bound that is claimed [relative]: equilibria and steps are iterated to 1e-9 of the forces.
-FLOOR = 1e-10
+_FLOOR = 1e-10
 
 Values = dict[str, float]
 
@@ -316,7 +316,7 @@ def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Re
         row = runner.at(first, extra)
         if row is None:
             return Reference({}, {}, "the equilibrium could not be found")
-        bound = max(row["own_error"] or 0.0, FLOOR)
+        bound = max(row["own_error"] or 0.0, _FLOOR)
         return Reference(row["quantities"], _all(row["quantities"], bound), "nothing is integrated: solved to a residual")
     steps, turns = _finest(group)
     if not scene.integrator.method.inertial:
@@ -356,13 +356,13 @@ def _all(values: Values, relative: float) -> Values:
 
 
 def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Reference:
-    rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, FINER)]
+    rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, _FINER)]
     if rows[0] is None or rows[1] is None:
         return Reference({}, {}, "the series of equilibria at finer steps could not be run")
     values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
-    floor = _all(values, max(FLOOR, rows[1]["own_error"] or 0.0))
+    floor = _all(values, max(_FLOOR, rows[1]["own_error"] or 0.0))
     bounds = {name: max(abs(change[name]), floor[name]) for name in values}
-    how = f"series of {FINER * steps} equilibria a turn; bound by its own estimate and its change from {2 * steps}"
+    how = f"series of {_FINER * steps} equilibria a turn; bound by its own estimate and its change from {2 * steps}"
     return Reference(values, bounds, how)
 
 
@@ -371,22 +371,22 @@ def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
     registry = runner.registry
     for name in registry.names("integrator"):
         method = registry.find("integrator", name).plugin
-        if not is_steady(method):
+        if not _is_steady(method):
             continue
         known = {field.name for field in attrs.fields(method)}
-        tight = {"integrator.tolerance": TIGHT} if "tolerance" in known else {}
+        tight = {"integrator.tolerance": _TIGHT} if "tolerance" in known else {}
         row = runner.at(first, {**extra, "integrator.kind": name, **tight})
         if row is not None and row["own_error"] is not None:
-            how = f"steady orbit by '{name}'" + (f" to {TIGHT:g}" if tight else "")
-            return Reference(row["quantities"], _all(row["quantities"], max(row["own_error"], FLOOR)), how)
+            how = f"steady orbit by '{name}'" + (f" to {_TIGHT:g}" if tight else "")
+            return Reference(row["quantities"], _all(row["quantities"], max(row["own_error"], _FLOOR)), how)
     return None
 
 
 def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> Reference:
-    steps = max(FINER * finest, _LEAST_STEPS)
+    steps = max(_FINER * finest, _LEAST_STEPS)
     found: list[tuple[str, Values, Values, float]] = []
     while not found and steps > finest:
-        for name in METHODS:
+        for name in _METHODS:
             if len(found) < 2 and name in runner.registry.names("integrator"):
                 one = _extrapolated(first, name, steps, common, runner)
                 found += [] if one is None else [one]
@@ -394,7 +394,7 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
     if not found:
         return Reference({}, {}, "no transient at finer steps than the rows' could be run within the limit of time")
     name, values, change, rest = found[0]
-    floor = _all(values, max(FLOOR, rest))
+    floor = _all(values, max(_FLOOR, rest))
     turns = common["integrator.turns"]
     if len(found) == 1:
         bounds = {key: abs(change[key]) + floor[key] for key in values}
@@ -402,7 +402,7 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
         return Reference(values, bounds, how)
     other, second, _, rest = found[1]
     apart = minus(second, values)
-    floor = _all(values, max(FLOOR, rest, found[0][3]))
+    floor = _all(values, max(_FLOOR, rest, found[0][3]))
     middle = {key: value + 0.5 * apart[key] for key, value in values.items()}
     bounds = {key: abs(apart[key]) + floor[key] for key in values}
     how = (

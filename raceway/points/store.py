@@ -36,7 +36,7 @@ SCHEMA = 4
 STATES = ("waiting", "running", "done", "failed")
 #: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
 _MOMENT_S = 0.2
-POINTS, LOCK = "points.sqlite", ".lock"
+POINTS, _LOCK = "points.sqlite", ".lock"
 _CONTENT = "state, reason, key, content, warnings, cost"
 #: What a row that was damaged is read as: the point waits to be computed again.
 DAMAGED = "its row in the store is damaged"
@@ -263,7 +263,7 @@ def written(folder: Path, facts: ReadTables | None) -> Iterator[Store]:
     """
     with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        guard = (folder / LOCK).open("w")
+        guard = (folder / _LOCK).open("w")
     with guard:
         try:
             fcntl.flock(guard, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -296,7 +296,7 @@ def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
         if empty:
             with suppress(OSError):
                 (folder / POINTS).unlink(missing_ok=True)
-                (folder / LOCK).unlink(missing_ok=True)
+                (folder / _LOCK).unlink(missing_ok=True)
                 folder.rmdir()
     connection.close()
 

@@ -68,7 +68,7 @@ class Chain:
         from raceway.pipeline.run import run
 
         wall, cpu = time.perf_counter(), time.process_time()
-        row = unfinished_row(number, "")
+        row = _unfinished_row(number, "")
         result = None
         try:
             scene = scene_from_dict(tables_at(self.tables, point, registry), registry, parts)
@@ -90,7 +90,7 @@ class Chain:
         return row, result
 
 
-def unfinished_row(number: int, reason: str) -> Tables:
+def _unfinished_row(number: int, reason: str) -> Tables:
     """A row of a point that failed, or that has nothing yet."""
     return {"number": number, "state": "failed", "reason": reason, "key": "", "values": {}, "warnings": [], "cost": {}}
 
@@ -211,7 +211,7 @@ def fill_store(
             with closing(answers(executor, work, batches())) as found:
                 for number, answer in found:
                     if isinstance(answer, Lost):
-                        rows = [unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
+                        rows = [_unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
                     else:
                         rows = [row for row in answer[0] if row["number"] in waiting]
                     store.put(rows)
@@ -336,15 +336,15 @@ def prepared_sweep(scene: Any, axes: Axes, store: Path, resume: bool = False, pl
     registry = registry_with(files)
     tables = plain_tables(scene, registry=registry)
     try:
-        prepared = prepare(tables, _in_units(design_of(axes), tables, registry), store, files, resume)
+        prepared = prepare(tables, _in_units(_design_of(axes), tables, registry), store, files, resume)
     except SceneError as error:
-        raise with_static_remedy(error) from None
+        raise _with_static_remedy(error) from None
     for note in prepared.survey.notes:
         warnings.warn(note, stacklevel=2)
     return prepared
 
 
-def with_static_remedy(error: SceneError) -> SceneError:
+def _with_static_remedy(error: SceneError) -> SceneError:
     """The same mistakes; who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had."""
     mistakes = [
         attrs.evolve(one, message=f"{one.message}. {_FROM_ZERO}") if one.path == SPEED and one.value == 0 else one
@@ -353,7 +353,7 @@ def with_static_remedy(error: SceneError) -> SceneError:
     return SceneError(mistakes)
 
 
-def design_of(axes: Axes) -> Design:
+def _design_of(axes: Axes) -> Design:
     """The points of a mapping of axes, or of a list of points."""
     if isinstance(axes, Design):
         return axes

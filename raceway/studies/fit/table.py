@@ -14,9 +14,9 @@ import numpy as np
 from raceway.bodies.model import build_model
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.framework.shown import read_in
+from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import UNITS, Gradient, Gradients, definitions, derivatives, values
+from raceway.pipeline.gradient import Gradient, Gradients, definitions, derivatives, values
 from raceway.pipeline.static_gradient import NoDerivative, static_gradient
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
@@ -30,9 +30,9 @@ from raceway.studies.fit.fit import Fitted, Series, refuse_few
 #: Index of displacements across the axis in the coordinates at rest.
 _ACROSS = {"y": 1, "z": 2}
 #: Quantities that may be measured, with units: those of sensitivities, and the displacement across the axis at rest.
-MEASURED = UNITS | dict.fromkeys(_ACROSS, "m")
+MEASURED = {name: quantity.unit for name, quantity in DIFFERENTIABLE.items()} | dict.fromkeys(_ACROSS, X.unit)
 #: Quantities of a motion, which need its orbit.
-_MOTION = ("K", "C", "amplitude")
+_MOTION = (K.symbol, C.symbol, AMPLITUDE.symbol)
 #: Standard errors by which measurements of the same quantity may differ before they contradict each other.
 _CONTRADICT = 6.0
 _HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")

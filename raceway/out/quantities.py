@@ -1,0 +1,211 @@
+"""Every number that the product states, declared once: its names, unit, definition, and where a result has it.
+
+Data sets, CSV heads, axes of pictures, screens and JSON look here; nothing else holds the unit or the words of a quantity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import attrs
+
+from raceway.framework.shown import Fact, number, number_within
+from raceway.storage.tables import Tables
+
+#: Units that people read, with their factors.
+_READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm"), "Pa": (1e-6, "MPa")}
+
+
+def read_in(value: float, unit: str) -> tuple[float, str]:
+    """A stiffness, a length or a pressure of a bearing in the unit that people read it in, and that unit; other numbers as they are."""
+    factor, word = _READ.get(unit, (1.0, unit))
+    return factor * value, word
+
+
+def _at(source: object, path: str) -> Any:
+    """What lies there, steps with dots between; of several paths at the first that leads anywhere, else None."""
+    first, _, others = path.partition(" | ")
+    place: Any = source
+    for step in first.split("."):
+        if isinstance(place, Mapping):
+            place = place.get(step)
+        elif place is not None:
+            place = place[int(step)] if step.isdigit() else getattr(place, step)
+    return _at(source, others) if place is None and others else place
+
+
+@attrs.frozen
+class Quantity:
+    """A number, or an array, that results state.
+
+    Attributes
+    ----------
+    name : of variables, columns and attributes;  unit : SI, "1" of ratios, of arrays that of each kind of entry;  words : definition
+    path : its place in result.json, keys with dots between; of several, with " | " between, the first that a result has
+    attribute : of a ``Result`` that leads to it, in the same form
+    symbol : its name in formulas, in fits and among quantities over tolerances;  label : its name on screens
+    error : the quantity that is its absolute error;  dims : dimensions of an array
+    """
+
+    name: str
+    unit: str
+    words: str
+    path: str = ""
+    attribute: str = attrs.Factory(lambda self: self.name, takes_self=True)
+    symbol: str = attrs.field(default=attrs.Factory(lambda self: self.name, takes_self=True), kw_only=True)
+    label: str = attrs.field(default=attrs.Factory(lambda self: self.name.replace("_", " "), takes_self=True), kw_only=True)
+    error: Quantity | None = attrs.field(default=None, kw_only=True)
+    dims: tuple[str, ...] = attrs.field(default=(), kw_only=True)
+
+    def of(self, source: object) -> Any:
+        """Of a ``Result``, or of the content of its result.json; None where that has none.  Complex ones by their size."""
+        value = _at(source, self.path if isinstance(source, Mapping) else self.attribute)
+        return abs(value) if isinstance(value, complex) else value
+
+    @property
+    def labels(self) -> dict[str, str]:
+        """Attributes of a labelled array: xarray writes the short ``long_name`` and the unit beside an axis."""
+        return {"units": self.unit, "long_name": self.name.replace("_", " "), "description": self.words}
+
+    def read(self, value: float) -> float:
+        """In the unit that people read it in."""
+        return read_in(value, self.unit)[0]
+
+    @property
+    def read_unit(self) -> str:
+        """That unit."""
+        return read_in(1.0, self.unit)[1]
+
+    @property
+    def axis(self) -> str:
+        """Label of an axis: symbol and that unit."""
+        return f"{self.symbol}  [{self.read_unit}]"
+
+    def text(self, value: float | None, digits: int = 5) -> str:
+        """With that unit; a dash for what is not there."""
+        return "-" if value is None else number(self.read(value), self.read_unit, digits)
+
+    def span(self, ends: Sequence[float], digits: int = 5) -> str:
+        """From the first to the last, with that unit."""
+        return f"{self.read(ends[0]):.{digits}g} to {self.text(ends[-1], digits)}"
+
+    def fact(self, source: object, remark: str | None = None) -> Fact:
+        """Label, number down to its error with that unit, and its definition or another remark."""
+        value, remark = self.of(source), self.words if remark is None else remark
+        if self.error is None:
+            return self.label, self.text(value), remark
+        error = self.error.of(source)
+        if error is None:
+            return self.label, self.text(value), f"error not estimated; {remark}"
+        if abs(value) < error:
+            return self.label, "not resolved", f"below its error of {self.text(error, 2)}; {remark}"
+        shown = number_within(self.read(value), self.read(error), self.read_unit)
+        return self.label, shown, f"+- {self.text(error, 2)}; {remark}"
+
+
+def named(*quantities: Quantity) -> dict[str, Quantity]:
+    """Quantities by their names."""
+    return {quantity.name: quantity for quantity in quantities}
+
+
+def entry_unit(unit: str, entry: Sequence[str]) -> str:
+    """The unit of one entry of an array over coordinates of the ring, such as ("y", "tilt_z"); any other unit as it is."""
+    place = 0
+    for coordinate in entry:
+        place = 2 * place + coordinate.startswith("tilt")
+    return unit.split(", ")[place] if ", " in unit else unit
+
+
+def nested(quantities: Iterable[Quantity], result: object) -> Tables:
+    """Their values in tables as result.json has them."""
+    content: Tables = {}
+    for quantity in quantities:
+        *heads, key = quantity.path.split(".")
+        table = content
+        for head in heads:
+            table = table.setdefault(head, {})
+        table[key] = quantity.of(result)
+    return content
+
+
+#: One line per quantity: name, unit, words, path, attribute.
+# fmt: off
+# Of the 1x line.
+_ID = "identification"
+SPEED = Quantity("speed_rpm", "r/min", "speed of the excitation", f"{_ID}.speed_rpm")
+_FREQUENCY = Quantity("frequency", "Hz", "of the 1x line", f"{_ID}.frequency_hz", f"{_ID}.frequency_hz")
+FORCE_AMPLITUDE = Quantity("force_amplitude", "N", "amplitude of the 1x force", f"{_ID}.force_amplitude_n", f"{_ID}.force_amplitude", label="force")
+_Z = f"{_ID}.dynamic_stiffness"
+Z = Quantity("dynamic_stiffness", "N/m", "size of Z = F/x", f"{_Z}.abs", symbol="|Z|", label="|Z|")
+Z_REAL = Quantity("z_real", "N/m", "real part of the dynamic stiffness Z = F/x", f"{_Z}.real", f"{_Z}.real", label="Z real")
+_Z_IMAG_ERROR = Quantity("dynamic_stiffness_imag_error", "N/m", "estimated error of Im Z", f"{_Z}_imag_error")
+Z_IMAG = Quantity("z_imag", "N/m", "imaginary part of the dynamic stiffness Z = F/x, w C", f"{_Z}.imag", f"{_Z}.imag", label="Z imaginary", error=_Z_IMAG_ERROR)
+K_ERROR = Quantity("equivalent_stiffness_error", "N/m", "estimated error of K", f"{_ID}.equivalent_stiffness_error")
+K = Quantity("equivalent_stiffness", "N/m", "K = Re Z + m w^2", f"{_ID}.equivalent_stiffness", symbol="K", label="equivalent stiffness K", error=K_ERROR)
+K_MODEL = Quantity(f"{K.name}_model", "1", "relative change of K by hypotheses left at their defaults", f"error.model.{K.name}", f"model_spread.0.{K.name}", label="model of K", dims=("end",))
+C_ERROR = Quantity("equivalent_damping_error", "N s/m", "estimated error of C", f"{_ID}.equivalent_damping_error")
+C = Quantity("equivalent_damping", "N s/m", "C = Im Z / w", f"{_ID}.equivalent_damping", symbol="C", label="equivalent damping C", error=C_ERROR)
+MASS = Quantity("mass", "kg", "m of K = Re Z + m w^2", f"{_ID}.mass_used_kg", f"{_ID}.mass_used")
+_PHASE_LAG_ERROR = Quantity("phase_lag_error_deg", "deg", "estimated error of the phase lag", f"{_ID}.phase_lag_error_deg")
+PHASE_LAG = Quantity("phase_lag", "deg", "displacement behind force", f"{_ID}.phase_lag_deg", f"{_ID}.phase_lag_deg", error=_PHASE_LAG_ERROR)
+_FORWARD = Quantity("forward_amplitude", "m", "forward part of the 1x orbit", f"{_ID}.forward_amplitude_m", f"{_ID}.forward_amplitude")
+_BACKWARD = Quantity("backward_amplitude", "m", "backward part of the 1x orbit", f"{_ID}.backward_amplitude_m", f"{_ID}.backward_amplitude")
+ORBIT_MAJOR = Quantity("orbit_major", "m", "major semi-axis of the 1x orbit", f"{_ID}.orbit.major_m", f"{_ID}.orbit_major")
+ORBIT_MINOR = Quantity("orbit_minor", "m", "minor semi-axis of the 1x orbit", f"{_ID}.orbit.minor_m", f"{_ID}.orbit_minor")
+RESIDUAL = Quantity("residual", "1", "motion that is not 1x, rms over rms of 1x", f"{_ID}.residual", f"{_ID}.residual")
+_SPREAD = Quantity("spread", "1", "largest deviation of a turn's Z from that of all", f"{_ID}.spread", f"{_ID}.spread")
+AMPLITUDE = Quantity("amplitude", "m", "of the 1x motion along the force")
+# At rest, under the constant loads.
+KXX = Quantity("kxx", "N/m", "axial, other motions held", "equilibrium.stiffness.0.0", "stiffness.0.0", label="tangent kxx")
+KYY = Quantity("kyy", "N/m", "radial, tilts and other motions held", "equilibrium.stiffness.1.1", "stiffness.1.1", label="tangent kyy")
+KYY_TILTS_FOLLOW = Quantity("kyy_tilts_follow", "N/m", "radial tangent with tilts that follow as supports.tilt lets them, x and z held", "equilibrium.kyy_tilts_follow_n_per_m")
+X = Quantity("x", "m", "axial displacement under the constant loads", "equilibrium.displacement.x", "displacement.0", label="displacement x")
+LARGEST_BALL_LOAD = Quantity("largest_ball_load", "N", "largest static load of a ball, of both races", "equilibrium.largest_ball_load_n")
+# Of the motion where there is one, else of the equilibrium.
+AXIAL_DISPLACEMENT = Quantity("axial_displacement", "m", "mean axial displacement", f"motion.axial_displacement_m | {X.path}", "extremes.axial_displacement")
+PEAK_BALL_LOAD = Quantity("peak_ball_load", "N", "largest load of a ball, of both races", f"motion.peak_ball_load_n | {LARGEST_BALL_LOAD.path}", "extremes.peak_ball_load")
+_PEAK_INNER = Quantity("peak_ball_load_inner", "N", "largest load of a ball on the inner race", attribute="extremes.peak_ball_load_inner")
+_PEAK_OUTER = Quantity("peak_ball_load_outer", "N", "largest load of a ball on the outer race", attribute="extremes.peak_ball_load_outer")
+_LEAST_LOAD = Quantity("min_ball_load", "N", "least load of a ball on the inner race, 0 where one is loose", attribute="extremes.min_ball_load")
+P0 = Quantity("p0", "Pa", "largest Hertz pressure, of both races", "motion.peak_pressure_pa | equilibrium.largest_pressure_pa", "extremes.p0")
+_P0_INNER = Quantity("p0_inner", "Pa", "largest Hertz pressure on the inner race", attribute="extremes.p0_inner")
+_P0_OUTER = Quantity("p0_outer", "Pa", "largest Hertz pressure on the outer race", attribute="extremes.p0_outer")
+# Relative errors of Z, and of kyy.
+_ERROR = Quantity("error_total", "1", "estimated relative error of Z", "error.total", "error.total")
+_PARTS = {"time_step": "time step", "transient": "transient", "mesh": "mesh", "contact": "contact law", "identification": "identification"}
+_ERRORS = [Quantity(f"error_{part}", "1", f"part of the {words} in the relative error of Z", f"error.{part}", f"error.{part}") for part, words in _PARTS.items()]
+ERROR_BODIES = Quantity("error_bodies", "1", "sum of the parts of mesh and contact law", "error.bodies", "error.bodies")
+_MODEL_BOUND = Quantity("error_model_bound", "1", "upper estimate of the change of kyy by hypotheses of [kinematics] left at their defaults", "error.model.bound", "model_bound")
+# Arrays: over coordinates of the ring, races and balls, times.
+DISPLACEMENT = Quantity("displacement", "m, rad", "equilibrium under the constant loads", dims=("dof",))
+STIFFNESS = Quantity("stiffness", "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium: kyy is y, y, tilts held", dims=("dof", "dof2"))
+_DAMPING = Quantity("damping", "N s/m, N s/rad, N m s/m, N m s/rad", "damping of the contacts at the equilibrium", dims=("dof", "dof2"))
+BALL_LOAD = Quantity("ball_load", "N", "static contact force", dims=("race", "ball"))
+CONTACT_ANGLE = Quantity("contact_angle", "deg", "static; nan where the contact is open", dims=("race", "ball"))
+MOTION = Quantity("motion", "m, rad", "of the inner ring", dims=("time", "dof"))
+FORCE = Quantity("force", "N, N m", "of the excitation", dims=("time", "dof"))
+CONTACT_FORCE = Quantity("contact_force", "N", "of each ball on each race", dims=("time", "race", "ball"))
+AZIMUTH = Quantity("azimuth", "deg", "from +y towards +z", dims=("ball",))
+TIME = Quantity("time", "s", "in the turns that are used", dims=("time",))
+#: Of a setting whose error is measured against its time.
+PRECISION = (
+    Quantity("value", "N/m", "size of Z, or of the tangent where nothing is identified"),
+    Quantity("error", "1", "relative error against the reference of the row's model"),
+    Quantity("own_error", "1", "relative error that the run estimates itself"),
+    Quantity("time_s", "s", "of the fastest repeat, compiling apart"),
+)
+#: What result.json states of the identification, in its order.
+IDENTIFIED = (
+    SPEED, _FREQUENCY, FORCE_AMPLITUDE, Z_REAL, Z_IMAG, Z, _Z_IMAG_ERROR, K, K_ERROR, C, C_ERROR, MASS, PHASE_LAG, _PHASE_LAG_ERROR,
+    _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL, _SPREAD,
+)
+#: Columns of a sweep, numbers before arrays.
+COLUMNS = named(
+    Z_REAL, Z_IMAG, K, C, FORCE_AMPLITUDE, _FREQUENCY, MASS, _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL,
+    AXIAL_DISPLACEMENT, KYY_TILTS_FOLLOW, PEAK_BALL_LOAD, _PEAK_INNER, _PEAK_OUTER, _LEAST_LOAD, P0, _P0_INNER, _P0_OUTER,
+    _ERROR, *_ERRORS, _MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
+)
+# fmt: on
+#: Numbers that have derivatives by the keys of a scene, by their symbols; what a scene does not have is left out.
+DIFFERENTIABLE = {number.symbol: number for number in (K, C, AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, X, LARGEST_BALL_LOAD)}
