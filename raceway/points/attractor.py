@@ -153,7 +153,7 @@ def _integrated(
     system: Ring, start: Callable[[Any], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
 ) -> Attractor:  # fmt: skip
     """The motion from a start, by its last turns."""
-    on_steps = None if on_progress is None else (lambda done, total: on_progress("beside unstable orbits", done, total))
+    on_steps = None if on_progress is None else (lambda step, total: on_progress("beside unstable orbits", step, total))
     try:
         try:
             record, undamped = integrate(Newmark(), system, start(system), schedule, on_steps), False
@@ -204,5 +204,5 @@ def _refined(power: np.ndarray, top: int) -> float:
     """Frequency of a component in bins, by a parabola through the logarithms about its highest bin."""
     if not 0 < top < len(power) - 1 or min(power[top - 1 : top + 2]) <= 0.0:
         return float(top)
-    left, middle, right = np.log(power[top - 1 : top + 2])
-    return float(top + 0.5 * (left - right) / (left - 2.0 * middle + right))
+    lower, middle, right = np.log(power[top - 1 : top + 2])
+    return float(top + 0.5 * (lower - right) / (lower - 2.0 * middle + right))

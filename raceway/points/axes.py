@@ -58,13 +58,13 @@ def shown(value: object) -> str:
 
 
 def parse_axes(
-    given: Iterable[str] | Mapping[str, Any], option: str = "--vary", most: int = MOST_POINTS
+    definitions: Iterable[str] | Mapping[str, Any], option: str = "--vary", most: int = MOST_POINTS
 ) -> tuple[Axis, ...]:
     """The axes of the texts of an option, or of a mapping.
 
     Parameters
     ----------
-    given : texts ``KEY=...``; or key -> values: a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
+    definitions : texts ``KEY=...``; or key -> values: a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
     most : points of all axes together
 
     Raises
@@ -74,18 +74,18 @@ def parse_axes(
     """
     axes: list[Axis] = []
     mistakes: list[Mistake] = []
-    pairs = given.items() if isinstance(given, Mapping) else ((text, None) for text in given)
+    pairs = definitions.items() if isinstance(definitions, Mapping) else ((text, None) for text in definitions)
     for text, values in pairs:
         try:
             axis = parse_axis(text, option, most) if values is None else _axis_of(text, values, option, most)
         except SceneError as error:
             mistakes += error.mistakes
             continue
-        for other in axes:
-            if axis.key == other.key:
+        for previous in axes:
+            if axis.key == previous.key:
                 mistakes.append(Mistake(axis.key, None, "is varied twice: put all its values into one axis"))
-            elif f"{axis.key}.".startswith(f"{other.key}.") or f"{other.key}.".startswith(f"{axis.key}."):
-                mistakes.append(Mistake(axis.key, None, f"overlaps with the axis `{other.key}`: vary one of them"))
+            elif f"{axis.key}.".startswith(f"{previous.key}.") or f"{previous.key}.".startswith(f"{axis.key}."):
+                mistakes.append(Mistake(axis.key, None, f"overlaps with the axis `{previous.key}`: vary one of them"))
         axes.append(axis)
     if not axes and not mistakes:
         raise SceneError.at(option, None, f"nothing is varied; an axis {_FORM}, in Python {{'load.axial': [400, 1000]}}")
@@ -136,21 +136,21 @@ def _axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POI
     """
     if isinstance(values, str):
         return parse_axis(f"{key}={values}", option, most)
-    found = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
-    if not isinstance(found, list):
-        found = [found]
-    if not found:
+    items = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
+    if not isinstance(items, list):
+        items = [items]
+    if not items:
         raise SceneError.at(key, None, "has no values: give at least one")
-    return _axis(key, found)
+    return _axis(key, items)
 
 
-def _axis(key: str, found: Sequence[Any]) -> Axis:
+def _axis(key: str, values: Sequence[Any]) -> Axis:
     """An axis whose values are all different."""
-    names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in found]
-    for place, name in enumerate(names):
-        if name in names[:place]:
-            raise SceneError.at(key, found[place], "stands twice in the axis: each value once")
-    return Axis(key, tuple(found))
+    names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
+    for position, name in enumerate(names):
+        if name in names[:position]:
+            raise SceneError.at(key, values[position], "stands twice in the axis: each value once")
+    return Axis(key, tuple(values))
 
 
 def _split(text: str) -> list[str]:
@@ -210,9 +210,9 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
         name, _, last = key.rpartition(".")
         if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
             for option in _strange_options(changed, name, value, registry):
-                given = changed[name][option]
+                value_before = changed[name][option]
                 changed[name] = {k: v for k, v in changed[name].items() if k != option}
-                note = f"{name}.{option} = {shown(given)} is left out for kind '{value}', which does not know it"
+                note = f"{name}.{option} = {shown(value_before)} is left out for kind '{value}', which does not know it"
                 if notes is not None and note not in notes:
                     notes.append(note)
         changed = with_value(changed, key, value)
@@ -228,9 +228,9 @@ def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tab
     return {**point, **{key: value_at(changed, key) for key in texts}}
 
 
-def axes_of(given: Iterable[str] | Mapping[str, Any], tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
+def axes_of(definitions: Iterable[str] | Mapping[str, Any], tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
     """``parse_axes`` with values in the units of the scene's keys."""
-    return tuple(in_units(axis, tables, registry) for axis in parse_axes(given))
+    return tuple(in_units(axis, tables, registry) for axis in parse_axes(definitions))
 
 
 def in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
@@ -309,11 +309,11 @@ class Design:
         """Key -> value of one point."""
         if not self.axes:
             return dict(self.listed[number])
-        found = {}
+        values = {}
         for axis in reversed(self.axes):
-            number, place = divmod(number, len(axis.values))
-            found[axis.key] = axis.values[place]
-        return {axis.key: found[axis.key] for axis in self.axes}
+            number, position = divmod(number, len(axis.values))
+            values[axis.key] = axis.values[position]
+        return {axis.key: values[axis.key] for axis in self.axes}
 
     def points(self) -> Iterator[Tables]:
         return (self.point(number) for number in range(self.size))
@@ -329,9 +329,9 @@ class Design:
         along = self._along()
         sizes = self.shape
         strides = [math.prod(sizes[k + 1 :]) for k in range(len(sizes))]
-        others = [range(size) if k != along else range(1) for k, size in enumerate(sizes)]
-        for place in itertools.product(*others):
-            first = sum(i * stride for i, stride in zip(place, strides, strict=True))
+        ranges = [range(size) if k != along else range(1) for k, size in enumerate(sizes)]
+        for start_indices in itertools.product(*ranges):
+            first = sum(i * stride for i, stride in zip(start_indices, strides, strict=True))
             for start in range(0, sizes[along], length):
                 yield [first + strides[along] * k for k in range(start, min(start + length, sizes[along]))]
 
@@ -347,20 +347,20 @@ class Design:
 
     @classmethod
     def from_dict(cls, tables: ReadTables) -> Design:
-        axes = tuple(Axis(one["key"], tuple(one["values"])) for one in tables.get("axes", ()))
+        axes = tuple(Axis(axis["key"], tuple(axis["values"])) for axis in tables.get("axes", ()))
         return cls(axes, tuple(tables.get("points", ())))
 
-    def differences(self, other: Design) -> list[str]:
+    def differences(self, stored: Design) -> list[str]:
         """In words what this design has and the other one has not: axes with their values, or listed points."""
-        if self == other:
+        if self == stored:
             return []
-        if not self.axes or not other.axes:
-            changed = [k for k, (a, b) in enumerate(zip(self.listed, other.listed, strict=False), 1) if a != b]
-            if self.keys != other.keys or self.size != other.size or not changed:
-                return [f"{self.in_words()} there, {other.in_words()} here"]
+        if not self.axes or not stored.axes:
+            changed = [k for k, (a, b) in enumerate(zip(self.listed, stored.listed, strict=False), 1) if a != b]
+            if self.keys != stored.keys or self.size != stored.size or not changed:
+                return [f"{self.in_words()} there, {stored.in_words()} here"]
             first, k = changed[0], changed[0] - 1
-            return [f"point {first}: {point_words(self.listed[k])} there, {point_words(other.listed[k])} here"]
-        old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, other))
+            return [f"point {first}: {point_words(self.listed[k])} there, {point_words(stored.listed[k])} here"]
+        old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, stored))
         words = []
         for key in [*old, *(key for key in new if key not in old)]:
             if key not in new:
@@ -384,7 +384,7 @@ def _few(values: Sequence[object]) -> str:
     return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
 
 
-def grid(given: Iterable[str] | Mapping[str, Any]) -> Design:
+def grid(definitions: Iterable[str] | Mapping[str, Any]) -> Design:
     """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
 
     Raises
@@ -392,7 +392,7 @@ def grid(given: Iterable[str] | Mapping[str, Any]) -> Design:
     SceneError
         With every mistake in them.
     """
-    return Design(axes=parse_axes(given, "--grid", _MOST_SWEEP_POINTS))
+    return Design(axes=parse_axes(definitions, "--grid", _MOST_SWEEP_POINTS))
 
 
 def listed_points(points: Iterable[Mapping[str, Any]]) -> Design:
@@ -434,11 +434,11 @@ def design_file(path: Path) -> Design:
         raise SceneError.at(str(path), None, f"{_FILE_FORM}{', not both' if not strange else ', not ' + strange[0]}")
     if "points" in tables:
         return _listed(path, tables["points"])
-    given = tables["grid"]
-    if not isinstance(given, dict):
-        raise SceneError.at(f"{path}: grid", given, _FILE_FORM)
+    entries = tables["grid"]
+    if not isinstance(entries, dict):
+        raise SceneError.at(f"{path}: grid", entries, _FILE_FORM)
     words = (
-        (key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)]) for key, value in _dotted(given)
+        (key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)]) for key, value in _dotted(entries)
     )
     return grid(f"{key}={','.join(values)}" for key, values in words)
 

@@ -36,22 +36,22 @@ def draw(result: Tables) -> Figure:
     along = max(numeric, key=lambda key: len(axes[key]), default=None)
     if along is None:
         return _dots(result, varied)
-    others = _by_interaction([key for key in varied if key != along], along, result["effects"])
-    column = next((key for key in others[:1] if len(axes[key]) <= _MOST_COLUMNS), None)
-    styles = {key: [_text(v) for v in axes[key]] for key in others if key != column}
+    styled = _by_interaction([key for key in varied if key != along], along, result["effects"])
+    column = next((key for key in styled[:1] if len(axes[key]) <= _MOST_COLUMNS), None)
+    styles = {key: [_text(v) for v in axes[key]] for key in styled if key != column}
     columns = [_text(v) for v in axes[column]] if column else [""]
     figure = new_figure(12.8, 7.6)
     quantities = _quantities_of(result)
     one_scale = len({about.unit for about in quantities.values()}) == 1
     panels = figure.subplots(len(quantities), len(columns), sharex=True, sharey="col" if one_scale else "row", squeeze=False)
-    for place, value in enumerate(columns):
+    for column_number, value in enumerate(columns):
         rows = [row for row in result["rows"] if column is None or _text(row["point"][column]) == value]
-        for (quantity, about), panel in zip(quantities.items(), panels[:, place], strict=True):
+        for (quantity, about), panel in zip(quantities.items(), panels[:, column_number], strict=True):
             limits = _limits(rows, quantities) if one_scale else _limits(result["rows"], [quantity])
             _curves(panel, rows, quantity, along, styles, limits)
-            panel.set_ylabel(about.axis if place == 0 else "")
-        panels[0, place].set_title(f"{column} = {value}" if column else "", fontsize=12)
-        panels[-1, place].set_xlabel(along)
+            panel.set_ylabel(about.axis if column_number == 0 else "")
+        panels[0, column_number].set_title(f"{column} = {value}" if column else "", fontsize=12)
+        panels[-1, column_number].set_xlabel(along)
     figure.suptitle(f"{_named(quantities)} over {along}: {result['title']}", fontsize=13)
     _legend(figure, styles, any(map(_in_doubt, result["rows"])))
     return figure
@@ -59,16 +59,18 @@ def draw(result: Tables) -> Figure:
 
 def draw_on(result: Tables, quantity: str, axes: Axes | None) -> Axes:
     """One quantity of a comparison on axes."""
-    known = {axis["key"]: axis["values"] for axis in result["axes"]}
-    varied = [key for key, values in known.items() if len(values) > 1]
-    along = max((key for key in varied if all(map(is_number, known[key]))), key=lambda key: len(known[key]), default=None)
+    values_of = {axis["key"]: axis["values"] for axis in result["axes"]}
+    varied = [key for key, values in values_of.items() if len(values) > 1]
+    along = max(
+        (key for key in varied if all(map(is_number, values_of[key]))), key=lambda key: len(values_of[key]), default=None
+    )
     panel = given_axes(axes, 8.0, 5.0)
     if along is None:
         _dots_on(panel, result["rows"], quantity)
         panel.set_yticks(range(len(result["rows"])), _names(result["rows"], varied))
         panel.set_ylim(len(result["rows"]) - 0.5, -0.5)
         return panel
-    styles = {key: [_text(value) for value in known[key]] for key in varied if key != along}
+    styles = {key: [_text(value) for value in values_of[key]] for key in varied if key != along}
     quantities = _quantities_of(result)
     limits = _limits(result["rows"], quantities if quantity in MOVING else [quantity])
     _curves(panel, result["rows"], quantity, along, styles, limits)
@@ -112,12 +114,12 @@ def _curves(
     """One curve for each combination of the styled axes, broken where a run failed or is in doubt; those are crosses, at the edge
     where they lie outside."""
     for combination in product(*styles.values()):
-        found = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
-        found = sorted(found, key=lambda row: row["point"][along])
+        series = [row for row in rows if all(_text(row["point"][k]) == v for k, v in zip(styles, combination, strict=True))]
+        series = sorted(series, key=lambda row: row["point"][along])
         look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
-        bad = [row for row in found if _in_doubt(row)]
-        good = [math.nan if row.get("doubt") or (v := _value_of(row, quantity)) is None else v for row in found]
-        panel.plot([row["point"][along] for row in found], good, **look)
+        bad = [row for row in series if _in_doubt(row)]
+        good = [math.nan if row.get("doubt") or (v := _value_of(row, quantity)) is None else v for row in series]
+        panel.plot([row["point"][along] for row in series], good, **look)
         clipped = [min(max(_value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
         (cross,) = panel.plot([row["point"][along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
         cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
@@ -129,8 +131,8 @@ def _curves(
 
 def _limits(rows: list[Tables], quantities: Iterable[str]) -> tuple[float, float]:
     """Range of quantities together, so that panels of a column have one scale; runs in doubt do not count."""
-    chosen = [row for row in rows if not _in_doubt(row)] or rows
-    values = [v for row in chosen for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
+    counted = [row for row in rows if not _in_doubt(row)] or rows
+    values = [v for row in counted for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
     margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
     return min(values) - margin, max(values) + margin
 
@@ -160,12 +162,12 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
     handles = []
-    for place, (key, values) in enumerate(list(styles.items())[:3]):
+    for trait, (key, values) in enumerate(list(styles.items())[:3]):
         for k, value in enumerate(values):
-            look = _look([k if n == place else 0 for n in range(3)])
-            if place > 0:
+            look = _look([k if n == trait else 0 for n in range(3)])
+            if trait > 0:
                 look |= {"color": "#555f6b", "markerfacecolor": "#555f6b" if look["markerfacecolor"] != "white" else "white"}
-            look |= {"marker": ""} if place < 2 else {"linestyle": ""}
+            look |= {"marker": ""} if trait < 2 else {"linestyle": ""}
             handles.append(Line2D([], [], label=f"{key} = {value}", **look))
     if doubt:
         handles.append(Line2D([], [], linestyle="", marker="x", color="#555f6b", label="in doubt: not in the effects"))
@@ -186,13 +188,13 @@ def _dots(result: Tables, varied: list[str]) -> Figure:
 
 
 def _dots_on(panel: Axes, rows: list[Tables], quantity: str) -> None:
-    for place, row in enumerate(rows):
+    for line, row in enumerate(rows):
         value = _value_of(row, quantity)
         if value is not None:
-            panel.plot([value], [place], "x" if _in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
+            panel.plot([value], [line], "x" if _in_doubt(row) else "o", color=_COLOURS[0], markersize=8)
         else:
             words = row["result"].get("status", "no value")
-            panel.annotate(words, (0.02, place), xycoords=("axes fraction", "data"), va="center")
+            panel.annotate(words, (0.02, line), xycoords=("axes fraction", "data"), va="center")
     panel.set_xlabel((MOVING | STATIC)[quantity].axis)
     panel.grid(True, color="#e3e7eb", linewidth=0.8)
     panel.spines[["top", "right"]].set_visible(False)
@@ -207,9 +209,9 @@ def _by_interaction(keys: list[str], along: str, effects: list[Tables]) -> list[
     """The axes, those first that change the effect of ``along`` on K most."""
 
     def strength(key: str) -> float:
-        found = [
+        changes = [
             abs(e["log_change"]) for e in effects if e["quantity"] in (K.name, KXX.name) and set(e["term"]) == {key, along}
         ]
-        return max(found, default=0.0)
+        return max(changes, default=0.0)
 
     return sorted(keys, key=lambda key: -strength(key))

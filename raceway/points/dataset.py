@@ -103,8 +103,8 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     RacewayError
         xarray is missing.
     """
-    found = _table_of(store, registry)
-    return labelled_dataset(found.variables, found.coordinates, found.attributes)
+    table = _table_of(store, registry)
+    return labelled_dataset(table.variables, table.coordinates, table.attributes)
 
 
 def _table_of(store: Rows, registry: Registry | None = None) -> _Table:
@@ -139,7 +139,7 @@ def _table_of(store: Rows, registry: Registry | None = None) -> _Table:
 
 def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
     """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,); damaged rows."""
-    size, damaged, found = store.design.size, 0, dict[str, np.ndarray]()
+    size, damaged, columns = store.design.size, 0, dict[str, np.ndarray]()
     status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
     for number, row in enumerate(store.rows()):
         status[number] = row["status"]
@@ -147,10 +147,10 @@ def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray
         if row["status"] == "done":
             warnings[number] = len(row["warnings"])
         for name, value in row["values"].items():
-            if name not in found:
-                found[name] = np.full((size, *np.shape(value)), np.nan)
-            found[name][number] = value
-    return {name: found[name] for name in COLUMNS if name in found}, status, warnings, damaged
+            if name not in columns:
+                columns[name] = np.full((size, *np.shape(value)), np.nan)
+            columns[name][number] = value
+    return {name: columns[name] for name in COLUMNS if name in columns}, status, warnings, damaged
 
 
 def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
@@ -160,15 +160,15 @@ def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
     except RacewayError:  # its plug-ins are not installed here: values are there, units of its keys are not
         scene = None
     names = np.array(DOF, dtype=object)
-    found: dict[str, Labelled] = {"dof": (("dof",), names, {}), "dof2": (("dof2",), names, {})}
+    coordinates: dict[str, Labelled] = {"dof": (("dof",), names, {}), "dof2": (("dof2",), names, {})}
     for key in design.keys:
         values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
         unit, words = ("", "") if scene is None else key_facts(scene, key)
         dim = key if design.axes else "point"
-        found[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": key, "description": words})
+        coordinates[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": key, "description": words})
     if not design.axes:
-        found["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
-    return found
+        coordinates["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
+    return coordinates
 
 
 def axis_labels(values: Sequence[object]) -> np.ndarray:
@@ -232,7 +232,7 @@ def write_csv(store: Rows, path: Path) -> Path:
 
 def _lines(store: Rows) -> Iterator[list[object]]:
     places = {name: list(product(DOF, repeat=len(quantity.dims))) for name, quantity in _ARRAYS.items()}
-    heads = [f"{name}_{'_'.join(place)}" for name in _ARRAYS for place in places[name]]
+    heads = [f"{name}_{'_'.join(entry)}" for name in _ARRAYS for entry in places[name]]
     yield [*store.design.keys, "status", "reason", "warnings", *_NUMBERS, *heads]
     for row in store.rows():
         values = row["values"]

@@ -49,9 +49,9 @@ def factorial_effects(values: np.ndarray) -> np.ndarray:
     effects : (2,) * k array; index 1 in the places of the axes of T holds e_T, [0, ..., 0] the mean
     """
     out = np.asarray(values, dtype=float)
-    for place in range(out.ndim):
-        first, last = np.take(out, 0, axis=place), np.take(out, 1, axis=place)
-        out = np.stack([0.5 * (first + last), 0.5 * (last - first)], axis=place)
+    for axis in range(out.ndim):
+        first, last = np.take(out, 0, axis=axis), np.take(out, 1, axis=axis)
+        out = np.stack([0.5 * (first + last), 0.5 * (last - first)], axis=axis)
     out = 2.0 * out
     out[(0,) * out.ndim] *= 0.5
     return out
@@ -102,12 +102,12 @@ class Factorial:
     @cached_property
     def effects(self) -> list[Effect]:
         """All terms, the largest first."""
-        found = factorial_effects(np.log(self.corners))
-        squares = float((found**2).sum() - found[(0,) * found.ndim] ** 2)
+        coefficients = factorial_effects(np.log(self.corners))
+        squares = float((coefficients**2).sum() - coefficients[(0,) * coefficients.ndim] ** 2)
         terms = []
         for order in range(1, len(self.keys) + 1):
             for places in combinations(range(len(self.keys)), order):
-                e = float(found[tuple(int(k in places) for k in range(len(self.keys)))])
+                e = float(coefficients[tuple(int(k in places) for k in range(len(self.keys)))])
                 difference = None
                 if order == 1:
                     first, last = (float(np.take(self.corners, end, axis=places[0]).mean()) for end in (0, 1))
@@ -117,23 +117,23 @@ class Factorial:
                 terms.append(Effect(term, e, 100.0 * float(np.expm1(e)), difference, share, abs(e) > self.error))
         return sorted(terms, key=lambda effect: -abs(effect.log_change))
 
-    def log_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
-        """Mean change of ln(quantity) along one axis, the axes in ``given`` held at an end (0 first, 1 last)."""
-        first, last = (self._mean(np.log(self.corners), {**(given or {}), key: end}) for end in (0, 1))
+    def log_change(self, key: str, levels: Mapping[str, int] | None = None) -> float:
+        """Mean change of ln(quantity) along one axis, the axes in ``levels`` held at an end (0 first, 1 last)."""
+        first, last = (self._mean(np.log(self.corners), {**(levels or {}), key: end}) for end in (0, 1))
         return last - first
 
-    def log_error(self, key: str, given: Mapping[str, int] | None = None) -> float:
+    def log_error(self, key: str, levels: Mapping[str, int] | None = None) -> float:
         """Largest shift of that change by the corners' errors."""
-        return sum(self._mean(self._log_errors, {**(given or {}), key: end}) for end in (0, 1))
+        return sum(self._mean(self._log_errors, {**(levels or {}), key: end}) for end in (0, 1))
 
-    def resolved_change(self, key: str, given: Mapping[str, int] | None = None) -> float:
+    def resolved_change(self, key: str, levels: Mapping[str, int] | None = None) -> float:
         """That change, or 0 where errors can make it."""
-        change = self.log_change(key, given)
-        return change if abs(change) > self.log_error(key, given) else 0.0
+        change = self.log_change(key, levels)
+        return change if abs(change) > self.log_error(key, levels) else 0.0
 
-    def _mean(self, values: np.ndarray, given: Mapping[str, int]) -> float:
+    def _mean(self, values: np.ndarray, levels: Mapping[str, int]) -> float:
         index: list[int | slice] = [slice(None)] * len(self.keys)
-        for name, level in given.items():
+        for name, level in levels.items():
             index[self.keys.index(name)] = level
         return float(values[tuple(index)].mean())
 
@@ -154,11 +154,11 @@ def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
     for held in range(k):
         for places in sorted(combinations(range(k), held), reverse=True):
             for ends in product((0, 1), repeat=held):
-                chosen: list[int | None] = [None] * k
-                for place, end in zip(places, ends, strict=True):
-                    chosen[place] = end
-                if usable[tuple(slice(None) if end is None else end for end in chosen)].all():
-                    return tuple(chosen)
+                fixed: list[int | None] = [None] * k
+                for axis, end in zip(places, ends, strict=True):
+                    fixed[axis] = end
+                if usable[tuple(slice(None) if end is None else end for end in fixed)].all():
+                    return tuple(fixed)
     return None
 
 
@@ -223,8 +223,8 @@ class Row:
 
     def error_of(self, quantity: str) -> float:
         """Relative error of a quantity: of K that of Z over its own size, since m w^2 has none; 0 of static ones, solved to rounding."""
-        own, z = self.value(quantity), self.value(Z.name)
-        return self.error * (z or 0.0) / own if own and quantity in MOVING else 0.0
+        value, z = self.value(quantity), self.value(Z.name)
+        return self.error * (z or 0.0) / value if value and quantity in MOVING else 0.0
 
     @property
     def estimated(self) -> bool:
@@ -295,12 +295,12 @@ class Findings:
         index = tuple(slice(None) if end is None else end for end in part)
         keys = tuple(axis.key for axis, end in zip(self.varied, part, strict=True) if end is None)
         corners = self._corners[index]
-        found = {}
+        factorials = {}
         for name in self.quantities:
             values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
             if (values > 0.0).all():  # x may have either sign: then it has no logarithm
-                found[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
-        return found
+                factorials[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+        return factorials
 
     @cached_property
     def _corners(self) -> np.ndarray:
@@ -322,33 +322,33 @@ class Findings:
     @cached_property
     def effects(self) -> list[Tables]:
         """Main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
-        found = []
+        terms = []
         for quantity, factorial in self.factorials.items():
             for effect in factorial.effects:
                 if len(effect.term) <= 2 or abs(effect.log_change) >= _LEAST_HIGH_ORDER:
                     plain = attrs.asdict(effect)
-                    found.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
-        return found
+                    terms.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
+        return terms
 
     @cached_property
     def trends(self) -> list[Tables]:
         """Trend of each quantity along each axis of three or more numbers, for every combination of the others."""
-        found = []
+        courses = []
         for axis in self.varied:
             if not axis.numeric or len(axis.values) < 3:
                 continue
             series: dict[tuple[str, ...], list[Row]] = {}
-            others = [other.key for other in self.axes if other is not axis]
+            other_keys = [varied_axis.key for varied_axis in self.axes if varied_axis is not axis]
             for row in self.rows:
-                series.setdefault(tuple(repr(row.point[key]) for key in others), []).append(row)
+                series.setdefault(tuple(repr(row.point[key]) for key in other_keys), []).append(row)
             for rows in series.values():
-                at = {key: rows[0].point[key] for key in others}
+                at = {key: rows[0].point[key] for key in other_keys}
                 good = sorted((row for row in rows if row.doubt is None), key=lambda row: row.point[axis.key])
                 if axis.values[0] > axis.values[-1]:
                     good.reverse()
                 for quantity in self.factorials or self.quantities:
-                    found.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
-        return found
+                    courses.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
+        return courses
 
 
 def _same(a: object, b: object) -> bool:
@@ -431,8 +431,8 @@ def _courses(comparison: Findings) -> list[str]:
         changes = [math.log1p(t["percent"] / 100.0) for t in trends]
         if len(trends) < 2 or max(changes) - min(changes) < _HARDLY:
             continue
-        others = [key for key in factorial.keys if key != axis.key]
-        partner = comparison.axis(max(others, key=lambda key: _together(factorial, axis.key, key)))
+        partners = [key for key in factorial.keys if key != axis.key]
+        partner = comparison.axis(max(partners, key=lambda key: _together(factorial, axis.key, key)))
         for value in partner.values:
             here = [t for t in trends if t["at"][partner.key] == value]
             parts = []
@@ -447,9 +447,9 @@ def _courses(comparison: Findings) -> list[str]:
     return words
 
 
-def _together(factorial: Factorial, one: str, other: str) -> float:
+def _together(factorial: Factorial, key: str, partner: str) -> float:
     """Size of the interaction of two axes."""
-    return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {one, other}), default=0.0)
+    return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {key, partner}), default=0.0)
 
 
 def _inertia(comparison: Findings) -> list[str]:
@@ -470,8 +470,8 @@ def _what_was_run(comparison: Findings) -> str:
     text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_listed(axes)}."
     if not comparison.factorials:
         return text
-    one, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
-    text += f" The effects compare the first with the last value of each axis ({one.corners.size} runs)"
+    factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
+    text += f" The effects compare the first with the last value of each axis ({factorial.corners.size} runs)"
     text += ", as geometric means over the other settings"
     text += f", at {_settings(comparison.held)}" if comparison.held else ""
     text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
@@ -490,10 +490,10 @@ def _doubts(comparison: Findings) -> list[str]:
             point = ", ".join(shown(row.point[axis.key]) for axis in comparison.axes)
             reasons.setdefault(row.doubt, []).append(f"({point})")
     words = []
-    for reason, found in reasons.items():
-        points = ", ".join(found[:4]) + (f" and {len(found) - 4} more" if len(found) > 4 else "")
+    for reason, settings in reasons.items():
+        points = ", ".join(settings[:4]) + (f" and {len(settings) - 4} more" if len(settings) > 4 else "")
         words.append(
-            f"Left out of the explanation, {len(found)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
+            f"Left out of the explanation, {len(settings)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
         )
     if comparison.held and words:
         words.append(
@@ -557,13 +557,15 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
     lines: dict[str, dict[str, float]] = {}
     for row in comparison.rows:
         if row.doubt is None and (value := row.value(quantity) or 0.0) > 0.0:
-            others = repr([number for key, number in row.point.items() if key != axis.key])
-            lines.setdefault(others, {})[repr(row.point[axis.key])] = math.log(value)
+            setting = repr([number for key, number in row.point.items() if key != axis.key])
+            lines.setdefault(setting, {})[repr(row.point[axis.key])] = math.log(value)
     first, *amid, last = map(repr, axis.values)
     farthest, least = None, _HARDLY + comparison.factorials[quantity].error
     for value, name in zip(axis.values[1:-1], amid, strict=True):
         changes = [
-            (one[name] - one[first], one[last] - one[first]) for one in lines.values() if {first, name, last} <= one.keys()
+            (values[name] - values[first], values[last] - values[first])
+            for values in lines.values()
+            if {first, name, last} <= values.keys()
         ]
         if (far := max((max(to - max(end, 0.0), min(end, 0.0) - to) for to, end in changes), default=0.0)) > least:
             farthest, least = (shown(value), [to for to, _ in changes]), far
@@ -573,19 +575,19 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
 def _mixed(factorial: Factorial, key: str) -> bool:
     """Whether an axis raises the quantity at some value of another axis and lowers it at the other."""
     return any(
-        factorial.resolved_change(key, {other: 0}) * factorial.resolved_change(key, {other: 1}) < 0.0
-        for other in factorial.keys
-        if other != key
+        factorial.resolved_change(key, {partner: 0}) * factorial.resolved_change(key, {partner: 1}) < 0.0
+        for partner in factorial.keys
+        if partner != key
     )
 
 
 def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str:
     """At which end of another axis the change along one is resolved although its mean is not."""
     words = []
-    for other in (name for name in factorial.keys if name != key):
+    for partner in (name for name in factorial.keys if name != key):
         for end in (0, 1):
-            if change := factorial.resolved_change(key, {other: end}):
-                words.append(f"with {other} = {shown(comparison.axis(other).ends[end])} {percent(change)}")
+            if change := factorial.resolved_change(key, {partner: end}):
+                words.append(f"with {partner} = {shown(comparison.axis(partner).ends[end])} {percent(change)}")
     return "".join(f"; {text}" for text in words)
 
 
@@ -594,11 +596,11 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
     large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     words = []
     for effect in large[:_MOST_INTERACTIONS]:
-        given, moved = _ordered(comparison, factorial, effect)
-        changes = [factorial.log_change(moved.key, {given.key: end}) for end in (0, 1)]
+        held, moved = _ordered(comparison, factorial, effect)
+        changes = [factorial.log_change(moved.key, {held.key: end}) for end in (0, 1)]
         words.append(
-            f"{label}, interaction of {given.key} and {moved.key}: with {given.key} = {shown(given.ends[0])}, "
-            f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(given.ends[1])} by {percent(changes[1])}."
+            f"{label}, interaction of {held.key} and {moved.key}: with {held.key} = {shown(held.ends[0])}, "
+            f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(held.ends[1])} by {percent(changes[1])}."
         )
     high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     if high:
@@ -617,6 +619,6 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
 
 def _ordered(comparison: Findings, factorial: Factorial, effect: Effect) -> tuple[Axis, Axis]:
     """(the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two."""
-    own = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
-    a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -own[axis.key]))
+    main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
+    a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))
     return a, b

@@ -37,49 +37,49 @@ if TYPE_CHECKING:
 
 def plugins_of(scene: Scene) -> list[tuple[str, str]]:
     """(kind, name) of every plug-in that a scene uses."""
-    found = [
+    plugins = [
         ("contact_law", scene.contact.kind),
         ("integrator", scene.integrator.kind),
         ("identifier", scene.identifier.kind),
     ]
-    found += [("excitation", scene.excitation.name)] if scene.excitation is not None else []
-    return found + ([("mesher", scene.mesh.name)] if scene.mesh is not None else [])
+    plugins += [("excitation", scene.excitation.name)] if scene.excitation is not None else []
+    return plugins + ([("mesher", scene.mesh.name)] if scene.mesh is not None else [])
 
 
 def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
     """Versions, hash of all sources, and those of the used (kind, name) that this process has, as plain values."""
-    there = sorted(pair for pair in used if len(registry.entries.get(pair, [])) == 1)
-    entries = [registry.find(*pair) for pair in there]
+    present = sorted(pair for pair in used if len(registry.entries.get(pair, [])) == 1)
+    entries = [registry.find(*pair) for pair in present]
     return {
         "raceway": __version__,
         "python": platform.python_version(),
         "numpy": version("numpy"),
         "numba": version("numba"),
         "scipy": version("scipy"),
-        "program": program_key(registry, there),
+        "program": program_key(registry, present),
         "plugins": {f"{e.kind}:{e.name}": f"{e.distribution} {e.version}" for e in entries},
     }
 
 
-def _used_by(wanted: ReadTables) -> list[tuple[str, str]]:
+def _used_by(required: ReadTables) -> list[tuple[str, str]]:
     """(kind, name) of the plug-ins of an identity."""
-    return [(kind, name) for kind, _, name in (text.partition(":") for text in wanted["plugins"])]
+    return [(kind, name) for kind, _, name in (text.partition(":") for text in required["plugins"])]
 
 
-def differences(wanted: ReadTables, there: ReadTables) -> list[str]:
-    """In words what is there instead of what is wanted; empty where nothing differs."""
+def differences(required: ReadTables, present: ReadTables) -> list[str]:
+    """In words what is present instead of what is required; empty where nothing differs."""
     words = []
-    for text, owner in wanted["plugins"].items():
+    for text, owner in required["plugins"].items():
         kind, _, name = text.partition(":")
-        plugin, has = f"{kind.replace('_', ' ')} '{name}'", there["plugins"].get(text)
+        plugin, has = f"{kind.replace('_', ' ')} '{name}'", present["plugins"].get(text)
         if has is None:
             words.append(f"{plugin} of {owner} is missing")
         elif has != owner:
             words.append(f"{plugin} is of {has} instead of {owner}")
     for name in ("raceway", "python", "numpy", "numba", "scipy"):
-        if wanted[name] != there[name]:
-            words.append(f"{name} {there[name]} instead of {wanted[name]}")
-    if not words and wanted["program"] != there["program"]:
+        if required[name] != present[name]:
+            words.append(f"{name} {present[name]} instead of {required[name]}")
+    if not words and required["program"] != present["program"]:
         words.append("the sources of raceway or of a plug-in differ, under the same version")
     return words
 
@@ -96,40 +96,40 @@ class Work:
 
     Attributes
     ----------
-    function : called as ``function(given, registry)``
+    function : called as ``function(task, registry)``
     plugins : one-off plug-in files, which each process loads
-    wanted : identity that a process must have; None where all are of this machine
-    own : registry in the process that the work was made in; others have one of their own
+    required : identity that a process must have; None where all are of this machine
+    registry : in the process that the work was made in; others have one of their own
     """
 
     function: Callable[[Any, Registry], Any]
     plugins: tuple[str, ...] = ()
-    wanted: Tables | None = None
-    own: Registry | None = None
+    required: Tables | None = None
+    registry: Registry | None = None
 
     def __reduce__(self) -> tuple[object, ...]:
-        return Work, (self.function, self.plugins, self.wanted)
+        return Work, (self.function, self.plugins, self.required)
 
     def fault(self) -> str | None:
         """Why this process is not fit for the work; None where it is."""
-        if self.wanted is None:
+        if self.required is None:
             return None
-        mark = (json.dumps(self.wanted, sort_keys=True), *self.plugins)
+        mark = (json.dumps(self.required, sort_keys=True), *self.plugins)
         if mark not in _FAULTS:
             try:
-                there = identity(registry_of(self.plugins), _used_by(self.wanted))
-                _FAULTS[mark] = "; ".join(differences(self.wanted, there)) or None
+                present = identity(registry_of(self.plugins), _used_by(self.required))
+                _FAULTS[mark] = "; ".join(differences(self.required, present)) or None
             except PluginError as why:
                 _FAULTS[mark] = str(why)
         return _FAULTS[mark]
 
-    def __call__(self, some: list[Any]) -> Any:
+    def __call__(self, tasks: list[Any]) -> Any:
         with _ONE:
             fault = self.fault()
             if fault is not None:
                 return Refused(worker(), fault)
-            registry = self.own or registry_of(self.plugins)
-            return [self.function(one, registry) for one in some]
+            registry = self.registry or registry_of(self.plugins)
+            return [self.function(task, registry) for task in tasks]
 
 
 def registry_of(files: tuple[str, ...]) -> Registry:
@@ -155,12 +155,12 @@ class Item:
     Attributes
     ----------
     key : of its row: a hash of all that decides it;  name : for people
-    given : what the study's function takes; plain values, or what can be pickled
+    task : what the study's function takes; plain values, or what can be pickled
     """
 
     key: str
     name: str
-    given: Any
+    task: Any
 
 
 def work_through(
@@ -177,7 +177,7 @@ def work_through(
 
     Parameters
     ----------
-    function : called as ``function(item.given, registry)``, here or in another process: a row, plain values
+    function : called as ``function(item.task, registry)``, here or in another process: a row, plain values
     store : of finished rows, read and added to;  executor : follows ``raceway.framework.contracts.Executor``
     plugins : one-off plug-in files, which each process loads
     on_progress : called as ``on_progress(name, done, total)`` after each item; an exception stops the study
@@ -188,21 +188,21 @@ def work_through(
     RacewayError
         An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
-    found = {place: row for place, item in enumerate(items) if (row := store.get(item.key)) is not None}
-    reused = len(found)
-    work = Work(function, tuple(str(file.resolve()) for file in plugins), own=registry)
-    batches = ((place, [item.given]) for place, item in enumerate(items) if place not in found)
+    rows = {index: row for index, item in enumerate(items) if (row := store.get(item.key)) is not None}
+    reused = len(rows)
+    work = Work(function, tuple(str(file.resolve()) for file in plugins), registry=registry)
+    batches = ((index, [item.task]) for index, item in enumerate(items) if index not in rows)
     with closing(answers(executor, work, batches)) as finished:
-        for place, answer in finished:
-            item = items[place]
+        for index, answer in finished:
+            item = items[index]
             if isinstance(answer, Lost):
-                found[place] = _lost(item, answer, lost)
+                rows[index] = _lost(item, answer, lost)
             else:
-                found[place] = answer[0]
+                rows[index] = answer[0]
                 store.put(item.key, answer[0])
             if on_progress is not None:
-                on_progress(item.name, len(found), len(items))
-    return [found[place] for place in range(len(items))], reused
+                on_progress(item.name, len(rows), len(items))
+    return [rows[index] for index in range(len(items))], reused
 
 
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
@@ -222,14 +222,14 @@ def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generat
     PluginError
         A worker that is not fit for the work, or an executor that cannot work.
     """
-    found = executor.compute(work, batches)
+    batch_answers = executor.compute(work, batches)
     try:
-        for number, answer in found:
+        for number, answer in batch_answers:
             if isinstance(answer, Refused):
                 raise PluginError(f"worker {answer.worker} cannot compute these points: {answer.reason}")
             yield number, answer
     finally:
-        close = getattr(found, "close", None)  # an iterator that is no generator has none
+        close = getattr(batch_answers, "close", None)  # an iterator that is no generator has none
         if close is not None:
             close()
 
@@ -244,7 +244,7 @@ def local(registry: Registry, processes: int, **options: Any) -> Executor:
 def processor_time() -> float:
     """Of this process and of those that it has ended [s]."""
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(one.ru_utime + one.ru_stime for one in used)
+    return sum(usage.ru_utime + usage.ru_stime for usage in used)
 
 
 #: No further repeat is begun once a setting has taken this long [s].
@@ -273,8 +273,8 @@ def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry,
     return row, reused == 1
 
 
-def _measured(given: tuple[Scene, int], registry: Registry) -> Tables:
-    scene, repeats = given
+def _measured(task: tuple[Scene, int], registry: Registry) -> Tables:
+    scene, repeats = task
     return measured(scene, registry, repeats)
 
 
@@ -296,9 +296,9 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
     while len(runs) < repeats and (not runs or time.perf_counter() - begun - compiling < PATIENCE_S):
         cpu = time.process_time()
         try:
-            found = run(scene, registry)
+            answer = run(scene, registry)
             cpu = time.process_time() - cpu
-            result = found.to_dict()
+            result = answer.to_dict()
         except RacewayError as error:
             return {
                 "status": error.status,
@@ -315,7 +315,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
         runs.append({"cpu_s": cpu if cost["compile_s"] == 0.0 else max(cpu - cost["compile_s"], cost["solve_s"]), **times})
-    times = {name: min(one[name] for one in runs) for name in runs[0]}
+    times = {name: min(timing[name] for timing in runs) for name in runs[0]}
     return {
         "status": "completed",
         "reason": "",
@@ -327,7 +327,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
             **times,
             # Other programs on the machine stretch the wall time, not the work; threads share the work.
             "time_s": times["cpu_s"] if cost["threads"] == 1 else times["wall_s"],
-            "wall_spread_s": max(one["wall_s"] for one in runs) - times["wall_s"],
+            "wall_spread_s": max(timing["wall_s"] for timing in runs) - times["wall_s"],
             "compile_s": compiling,
             "steps": cost["steps"],
             "iterations": cost["newton_iterations"],

@@ -66,8 +66,8 @@ class Selection:
     @property
     def scene(self) -> Tables:
         """The scene that was swept; keys of ``axes`` and ``fixed`` have other values."""
-        found = json.loads(self.dataset.attrs.get("scene", "{}"))
-        return found if isinstance(found, dict) else {}
+        tables = json.loads(self.dataset.attrs.get("scene", "{}"))
+        return tables if isinstance(tables, dict) else {}
 
     def value(self, key: str, default: object = None) -> Any:
         """What a key of the scene is at all points of the selection; ``default`` where it is not given.
@@ -102,25 +102,25 @@ def parse_at(texts: Iterable[str]) -> Tables:
     SceneError
         With every text that is not of this form, and every key that stands twice.
     """
-    chosen: Tables = {}
+    values: Tables = {}
     mistakes = []
     for text in texts:
         key, sign, value = (part.strip() for part in text.partition("="))
         if not sign or not key or not value:
             mistakes.append(Mistake("--at", text, "must have the form KEY=VALUE, for instance load.axial=1000"))
-        elif key in chosen:
+        elif key in values:
             mistakes.append(Mistake(f"--at {key}", value, "is chosen twice: leave one out"))
         else:
-            chosen[key] = parse_value(value)
+            values[key] = parse_value(value)
     if mistakes:
         raise SceneError(mistakes)
-    return chosen
+    return values
 
 
 def keys_of(dataset: Dataset) -> list[str]:
     """The keys of the scene that a sweep varied, in its order."""
     if LIST in dataset.dims:
-        return [str(name) for name, found in dataset.coords.items() if found.dims == (LIST,) and name != LIST]
+        return [str(name) for name, coordinate in dataset.coords.items() if coordinate.dims == (LIST,) and name != LIST]
     return [str(name) for name in dataset.dims if name in dataset.coords and "." in str(name)]
 
 
@@ -138,37 +138,37 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
         An unknown key, or a value that the sweep does not hold; the nearest one is named.
     """
     keys = keys_of(dataset)
-    mistakes, chosen = [], Tables()
-    for key, wanted in at.items():
+    mistakes, fixed_values = [], Tables()
+    for key, requested in at.items():
         if key not in keys:
             message = f"is not an axis of this sweep{nearest(key, keys)}; axes: {', '.join(keys)}"
-            mistakes.append(Mistake(f"--at {key}", wanted, message))
+            mistakes.append(Mistake(f"--at {key}", requested, message))
             continue
         values = _values(dataset[key].values)
-        found = [value for value in values if same(value, wanted)]
-        if found:
-            chosen[key] = found[0]
+        matches = [value for value in values if same(value, requested)]
+        if matches:
+            fixed_values[key] = matches[0]
         else:
-            mistakes.append(Mistake(f"--at {key}", wanted, f"is not in the sweep, which has {listed(values)}"))
+            mistakes.append(Mistake(f"--at {key}", requested, f"is not in the sweep, which has {listed(values)}"))
     if mistakes:
         raise SceneError(mistakes)
-    part = _list_at(dataset, chosen) if LIST in dataset.dims else dataset.sel(chosen)
+    part = _list_at(dataset, fixed_values) if LIST in dataset.dims else dataset.sel(fixed_values)
     axes, fixed = Tables(), Tables()
     for key in keys:
         values = _values(part[key].values)
-        if key in chosen or len(values) == 1:
-            fixed[key] = values[0] if values else chosen[key]
+        if key in fixed_values or len(values) == 1:
+            fixed[key] = values[0] if values else fixed_values[key]
         else:
             axes[key] = values
     unfinished = _unfinished(part)
     return Selection(_as_grid(part, axes, fixed), axes, fixed, unfinished)
 
 
-def same(one: Any, other: Any) -> bool:
+def same(a: Any, b: Any) -> bool:
     """Whether two values of a key are equal, numbers to rounding."""
-    if is_number(one) and is_number(other):
-        return math.isclose(one, other, rel_tol=_SAME, abs_tol=0.0)
-    return _value_text(one) == _value_text(other)
+    if is_number(a) and is_number(b):
+        return math.isclose(a, b, rel_tol=_SAME, abs_tol=0.0)
+    return _value_text(a) == _value_text(b)
 
 
 def _value_text(value: object) -> str:
@@ -207,16 +207,16 @@ def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> Non
 
 def _values(array: np.ndarray) -> list[Any]:
     """Different values as plain Python objects, numbers in rising order."""
-    found = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))
-    return sorted(found) if all(is_number(value) for value in found) else found
+    different = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))
+    return sorted(different) if all(is_number(value) for value in different) else different
 
 
-def _list_at(dataset: Dataset, chosen: ReadTables) -> Dataset:
+def _list_at(dataset: Dataset, fixed: ReadTables) -> Dataset:
     keep = np.ones(dataset.sizes[LIST], dtype=bool)
-    for key, value in chosen.items():
-        keep &= np.array([same(one, value) for one in dataset[key].values.tolist()])
+    for key, value in fixed.items():
+        keep &= np.array([same(coordinate, value) for coordinate in dataset[key].values.tolist()])
     if not keep.any():
-        raise RacewayError(f"no point of the sweep has {', '.join(f'{k} = {shown(v)}' for k, v in chosen.items())} together")
+        raise RacewayError(f"no point of the sweep has {', '.join(f'{k} = {shown(v)}' for k, v in fixed.items())} together")
     return dataset.isel({LIST: np.flatnonzero(keep)})
 
 
@@ -239,14 +239,14 @@ def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
     points = list(zip(*(part[key].values.tolist() for key in keys), strict=True))
     if len(set(points)) != len(points) or len(points) != math.prod(len(values) for values in axes.values()):
         return part
-    kept = {key: dict(part[key].attrs) for key in keys}
+    attributes_of = {key: dict(part[key].attrs) for key in keys}
     part = part.drop_vars([LIST], errors="ignore")
     if len(keys) == 1:
         part = part.swap_dims({LIST: keys[0]})
     else:
         part = part.set_index(point=keys).unstack(LIST)
     part = _ordered(part, axes)
-    for key, attributes in kept.items():
+    for key, attributes in attributes_of.items():
         part[key].attrs.update(attributes)
     return part
 
@@ -298,10 +298,10 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
     low, high = float(np.nanmin(data.values)), float(np.nanmax(data.values))
     if high - low <= 1e-9 * abs(high):
         low, high = low - 0.01 * abs(low or 1.0), high + 0.01 * abs(high or 1.0)
-    for place, (value, part) in enumerate(parts):
-        axes = grid.flat[place]
+    for panel, (value, part) in enumerate(parts):
+        axes = grid.flat[panel]
         axes.set_title("" if panels is None else f"{panels} = {_text(value)}{_unit(data, panels)}", fontsize=10.5)
-        first = place % columns == 0
+        first = panel % columns == 0
         if kind == "curves":
             _curves(axes, part, x, y, label if first else "")
         elif kind == "map":
@@ -363,14 +363,14 @@ def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> N
     places, names = _places(data[x].values)
     for k, value in enumerate(values):
         if y is None:
-            chosen, at = data, places
+            series, at = data, places
         elif scattered:
-            keep = np.array([one == value for one in data[y].values.tolist()])
-            chosen, at = data.isel({_LIST: np.flatnonzero(keep)}), places[keep]
+            keep = np.array([coordinate == value for coordinate in data[y].values.tolist()])
+            series, at = data.isel({_LIST: np.flatnonzero(keep)}), places[keep]
         else:
-            chosen, at = data.sel({y: value}), places
+            series, at = data.sel({y: value}), places
         axes.plot(
-            at, chosen.values, label=_text(value), color=_colour(k, values), marker=_MARKERS[k % len(_MARKERS)],
+            at, series.values, label=_text(value), color=_colour(k, values), marker=_MARKERS[k % len(_MARKERS)],
             markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if scattered or names else 1.6,
         )  # fmt: skip
         if scattered and len(at) > 40:
@@ -386,9 +386,9 @@ def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float
     low, high = limits
     axes.set_ylabel(_axis(data, y) if first else "", fontsize=11)
     if _LIST in data.dims:
-        found = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
+        points = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
         _dress(axes, data, x)
-        return found
+        return points
     at_x, at_y = data[x].values, data[y].values
     values = data.transpose(y, x).values
     axes.set_facecolor(_NO_RESULT)
@@ -440,13 +440,13 @@ def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     return np.array([names.index(_text(value)) for value in plain], dtype=float), names
 
 
-def _colour(place: int, values: list[Any]) -> str | tuple[float, float, float, float]:
+def _colour(rank: int, values: list[Any]) -> str | tuple[float, float, float, float]:
     """Ordered colours for numbers, distinct ones for words."""
     if not _numeric(values) or len(values) == 1:
-        return _WORDS[place % len(_WORDS)]
+        return _WORDS[rank % len(_WORDS)]
     from matplotlib import colormaps
 
-    return colormaps["viridis"](0.88 * place / (len(values) - 1))
+    return colormaps["viridis"](0.88 * rank / (len(values) - 1))
 
 
 def _axis(data: DataArray, key: str) -> str:
@@ -532,13 +532,13 @@ def layout(
     numeric = [key for key, values in axes.items() if all(is_number(v) for v in values)]
     kind = kind or _kind(axes, numeric)
     x = x or _best(axes, [key for key in numeric or axes if key != y], kind)
-    rest = [key for key in axes if key != x]
+    other_axes = [key for key in axes if key != x]
     if kind != "curves":
-        y = y or next(iter(sorted((key for key in rest if key in numeric), key=lambda key: -len(axes[key]))), None)
+        y = y or next(iter(sorted((key for key in other_axes if key in numeric), key=lambda key: -len(axes[key]))), None)
         _refuse_flat(kind, x, y, numeric)
     else:
-        y = y or _colour_axis(axes, rest)
-    over = [key for key in rest if key != y]
+        y = y or _colour_axis(axes, other_axes)
+    over = [key for key in other_axes if key != y]
     panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
     _refuse_rest(axes, [key for key in over if key != panels], kind)
     if kind == "surface" and LIST in data.dims:
@@ -562,29 +562,28 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
             raise RacewayError(f"choose what to draw with --value: {', '.join(names(dataset))}")
     name, _, labels = text.partition(":")
     if name not in dataset or dataset[name].dtype.kind not in "fiu":
-        known = names(dataset)
+        variables = names(dataset)
         raise SceneError.at(
-            "--value", text, f"is not a quantity of this sweep{nearest(name, known)}; there are {', '.join(known)}"
+            "--value", text, f"is not a quantity of this sweep{nearest(name, variables)}; there are {', '.join(variables)}"
         )
     data = dataset[name]
-    own = [str(dim) for dim in data.dims if "." not in str(dim) and dim != LIST]
-    given = [label.strip() for label in labels.split(",") if label.strip()]
-    if len(given) != len(own):
-        choices = [[str(label) for label in data[dim].values] for dim in own]
-        wanted = ",".join(options[min(1, len(options) - 1)] for options in choices)
-        message = (
-            f"takes {len(own)} labels after a colon{f', for instance {name}:{wanted}' if own else ''}; {len(given)} given"
-        )
+    dimensions = [str(dim) for dim in data.dims if "." not in str(dim) and dim != LIST]
+    entry = [label.strip() for label in labels.split(",") if label.strip()]
+    if len(entry) != len(dimensions):
+        choices = [[str(label) for label in data[dim].values] for dim in dimensions]
+        example = ",".join(options[min(1, len(options) - 1)] for options in choices)
+        message = f"takes {len(dimensions)} labels after a colon{f', for instance {name}:{example}' if dimensions else ''}; {len(entry)} given"
         raise SceneError.at("--value", text, message)
-    for dim, label in zip(own, given, strict=True):
-        known = [str(one) for one in data[dim].values]
-        if label not in known:
-            raise SceneError.at("--value", text, f"has no '{label}'{nearest(label, known)}; there are {', '.join(known)}")
-        data = data.isel({dim: known.index(label)})
+    for dim, label in zip(dimensions, entry, strict=True):
+        coordinates = [str(coordinate) for coordinate in data[dim].values]
+        if label not in coordinates:
+            why = f"has no '{label}'{nearest(label, coordinates)}; there are {', '.join(coordinates)}"
+            raise SceneError.at("--value", text, why)
+        data = data.isel({dim: coordinates.index(label)})
     data = data.copy()  # its attributes change
-    if own:
+    if dimensions:
         data.name = text
-        data.attrs["units"] = entry_unit(str(data.attrs.get("units", "")), given)
+        data.attrs["units"] = entry_unit(str(data.attrs.get("units", "")), entry)
     return data, text
 
 
@@ -604,23 +603,23 @@ def _best(axes: Tables, keys: list[str], kind: str) -> str:
     return min(keys, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
 
 
-def _colour_axis(axes: Tables, rest: list[str]) -> str | None:
+def _colour_axis(axes: Tables, keys: list[str]) -> str | None:
     """The axis with most values that still can be told apart; panels take the other one."""
-    fitting = [key for key in rest if len(axes[key]) <= _MOST_COLOURS]
-    return max(fitting or rest, key=lambda key: len(axes[key]), default=None)
+    fitting = [key for key in keys if len(axes[key]) <= _MOST_COLOURS]
+    return max(fitting or keys, key=lambda key: len(axes[key]), default=None)
 
 
 def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> None:
     mistakes = []
-    known = list(selection.axes)
+    varying = list(selection.axes)
     for option, key in (("--x", x), ("--y", y)):
-        if key is None or key in known:
+        if key is None or key in varying:
             continue
         if key in selection.fixed:
             why = f"has the one value {shown(selection.fixed[key])} here"
         else:
-            why = f"is not an axis of this sweep{nearest(key, known)}"
-        mistakes.append(Mistake(option, key, f"{why}; axes that vary: {', '.join(known)}"))
+            why = f"is not an axis of this sweep{nearest(key, varying)}"
+        mistakes.append(Mistake(option, key, f"{why}; axes that vary: {', '.join(varying)}"))
     if x is not None and x == y:
         mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
     if mistakes:

@@ -45,13 +45,13 @@ def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
     scale = 72.0 / figure.dpi
     points = [scale * axes.transData.transform(point) for _, point, _ in labels]
     low, high = scale * axes.bbox.get_points()
-    taken = [(point, np.full(2, _MARKER)) for point in points]
+    occupied = [(point, np.full(2, _MARKER)) for point in points]
     for (text, at, tone), point in zip(labels, points, strict=True):
         half = 0.5 * _SIZE * np.array([_WIDE * len(text), _HIGH])
         for middle, away in _places(point, half):
             inside = (middle - half >= low).all() and (middle + half <= high).all()
-            if inside and not any((np.abs(middle - other) < half + size).all() for other, size in taken):
-                taken.append((middle, half))
+            if inside and not any((np.abs(middle - centre) < half + size).all() for centre, size in occupied):
+                occupied.append((middle, half))
                 line = {"arrowstyle": "-", "color": tone, "linewidth": 0.5, "shrinkB": 3.0} if away > _AWAY[0] else None
                 axes.annotate(
                     text, at, tuple(middle - point), textcoords="offset points", fontsize=_SIZE, color=tone, ha="center", va="center",
@@ -115,9 +115,9 @@ def page(result: Tables, picture: bool = False) -> str:
     lines += ["![error against run time](precision.png)", ""] if picture else []
     lines += [*(f"- {text}" for text in result["words"]), "", _table(result), ""]
     lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
-    others = [model for model in result["models"] if not model["base"]]
-    if others:
-        lines += ["Differences between models, each by its own reference:", "", _models(others), ""]
+    models = [model for model in result["models"] if not model["base"]]
+    if models:
+        lines += ["Differences between models, each by its own reference:", "", _models(models), ""]
     if result["left_out"]:
         lines += ["Left out:", ""]
         lines += [f"- {_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
@@ -140,11 +140,11 @@ def _table(result: Tables) -> str:
         "iterations",
     )
     lines = [_line((*head, "MiB", "status")), _line(["---"] * (len(head) + 2))]
-    for place, row in enumerate(result["rows"]):
+    for number, row in enumerate(result["rows"]):
         cost = row["cost"] or {}
         memory = cost.get("peak_memory_bytes")
         cells = [
-            "\\*" if place in result["front"] else "",
+            "\\*" if number in result["front"] else "",
             _words(row["setting"]),
             ("~" if row["at_bound"] else "") + _number(row["error"], 2),
             _number(row["own_error"], 2),
@@ -178,8 +178,8 @@ def _models(models: list[Tables]) -> str:
         parts = model["differences"]
         signed = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
         cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
-        whole = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
-        lines.append(_line((_words(model["model"]), whole, *cells, _number(model["reference"]["error"], 2))))
+        difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
+        lines.append(_line((_words(model["model"]), difference, *cells, _number(model["reference"]["error"], 2))))
     return "\n".join(lines)
 
 
@@ -216,21 +216,21 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
     least = bound / 10.0 if bound else _LEAST
     base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and _of_base(row)]
-    other = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
+    foreign = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
     series: dict[str, list[int]] = {}
     labels: list[_Label] = []
-    for place in base:
-        series.setdefault(_series(result["rows"][place]), []).append(place)
-    for number, (name, places) in enumerate(series.items()):
+    for k in base:
+        series.setdefault(_series(result["rows"][k]), []).append(k)
+    for number, (name, members) in enumerate(series.items()):
         tone, mark = _COLOURS[number % len(_COLOURS)], _MARKERS[(number // 2) % len(_MARKERS)]
-        xy = [_point(result["rows"][place], least) for place in places]
+        xy = [_point(result["rows"][k], least) for k in members]
         panel.plot(*zip(*xy, strict=True), color=tone, marker=mark, linewidth=1.0, alpha=0.9, label=name)
-        labels += [(_rung(result["rows"][place]), point, tone) for place, point in zip(places, xy, strict=True)]
-    if other:
-        xy = [_point(result["rows"][place], least) for place in other]
+        labels += [(_rung(result["rows"][k]), point, tone) for k, point in zip(members, xy, strict=True)]
+    if foreign:
+        xy = [_point(result["rows"][k], least) for k in foreign]
         label = "other models, against their own references"
         panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=_GREY, label=label)
-        labels += [(_words(result["rows"][place]["setting"]), point, _GREY) for place, point in zip(other, xy, strict=True)]
+        labels += [(_words(result["rows"][k]["setting"]), point, _GREY) for k, point in zip(foreign, xy, strict=True)]
     _front(panel, result, least)
     if bound:
         panel.axhspan(bound / 30.0, bound, color="#e3e7eb", zorder=0)
@@ -246,7 +246,7 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
 
 
 def _front(panel: Axes, result: Tables, least: float) -> None:
-    points = [_point(result["rows"][place], least) for place in result["front"]]
+    points = [_point(result["rows"][number], least) for number in result["front"]]
     if points:
         x, y = zip(*points, strict=True)
         label = "front: nothing is faster and more accurate"
@@ -272,14 +272,14 @@ _RUNGS = ("integrator.steps_per_turn", "integrator.turns", "integrator.tolerance
 def _series(row: Tables) -> str:
     """Rows of one line: the same but for the family's ladder."""
     ladder = _ladder(row)
-    rest = {key: value for key, value in row["setting"].items() if key != ladder}
-    short = {key.removeprefix("integrator."): value for key, value in rest.items()}
+    values = {key: value for key, value in row["setting"].items() if key != ladder}
+    short = {key.removeprefix("integrator."): value for key, value in values.items()}
     return f"{row['family']}: {_words(short)}"
 
 
 def _ladder(row: Tables) -> str | None:
-    wanted = ("integrator.turns",) if row["family"] == "turns and start" else _RUNGS
-    return next((key for key in wanted if key in row["setting"]), None)
+    keys = ("integrator.turns",) if row["family"] == "turns and start" else _RUNGS
+    return next((key for key in keys if key in row["setting"]), None)
 
 
 def _rung(row: Tables) -> str:

@@ -102,23 +102,23 @@ def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], lim
     SceneError
         A mistake in the scene or in an axis.
     """
-    given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
-    if given:
-        axes = axes_of(given, tables, registry)
+    axes_given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
+    if axes_given:
+        axes = axes_of(axes_given, tables, registry)
         title = refuse_mistakes(tables, axes, registry)
-        wanted = [("axes", point) for point in points(axes)]
+        candidates = [("axes", point) for point in points(axes)]
     else:
         scene = scene_from_dict(tables, registry)
-        title, wanted = scene.title, _default_points(scene, registry)
+        title, candidates = scene.title, _default_points(scene, registry)
     settings: list[Setting] = []
     left_out = []
-    for family, values in wanted:
+    for family, values in candidates:
         setting = setting_at(tables, family, values, registry, notes)
         if setting.scene is not None and setting.predicted_s > limit_s:
             left_out.append((family, values, f"predicted {setting.predicted_s:.3g} s, above the limit of {limit_s:g} s"))
-        elif setting.scene is None and not given:
+        elif setting.scene is None and not axes_given:
             left_out.append((family, values, setting.reason))
-        elif all(setting.tables != other.tables for other in settings):
+        elif all(setting.tables != previous.tables for previous in settings):
             settings.append(setting)
     if not settings:
         why = left_out[0][2] if left_out else "the scene is static and has no mesh"
@@ -149,9 +149,9 @@ def needs_motion(scene: Scene) -> bool:
 
 def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> str:
     """The scene's own physics where it is among the settings, else the first's."""
-    own = setting_at(tables, "", {}, registry).physics
-    found = [setting.physics for setting in settings if setting.scene is not None]
-    return own if own in found or not found else found[0]
+    physics = setting_at(tables, "", {}, registry).physics
+    candidates = [setting.physics for setting in settings if setting.scene is not None]
+    return physics if physics in candidates or not candidates else candidates[0]
 
 
 def _physics(scene: Scene) -> str:
@@ -162,42 +162,37 @@ def _physics(scene: Scene) -> str:
 
 def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:
     """Family and values of every setting of the default design that has a meaning for the scene."""
-    found: list[tuple[str, Tables]] = []
+    points: list[tuple[str, Tables]] = []
     if needs_motion(scene):
         methods: Tables = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
-        steady = [name for name, method in methods.items() if _is_steady(method)]
+        steady = [name for name, method in methods.items() if method.steady]
         for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
-            found.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
+            points.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
         for name, tolerance in product(steady, _TOLERANCES):
-            known = {field.name for field in attrs.fields(methods[name])}
-            one: Tables = {"integrator.kind": name}
-            found.append(("steady orbit", {**one, "integrator.tolerance": tolerance} if "tolerance" in known else one))
-        own = scene.integrator.method
-        if own.inertial and not _is_steady(type(own)):
+            options = {field.name for field in attrs.fields(methods[name])}
+            kind: Tables = {"integrator.kind": name}
+            points.append(("steady orbit", {**kind, "integrator.tolerance": tolerance} if "tolerance" in options else kind))
+        integrator = scene.integrator.method
+        if integrator.inertial and not integrator.steady:
             for steps in _FEW_STEPS:
-                found.append(("few turns", {"integrator.turns": _FEW_TURNS, "integrator.steps_per_turn": steps}))
+                points.append(("few turns", {"integrator.turns": _FEW_TURNS, "integrator.steps_per_turn": steps}))
             for start, turns in product(_STARTS, TURNS):
                 values = {"integrator.start": start, "integrator.turns": turns, "integrator.steps_per_turn": _FINE_STEPS}
-                found.append(("turns and start", values))
-        found += [("models", {"integrator.kind": n}) for n, m in methods.items() if not m.inertial]
+                points.append(("turns and start", values))
+        points += [("models", {"integrator.kind": n}) for n, m in methods.items() if not m.inertial]
     size = getattr(scene.mesh, "element_size", None)
     if size is not None:
-        found += [("mesh", {"mesh.element_size": float(f"{size * factor:.3g}")}) for factor in _SIZES]
-    found.append(("models", {"contact.kind": scene.contact.kind}))
-    others = {
+        points += [("mesh", {"mesh.element_size": float(f"{size * factor:.3g}")}) for factor in _SIZES]
+    points.append(("models", {"contact.kind": scene.contact.kind}))
+    alternatives = {
         "contact.kind": [n for n in registry.names("contact_law") if n != scene.contact.kind],
         "contact.discretisation": [d for d in ("resultant", "nodal") if d != scene.contact.discretisation],
         "bodies.kind": [n for n in registry.names("bodies") if n != scene.bodies.name],
     }
     if scene.excitation is not None:
-        others["identifier.kind"] = [n for n in registry.names("identifier") if n != scene.identifier.kind]
-    found += [("models", {key: value}) for key, values in others.items() for value in values]
-    return found
-
-
-def _is_steady(method: type[Integrator]) -> bool:
-    """Whether an integrator solves for the periodic motion itself."""
-    return method.steady
+        alternatives["identifier.kind"] = [n for n in registry.names("identifier") if n != scene.identifier.kind]
+    points += [("models", {key: value}) for key, values in alternatives.items() for value in values]
+    return points
 
 
 def short(text: str) -> str:
@@ -266,29 +261,29 @@ class Runner:
     def at(self, setting: Setting, values: ReadTables) -> Tables | None:
         """The measured run of a setting with some values changed; None where it is refused, fails or takes too long."""
         tables = tables_at(setting.tables, values, self.registry)
-        found = setting_at(tables, "reference", {}, self.registry)
-        if found.scene is None or found.predicted_s > self.limit_s:
+        reference = setting_at(tables, "reference", {}, self.registry)
+        if reference.scene is None or reference.predicted_s > self.limit_s:
             return None
         self.on_run(f"reference: {', '.join(f'{k} = {v}' for k, v in values.items())}")
-        row, _ = measured_once(found.scene, 1, "reference", self.registry, self.store)
+        row, _ = measured_once(reference.scene, 1, "reference", self.registry, self.store)
         return row if row["status"] == "completed" else None
 
 
-def find_reference(group: list[Setting], runner: Runner, given: ReadTables | None) -> Reference:
+def find_reference(group: list[Setting], runner: Runner, changes: ReadTables | None) -> Reference:
     """The reference of settings that share their physics."""
     sizes = sorted({float(size) for s in group if (size := getattr(_mesh(s), "element_size", None)) is not None})
     first = next((s for s in group if getattr(_mesh(s), "element_size", None) == (sizes[0] if sizes else None)), group[0])
-    if given:
-        return _given(first, given, runner)
-    found = _of_one_mesh(first, group, runner)
-    if len(sizes) < 2 or not found.values:
-        return found
+    if changes:
+        return _given(first, changes, runner)
+    reference = _of_one_mesh(first, group, runner)
+    if len(sizes) < 2 or not reference.values:
+        return reference
     finer = _of_one_mesh(first, group, runner, {"mesh.element_size": 0.5 * sizes[0]})
     if not finer.values:
         return attrs.evolve(
-            found, bounds=dict.fromkeys(found.bounds, float("inf")), how=f"{found.how}; no finer mesh could run"
+            reference, bounds=dict.fromkeys(reference.bounds, float("inf")), how=f"{reference.how}; no finer mesh could run"
         )
-    change = minus(finer.values, found.values)
+    change = minus(finer.values, reference.values)
     bounds = {name: finer.bounds[name] + abs(change[name]) for name in finer.values}
     how = f"{finer.how}; elements of {0.5 * sizes[0]:.3g} m, bound by the change from {sizes[0]:.3g} m"
     return Reference(finer.values, bounds, how)
@@ -298,9 +293,9 @@ def _mesh(setting: Setting) -> Mesher | None:
     return None if setting.scene is None else setting.scene.mesh
 
 
-def _given(first: Setting, given: ReadTables, runner: Runner) -> Reference:
-    words = ", ".join(f"{key} = {value}" for key, value in given.items())
-    row = runner.at(first, given)
+def _given(first: Setting, changes: ReadTables, runner: Runner) -> Reference:
+    words = ", ".join(f"{key} = {value}" for key, value in changes.items())
+    row = runner.at(first, changes)
     if row is None:
         return Reference({}, {}, f"the given reference ({words}) could not be run")
     error = row["own_error"]
@@ -371,10 +366,10 @@ def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
     registry = runner.registry
     for name in registry.names("integrator"):
         method = registry.find("integrator", name).plugin
-        if not _is_steady(method):
+        if not method.steady:
             continue
-        known = {field.name for field in attrs.fields(method)}
-        tight = {"integrator.tolerance": _TIGHT} if "tolerance" in known else {}
+        options = {field.name for field in attrs.fields(method)}
+        tight = {"integrator.tolerance": _TIGHT} if "tolerance" in options else {}
         row = runner.at(first, {**extra, "integrator.kind": name, **tight})
         if row is not None and row["own_error"] is not None:
             how = f"steady orbit by '{name}'" + (f" to {_TIGHT:g}" if tight else "")
@@ -384,30 +379,28 @@ def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
 
 def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> Reference:
     steps = max(_FINER * finest, _LEAST_STEPS)
-    found: list[tuple[str, Values, Values, float]] = []
-    while not found and steps > finest:
+    extrapolations: list[tuple[str, Values, Values, float]] = []
+    while not extrapolations and steps > finest:
         for name in _METHODS:
-            if len(found) < 2 and name in runner.registry.names("integrator"):
-                one = _extrapolated(first, name, steps, common, runner)
-                found += [] if one is None else [one]
-        steps = steps if found else steps // 2
-    if not found:
+            if len(extrapolations) < 2 and name in runner.registry.names("integrator"):
+                extrapolation = _extrapolated(first, name, steps, common, runner)
+                extrapolations += [] if extrapolation is None else [extrapolation]
+        steps = steps if extrapolations else steps // 2
+    if not extrapolations:
         return Reference({}, {}, "no transient at finer steps than the rows' could be run within the limit of time")
-    name, values, change, rest = found[0]
-    floor = _all(values, max(_FLOOR, rest))
+    name, values, change, remainder = extrapolations[0]
+    floor = _all(values, max(_FLOOR, remainder))
     turns = common["integrator.turns"]
-    if len(found) == 1:
+    if len(extrapolations) == 1:
         bounds = {key: abs(change[key]) + floor[key] for key in values}
         how = f"'{name}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by what that changes"
         return Reference(values, bounds, how)
-    other, second, _, rest = found[1]
+    second_name, second, _, remainder = extrapolations[1]
     apart = minus(second, values)
-    floor = _all(values, max(_FLOOR, rest, found[0][3]))
+    floor = _all(values, max(_FLOOR, remainder, extrapolations[0][3]))
     middle = {key: value + 0.5 * apart[key] for key, value in values.items()}
     bounds = {key: abs(apart[key]) + floor[key] for key in values}
-    how = (
-        f"'{name}' and '{other}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by their distance"
-    )
+    how = f"'{name}' and '{second_name}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by their distance"
     return Reference(middle, bounds, f"{how} and by what is left of the transient")
 
 

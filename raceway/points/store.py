@@ -66,14 +66,14 @@ class Store:
         self._lock = threading.RLock()
         self._committed = -_MOMENT_S
         with self._told():
-            found = connection.execute("SELECT name, value FROM facts").fetchall()
-        self.facts: Tables = _read_facts(path, dict(found))
+            records = connection.execute("SELECT name, value FROM facts").fetchall()
+        self.facts: Tables = _read_facts(path, dict(records))
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
             )
-        self._origin = facts_digest(dict(found))
-        if found and self.facts.pop("digest", None) != self._origin:
+        self._origin = facts_digest(dict(records))
+        if records and self.facts.pop("digest", None) != self._origin:
             raise _damaged(path)
         self.design = Design.from_dict(self.facts["design"])
 
@@ -103,8 +103,8 @@ class Store:
     def status(self) -> dict[str, int]:
         """Number of points in each state, and ``total``."""
         with self._told(), self._lock:
-            found = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
-        return {**{state: found.get(state, 0) for state in STATES}, "total": self.design.size}
+            counts = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
+        return {**{state: counts.get(state, 0) for state in STATES}, "total": self.design.size}
 
     def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design.
@@ -112,26 +112,26 @@ class Store:
         One row a point, whatever the file says: readers put the values of the n-th row at the n-th point.
         """
         at = 0
-        for number, *rest, digest in self._lines():
+        for number, *columns, digest in self._lines():
             if not at <= number < self.design.size:
                 continue
             for missing in range(at, number):
                 yield self._row(missing, None)
-            yield self._row(number, rest if self._sound(number, rest[0], tuple(rest[1:]), digest) else None)
+            yield self._row(number, columns if self._sound(number, columns[0], tuple(columns[1:]), digest) else None)
             at = number + 1
         for missing in range(at, self.design.size):
             yield self._row(missing, None)
 
     def _lines(self) -> Iterator[tuple[Any, ...]]:
-        asked = f"SELECT number, {_CONTENT}, digest FROM points ORDER BY number"
+        query = f"SELECT number, {_CONTENT}, digest FROM points ORDER BY number"
         with self._told(), self._lock:
-            cursor = self._connection.execute(asked)
+            cursor = self._connection.execute(query)
         while True:
             with self._told(), self._lock:
-                some = cursor.fetchmany(256)
-            if not some:
+                batch = cursor.fetchmany(256)
+            if not batch:
                 return
-            yield from some
+            yield from batch
 
     def _row(self, number: int, stored: list[Any] | None) -> Tables:
         if stored is None:
@@ -179,12 +179,12 @@ class Store:
         """
         lines = []
         for row in rows:
-            rest = (row["reason"], row["key"], *(_text(row[name]) for name in ("values", "warnings", "cost")))
-            lines.append((row["state"], *rest, self._digest(row["number"], row["state"], rest), row["number"]))
-        asked = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ?, digest = ? WHERE number = ?"
+            columns = (row["reason"], row["key"], *(_text(row[name]) for name in ("values", "warnings", "cost")))
+            lines.append((row["state"], *columns, self._digest(row["number"], row["state"], columns), row["number"]))
+        statement = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ?, digest = ? WHERE number = ?"
         with self._told(), self._lock:
             try:
-                self._connection.executemany(asked, lines)
+                self._connection.executemany(statement, lines)
                 self._commit()
             except sqlite3.Error:
                 self._connection.rollback()
@@ -201,13 +201,15 @@ class Store:
         with self._told(), self._lock:
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
                 raise _damaged(self.path, "its pages do not hang together")
-            found = self._connection.execute(f"SELECT number, {_CONTENT}, digest FROM points").fetchall()
-            sound = {number for number, state, *rest, digest in found if self._sound(number, state, tuple(rest), digest)}
+            records = self._connection.execute(f"SELECT number, {_CONTENT}, digest FROM points").fetchall()
+            sound = {
+                number for number, state, *columns, digest in records if self._sound(number, state, tuple(columns), digest)
+            }
             bad = set(range(self.design.size)) - sound
-            if bad or len(found) != self.design.size:
+            if bad or len(records) != self.design.size:
                 self._connection.execute("DELETE FROM points WHERE number < 0 OR number >= ?", (self.design.size,))
-                asked = "INSERT OR REPLACE INTO points (number, state) VALUES (?, 'waiting')"
-                self._connection.executemany(asked, [(number,) for number in sorted(bad)])
+                statement = "INSERT OR REPLACE INTO points (number, state) VALUES (?, 'waiting')"
+                self._connection.executemany(statement, [(number,) for number in sorted(bad)])
                 self._commit()
         return bad
 
@@ -218,15 +220,15 @@ class Store:
                 self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
             self._commit()
 
-    def _digest(self, number: int, state: str, rest: tuple[object, ...]) -> str:
+    def _digest(self, number: int, state: str, columns: tuple[object, ...]) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
-        return hashlib.blake2b(repr((self._origin, number, state, *rest)).encode(), digest_size=16).hexdigest()
+        return hashlib.blake2b(repr((self._origin, number, state, *columns)).encode(), digest_size=16).hexdigest()
 
-    def _sound(self, number: int, state: object, rest: tuple[object, ...], digest: object) -> bool:
+    def _sound(self, number: int, state: object, columns: tuple[object, ...], digest: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
         if state in ("waiting", "running"):
             return True
-        return state in STATES and bool(digest == self._digest(number, state, rest))
+        return state in STATES and bool(digest == self._digest(number, state, columns))
 
     @contextmanager
     def _told(self) -> Iterator[None]:
@@ -289,8 +291,8 @@ def written(folder: Path, facts: ReadTables | None) -> Iterator[Store]:
 def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
     """Close a store that was written; one that was begun and got nowhere is taken away."""
     with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
-        asked = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
-        empty = new and (not _made(connection) or connection.execute(asked).fetchone() is None)
+        query = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
+        empty = new and (not _made(connection) or connection.execute(query).fetchone() is None)
         connection.execute("PRAGMA journal_mode = DELETE")
         connection.close()
         if empty:
@@ -321,8 +323,8 @@ def _made(connection: sqlite3.Connection) -> bool:
 def _make(connection: sqlite3.Connection, facts: ReadTables) -> None:
     """All in one transaction: a store is there with all its points, or not at all."""
     size = Design.from_dict(facts["design"]).size
-    whole = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
-    texts = {name: _text(value) for name, value in whole.items()}
+    all_facts = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
+    texts = {name: _text(value) for name, value in all_facts.items()}
     texts["digest"] = _text(facts_digest(texts))
     connection.execute("BEGIN")
     try:
@@ -339,8 +341,8 @@ def _make(connection: sqlite3.Connection, facts: ReadTables) -> None:
 
 def facts_digest(texts: Mapping[str, str]) -> str:
     """Of the facts of a store, as JSON by name."""
-    told = sorted((name, text) for name, text in texts.items() if name != "digest")
-    return hashlib.blake2b(repr(told).encode(), digest_size=16).hexdigest()
+    entries = sorted((name, text) for name, text in texts.items() if name != "digest")
+    return hashlib.blake2b(repr(entries).encode(), digest_size=16).hexdigest()
 
 
 def _read_facts(folder: Path, texts: Mapping[str, str]) -> Tables:

@@ -54,8 +54,8 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
         try:
             scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
         except SceneError as error:
-            chosen = _blamed(error.mistakes, point, changed) if design.axes else error.mistakes
-            mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in chosen]
+            blamed = _blamed(error.mistakes, point, changed) if design.axes else error.mistakes
+            mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in blamed]
             if len(mistakes) >= _MOST_MISTAKES:
                 break
             continue
@@ -68,14 +68,14 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
 
 def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
     """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
-    found = []
+    blamed = []
     for mistake in mistakes:
         inside = [key for key in point if key.startswith(f"{mistake.path}.")]
         if mistake.path in point:
-            found.append(mistake)
+            blamed.append(mistake)
         elif inside == [changed]:
-            found.append(Mistake(changed, point[changed], f"{mistake.path}: {mistake.message}"))
-    return found
+            blamed.append(Mistake(changed, point[changed], f"{mistake.path}: {mistake.message}"))
+    return blamed
 
 
 def _others(design: Design) -> Iterator[tuple[str, str, Tables]]:
@@ -95,8 +95,8 @@ def _hash(name: str) -> str:
 
 def key_facts(scene: Scene, key: str) -> tuple[str, str]:
     """(unit, words) of a key of the scene; empty for one that declares none."""
-    table, _, rest = key.partition(".")
-    names = rest.split(".")
+    table, _, path = key.partition(".")
+    names = path.split(".")
     parts: list[type | None] = [TABLES.get(table), type(getattr(scene, table, None))]
     if table in PLUGIN_TABLES and table in TABLES:
         frame = getattr(scene, table)

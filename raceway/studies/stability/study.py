@@ -267,7 +267,7 @@ def measured(
     executor = local(registry, processes, **({"patience": patience} if processes else {}))
     answers, reused = work_through(
         _answer, items, store or RowStore(None), executor, registry, plugins, on_progress,
-        lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.given.setting).lost(reason))]},
+        lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.task.setting).lost(reason))]},
     )  # fmt: skip
     return [Row(**row) for answer in answers for row in answer["rows"]], reused
 
