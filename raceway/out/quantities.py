@@ -172,7 +172,7 @@ P0 = Quantity("p0", "Pa", "largest Hertz pressure, of both races", "motion.peak_
 _P0_INNER = Quantity("p0_inner", "Pa", "largest Hertz pressure on the inner race", attribute="extremes.p0_inner")
 _P0_OUTER = Quantity("p0_outer", "Pa", "largest Hertz pressure on the outer race", attribute="extremes.p0_outer")
 # Relative errors of Z, and of kyy.
-_ERROR = Quantity("error_total", "1", "estimated relative error of Z", "error.total", "error.total")
+ERROR = Quantity("error_total", "1", "estimated relative error of Z", "error.total", "error.total")
 _PARTS = {"time_step": "time step", "transient": "transient", "mesh": "mesh", "contact": "contact law", "identification": "identification"}
 _ERRORS = [Quantity(f"error_{part}", "1", f"part of the {words} in the relative error of Z", f"error.{part}", f"error.{part}") for part, words in _PARTS.items()]
 ERROR_BODIES = Quantity("error_bodies", "1", "sum of the parts of mesh and contact law", "error.bodies", "error.bodies")
@@ -204,7 +204,7 @@ IDENTIFIED = (
 COLUMNS = named(
     Z_REAL, Z_IMAG, K, C, FORCE_AMPLITUDE, _FREQUENCY, MASS, _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL,
     AXIAL_DISPLACEMENT, KYY_TILTS_FOLLOW, PEAK_BALL_LOAD, _PEAK_INNER, _PEAK_OUTER, _LEAST_LOAD, P0, _P0_INNER, _P0_OUTER,
-    _ERROR, *_ERRORS, _MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
+    ERROR, *_ERRORS, _MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
 )
 # fmt: on
 #: Numbers that have derivatives by the keys of a scene, by their symbols; what a scene does not have is left out.

@@ -37,7 +37,7 @@ from raceway.cli.frame import (
 )
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.registry import registry_with
-from raceway.out.quantities import read_in
+from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K, read_in
 from raceway.out.table import micro, rows_table, written
 from raceway.out.wrapping import Words
 from raceway.storage.files import writable
@@ -198,7 +198,7 @@ class PlotOptions(NamedTuple):
 
 @click.command(short_help="Draw a sweep: curves, maps, surfaces.")
 @store_argument
-@click.option("--value", metavar="NAME", help="Quantity, e.g. p0 or stiffness:y,y [equivalent_stiffness].")
+@click.option("--value", metavar="NAME", help=f"Quantity, e.g. p0 or stiffness:y,y [{K.name}].")
 @click.option("--x", metavar="KEY", help="Axis to the right [the speed, or the longest one].")
 @click.option("--y", metavar="KEY", help="Second axis; in curves what the colours stand for.")
 @at_option
@@ -612,15 +612,16 @@ def _sweep_row(row: ReadTables) -> dict[str, str]:
     last = [key.rpartition(".")[2] for key in row["point"]]
     short = {key: name if last.count(name) == 1 else key for key, name in zip(row["point"], last, strict=True)}
     text = {short[key]: shown(value) for key, value in row["point"].items()}
-    k, z, kyy = values.get("equivalent_stiffness"), values.get("z_real"), values.get("stiffness")
-    if k is not None and z is not None:
-        text |= {"K N/µm": f"{k / 1e6:.3f}", "Re Z N/µm": f"{z / 1e6:.3f}"}
-    else:
-        text |= {"K N/µm": "", "Re Z N/µm": ""}
-    text["kyy N/µm"] = "" if kyy is None else f"{kyy[1][1] / 1e6:.3f}"
-    if "kyy_tilts_follow" in values:
-        text["kyy tilts follow N/µm"] = f"{values['kyy_tilts_follow'] / 1e6:.3f}"
-    error = values.get("error_total")
+    tangent = values.get(STIFFNESS.name)
+    numbers = {
+        K.symbol: values.get(K.name),
+        "Re Z": values.get(Z_REAL.name),
+        KYY.symbol: None if tangent is None else tangent[1][1],
+    }
+    if KYY_TILTS_FOLLOW.name in values:
+        numbers[KYY_TILTS_FOLLOW.label] = values[KYY_TILTS_FOLLOW.name]
+    text |= {f"{name} {K.read_unit}": "" if value is None else f"{K.read(value):.3f}" for name, value in numbers.items()}
+    error = values.get(ERROR.name)
     return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}
 
 

@@ -19,6 +19,7 @@ from raceway import make_plan
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.progress import RemainingTime
+from raceway.out.quantities import C, K, Z
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -62,7 +63,7 @@ _BALL = (
     "peak_pressure_nodal_inner_pa", "peak_pressure_nodal_outer_pa",
 )  # fmt: skip
 _IDENTIFIED = (
-    "speed_rpm", "force_amplitude_n", "equivalent_stiffness", "equivalent_damping", "phase_lag_deg", "dynamic_stiffness",
+    "speed_rpm", "force_amplitude_n", K.name, C.name, "phase_lag_deg", "dynamic_stiffness",
     "residual", "spread",
 )  # fmt: skip
 _STABILITY = (
@@ -351,12 +352,7 @@ def in_motion(row: ReadTables, reference: ReadTables) -> Tables:
 
 def identified(row: ReadTables) -> dict[str, float]:
     """K [N/m], C [N s/m] and |Z| [N/m] of a motion."""
-    table = row["identification"]
-    return {
-        "k": table["equivalent_stiffness"],
-        "c": table["equivalent_damping"],
-        "abs_z": table["dynamic_stiffness"]["abs"],
-    }
+    return {"k": K.of(row), "c": C.of(row), "abs_z": Z.of(row)}
 
 
 def _loads(balls: list[ReadTables], references: list[ReadTables], load: str) -> float:

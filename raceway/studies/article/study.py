@@ -21,6 +21,7 @@ import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry, default_registry
+from raceway.out.quantities import K
 from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -272,7 +273,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
         "status": status,
         "reason": reason,
         "found": None if floquet is None else floquet["found"],
-        "k": identified.equivalent_stiffness,
+        "k": K.of(result),
         "abs_z": abs(identified.dynamic_stiffness),
         "force_n": identified.force_amplitude,
         "error": without_mesh(error),

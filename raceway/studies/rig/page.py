@@ -29,6 +29,7 @@ from raceway.cli.frame import (
 )
 from raceway.framework.registry import registry_with
 from raceway.out.page import Page
+from raceway.out.quantities import K_ERROR, K
 from raceway.out.table import rows_table, written
 from raceway.out.wrapping import Words
 from raceway.pipeline.result import write_json
@@ -170,7 +171,7 @@ def rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
             "axial N": f"{row['axial_n']:.0f}",
             "x µm": f"{1e6 * true['deflection_m']:.2f}",
             "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
-            "K N/µm": f"{1e-6 * true['equivalent_stiffness']:.2f}",
+            f"{K.symbol} {K.read_unit}": f"{K.read(true[K.name]):.2f}",
             **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
             "found %": f"{100 * identified['error']:+.3f}",
             "+- %": f"{100 * identified['relative_uncertainty']:.2f}",
@@ -290,8 +291,8 @@ def _name(row: Tables) -> str:
 
 
 def _truth(row: Tables) -> list[str]:
-    true, identified = row["true"], row["identified"]["identification"]
+    true = row["true"]
     values = [true["force_n"], true["force_over_half_unbalance"], 1e6 * true["deflection_m"], 1e6 * true["sensor_m"]]
-    k = [true["equivalent_stiffness"], identified["equivalent_stiffness"], identified["equivalent_stiffness_error"]]
+    k = [true[K.name], K.of(row["identified"]), K_ERROR.of(row["identified"])]
     cells = [f"{value:.4g}" for value in values] + [f"{1e-6 * value:.3f}" for value in k]
     return [_name(row), *cells, f"{100 * row['identified']['error']:.3f}"]

@@ -11,6 +11,7 @@ import attrs
 
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
+from raceway.out.quantities import K_ERROR, C, K
 from raceway.pipeline.result import without_nan
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key
@@ -69,8 +70,8 @@ class Point:
             "speed_rpm": state.speed * 30.0 / pi,
             "axial_n": self.axial,
             "true": {
-                "equivalent_stiffness": true,
-                "equivalent_damping": state.damping,
+                K.name: true,
+                C.name: state.damping,
                 "tilt_locked_stiffness": state.locked[0],
                 "tilt_locked_damping": state.locked[1],
                 "force_n": abs(state.force),
@@ -82,13 +83,13 @@ class Point:
                 "runs": state.runs,
             },
             "printed": [
-                {"correction": row.correction, "equivalent_stiffness": row.stiffness, "over_true": row.stiffness / true}
+                {"correction": row.correction, K.name: row.stiffness, "over_true": row.stiffness / true}
                 for row in self.readings
             ],
             "identified": {
                 **identified,
                 "error": self.identified.state.stiffness / true - 1.0,
-                "relative_uncertainty": identified["identification"]["equivalent_stiffness_error"] / true,
+                "relative_uncertainty": K_ERROR.of(identified) / true,
             },
             "split": [attrs.asdict(cause) for cause in self.causes],
         }

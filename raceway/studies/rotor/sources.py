@@ -12,6 +12,7 @@ import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.shown import tilt_words
+from raceway.out.quantities import Z_IMAG, Z_REAL, C, K
 from raceway.points.axes import is_number
 from raceway.points.plot import Selection, listed
 
@@ -57,9 +58,11 @@ def rotating(selection: Selection) -> Matrices:
             f"and --grid {DIRECTION}=0,45,90"
         )
     identity = np.eye(2)
-    stiffness = data["equivalent_stiffness"].values[..., None, None] * identity
-    damping = data["equivalent_damping"].values[..., None, None] * identity
-    resolved = np.abs(data["z_imag"].values) > _errors(data) * np.hypot(data["z_real"].values, data["z_imag"].values)
+    stiffness = data[K.name].values[..., None, None] * identity
+    damping = data[C.name].values[..., None, None] * identity
+    resolved = np.abs(data[Z_IMAG.name].values) > _errors(data) * np.hypot(
+        data[Z_REAL.name].values, data[Z_IMAG.name].values
+    )
     notes = [
         f"isotropic: kyy = kzz = K, cyy = czz = C, no cross terms; the counter-rotating part of the orbits is at most {share:.1e}",
         *_common(selection),
@@ -87,7 +90,7 @@ def directions(selection: Selection) -> Matrices:
             "directions do not resolve: set rotor.polar_inertia=0, the rotor model brings its own"
         )
     data = selection.dataset
-    z = data["z_real"].values + 1j * data["z_imag"].values
+    z = data[Z_REAL.name].values + 1j * data[Z_IMAG.name].values
     w = 2.0 * np.pi * data["frequency"].values
     antisymmetric = np.zeros(z.shape[:-1])
     h = dict(zip(angles, np.moveaxis(1.0 / z, -1, 0), strict=True))
@@ -128,7 +131,7 @@ def _symmetric(first: np.ndarray, cross: np.ndarray, last: np.ndarray) -> np.nda
 def _errors(data: Dataset) -> np.ndarray:
     """Relative errors of Z; 0 where none was estimated."""
     if "error_total" not in data:
-        return np.zeros(data["z_real"].shape)
+        return np.zeros(data[Z_REAL.name].shape)
     return np.asarray(np.nan_to_num(data["error_total"].values), dtype=float)
 
 

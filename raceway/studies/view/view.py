@@ -19,6 +19,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, largest_facts, race_words
 from raceway.out.progress import ShowProgress, telling
+from raceway.out.quantities import K, X
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
@@ -285,9 +286,9 @@ def _lead(result: Result, state: State) -> str:
     if identified is not None:
         words.append(
             f"{result.model.excitation.name} force of {identified.force_amplitude:.4g} N at {60.0 * identified.frequency_hz:.6g} r/min, "
-            f"K = {1e-6 * identified.equivalent_stiffness:.4g} N/µm"
+            f"K = {K.text(K.of(result), 4)}"
         )
-    words.append(f"axial displacement {1e6 * result.equilibrium.displacement[0]:.4g} µm")
+    words.append(f"axial displacement {X.text(X.of(result), 4)}")
     words.append(_loads(state))
     return f"{'; '.join(words)}."
 
