@@ -25,6 +25,7 @@ from raceway.core.time.stepped import central_difference
 from raceway.elastic.bearing import ElasticBearing, SteppedElastic
 from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.contact import penalty_stiffness
+from raceway.planning.resolve import resolve
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"
@@ -38,7 +39,7 @@ _ROUNDS = 3
 
 def bearing(scene: Any) -> ElasticBearing:
     """The bearing of a scene with one-point hexahedra, a penalty and friction 0.03, without equilibrium or plan."""
-    basis, b = make_basis(scene), scene.bearing
+    basis, b = make_basis(resolve(scene)), scene.bearing
     modulus = basis.modulus
 
     def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:

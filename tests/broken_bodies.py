@@ -10,6 +10,7 @@ from raceway.bodies.rigid import Rigid
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.ring.system import System
 from raceway.framework.contracts import Cost, Traits
+from raceway.planning.resolve import resolve
 
 TIMES = count(1)
 
@@ -20,8 +21,8 @@ class Broken(Rigid):
     name = "broken"
     bearing, system = RigidBearing, System
 
-    def build(self, scene, plan):
-        found = super().build(scene, plan)
+    def build(self, problem, plan):
+        found = super().build(problem, plan)
         parts = {field.name: getattr(found.system, field.name) for field in attrs.fields(System)}
         return self.bearing(found.basis, self.system(**parts), found.guess)
 
@@ -88,37 +89,37 @@ def momentary(self, model, q, ball, force, t=0.0):
     return RigidBearing.contact_angles(self, model, *one)
 
 
-def drifting(self, scene, plan):
-    bearing = Rigid.build(self, scene, plan)
+def drifting(self, problem, plan):
+    bearing = Rigid.build(self, problem, plan)
     bearing.system.law_params[:] *= 1.0 + 1e-9 * next(TIMES)
     return bearing
 
 
-def deaf(self, scene, plan):
-    return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, radial_expansion=0.0)), plan)
+def deaf(self, problem, plan):
+    return Rigid.build(self, problem.changed(kinematics=attrs.evolve(problem.kinematics, radial_expansion=0.0)), plan)
 
 
-def dry(self, scene, plan):
-    return Rigid.build(self, attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=0.0)), without(plan))
+def dry(self, problem, plan):
+    return Rigid.build(self, problem.changed(contact=attrs.evolve(problem.contact, friction=0.0)), without(plan))
 
 
 def without(plan):
     return plan if plan.gyroscopic else attrs.evolve(plan, balls="inertial" if plan.centrifugal else "weightless")
 
 
-def still(self, scene, plan):
-    return Rigid.build(self, attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, orbiting=False)), plan)
+def still(self, problem, plan):
+    return Rigid.build(self, problem.changed(kinematics=attrs.evolve(problem.kinematics, orbiting=False)), plan)
 
 
-def single(self, scene, plan):
-    if scene.bearing.arrangement != "single":
+def single(self, problem, plan):
+    if problem.bearing.arrangement != "single":
         raise ConvergenceError("one row only")
-    return Rigid.build(self, scene, plan)
+    return Rigid.build(self, problem, plan)
 
 
 def builds(self, scene):
 
-    Rigid.build(self, scene, make_plan(attrs.evolve(scene, bodies=Rigid())))
+    Rigid.build(self, resolve(scene), make_plan(attrs.evolve(scene, bodies=Rigid())))
     return []
 
 

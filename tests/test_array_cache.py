@@ -205,15 +205,15 @@ def test_what_a_killed_process_left_goes_when_it_is_old(folder):
 
 
 def test_the_command_shows_and_clears(folder):
-    assert json.loads(invoke("cache", "--json").stdout)["arrays"] == []
-    assert "Compliances of bodies" in invoke("cache").stdout
+    assert json.loads(invoke("dev", "cache", "--json").stdout)["arrays"] == []
+    assert "Compliances of bodies" in invoke("dev", "cache").stdout
     get(Maker())
     (folder / "broken.arrays").write_bytes(b"\x00\n")
-    found = json.loads(invoke("cache", "--json").stdout)
+    found = json.loads(invoke("dev", "cache", "--json").stdout)
     assert {(e["kind"], e["what"]) for e in found["arrays"]} == {("test", "arrays of a test"), ("damaged", "broken.arrays")}
     assert found["arrays_bytes"] == sum(p.stat().st_size for p in folder.iterdir())
-    assert "arrays of a test" in invoke("cache").stdout
-    cleared = json.loads(invoke("cache", "--clear", "--json").stdout)
+    assert "arrays of a test" in invoke("dev", "cache").stdout
+    cleared = json.loads(invoke("dev", "cache", "--clear", "--json").stdout)
     assert cleared["arrays"] == [] and cleared["arrays_bytes"] == 0
     assert not folder.exists()
 
@@ -238,7 +238,7 @@ def test_a_disk_without_room_costs_one_warning_and_no_answer(folder, monkeypatch
     usage = array_cache.shutil.disk_usage("/")
     monkeypatch.setattr(array_cache.shutil, "disk_usage", lambda place: usage._replace(free=100))
     make = Maker()
-    with pytest.warns(RuntimeWarning, match="GiB to write, .* GiB free on the disk.*make room by raceway cache --clear"):
+    with pytest.warns(RuntimeWarning, match="GiB to write, .* GiB free on the disk.*make room by raceway dev cache --clear"):
         found = get(make)
     assert (found["a"] == make()["a"]).all()
     assert not list(folder.glob("*"))

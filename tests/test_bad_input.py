@@ -133,7 +133,7 @@ def test_a_plug_in_that_fails_to_import(tmp_path):
     found = raceway("check", MINIMAL, "--json", PYTHONPATH=tmp_path)
     assert found.returncode == 0 and json.loads(found.stdout) == {"errors": []}
     assert "warning: plug-in `broken (broken)`: fails to import: SystemExit: 3" in found.stderr
-    listed = raceway("plugins", PYTHONPATH=tmp_path)
+    listed = raceway("dev", "plugins", PYTHONPATH=tmp_path)
     assert listed.returncode == 2 and "SystemExit: 3" in listed.stderr and "newmark" in listed.stdout
     used = raceway("check", MINIMAL, "--set", "contact.kind=broken", PYTHONPATH=tmp_path)
     assert used.returncode == 2 and "Not loaded: plug-in `broken (broken)`" in used.stderr
@@ -219,7 +219,7 @@ def test_two_plug_ins_of_one_name(tmp_path):
     assert used.returncode == 2
     for word in ("two plug-ins claim the name 'twin'", "of first", "of second", "RACEWAY_DISABLE"):
         assert word in used.stderr
-    listed = raceway("plugins", "--json", PYTHONPATH=tmp_path)
+    listed = raceway("dev", "plugins", "--json", PYTHONPATH=tmp_path)
     assert listed.returncode == 2
     content = json.loads(listed.stdout)
     assert [p["distribution"] for p in content["plugins"] if p["name"] == "twin"] == ["first", "second"]
@@ -271,7 +271,7 @@ def test_a_run_that_diverges_says_when_and_why_and_keeps_the_last_good_state(tmp
 
 
 def test_a_fault_of_the_program_is_one_message(monkeypatch):
-    monkeypatch.setattr("raceway.planning.plan.make_plan", lambda scene, **_: 1 / 0)
+    monkeypatch.setattr("raceway.planning.plan._plan", lambda problem, **_: 1 / 0)
     found = invoke("check", ARTICLE)
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr
@@ -305,7 +305,7 @@ def test_numba_without_its_compiler_is_refused(tmp_path):
 
 
 def test_a_reader_that_goes_away_is_no_error():
-    command = f"{sys.executable} -m raceway schema | head -n 1"
+    command = f"{sys.executable} -m raceway dev schema | head -n 1"
     found = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False)
     assert found.stdout == "{\n"
     assert found.stderr == ""

@@ -156,7 +156,7 @@ def test_what_a_class_cannot_say_is_refused(tables, given, words):
 def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path):
     file = tmp_path / "scene.toml"
     file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
-    told = invoke("band", str(file), "--out", str(tmp_path), "--count", "16", "--processes", "0")
+    told = invoke("band", str(file), "--out", str(tmp_path), "--samples", "16", "--processes", "0")
     content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
     row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
     assert float(row.split()[2]) == pytest.approx(1e-6 * content["value"], rel=1e-4)
@@ -168,7 +168,7 @@ def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_pat
 def test_the_command_goes_on_with_what_is_kept(tmp_path):
     file = tmp_path / "scene.toml"
     file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
-    words = ["band", str(file), "--out", str(tmp_path), "--count", "8", "--processes", "0"]
+    words = ["band", str(file), "--out", str(tmp_path), "--samples", "8", "--processes", "0"]
     first = invoke(*words)
     assert first.exit_code == 0, first.output
     kept = (tmp_path / "band-rows.jsonl").read_text()
@@ -183,4 +183,4 @@ def test_a_nominal_answer_outside_its_band_and_rough_indices_are_told():
     elsewhere = attrs.evolve(band, nominal={name: 10.0 * value for name, value in band.nominal.items()})
     assert any("lies outside the band" in text and "kxx" in text for text in elsewhere.remarks)
     rough = attrs.evolve(band, total={"kxx": [1.2]})
-    assert any("--count" in text for text in rough.remarks)
+    assert any("--samples" in text for text in rough.remarks)

@@ -65,17 +65,16 @@ COMMANDS = {
     "run, static": ("run", "STATIC", "--set", "supports.tilt=free", "--out", "OUT"),
     "plan": ("plan", ARTICLE),
     "plan, elastic": ("plan", EXAMPLES / "b7206_elastic.toml"),
-    "check": ("check", ARTICLE),
     "compare": ("compare", ARTICLE, *FAST, *FIVE, "--out", "OUT"),
     "verify": ("verify", "--only", "harris-table-6.1"),
     "verify, all": ("verify", "--only", "harris-table-6.1", "--all"),
     "precision": ("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--repeats", "1", "--out", "OUT"),
     "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "OUT"),
-    "plot": ("plot", "STORE", "--value", "stiffness:y,y"),
+    "sweep, picture": ("sweep", "STORE", "--plot", "stiffness:y,y"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "study rig": ("study", "rig", EXAMPLES / "test_rig.toml", *RIG, "--no-pictures", "--out", "OUT"),
-    "identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
+    "fit, identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
     "fit": ("fit", "DATA", "--scene", "STATIC", "--free", "bearing.contact_angle_deg", "--out", "OUT"),
     "fit, signals": (
         *("fit", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000"),
@@ -87,21 +86,21 @@ COMMANDS = {
     "catalogue": ("catalogue", "7014C"),
     "catalogue, list": ("catalogue", "79*"),
     "catalogue, materials": ("catalogue", "--materials"),
-    "law": ("law", "penalty", "--set", "contact.damping=300"),
-    "sensitivities": ("sensitivities", MINIMAL, "--by", "load.axial", "--by", "bearing.contact_angle_deg", "--out", "OUT"),
-    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--count", "4", "--processes", "0", "--out", "OUT"),
+    "dev law": ("dev", "law", "penalty", "--set", "contact.damping=300"),
+    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--samples", "4", "--processes", "0", "--out", "OUT"),
+    "band, derivatives": ("sensitivities", MINIMAL, "--by", "load.axial", "--by", "bearing.contact_angle_deg", "--out", "OUT"),
     "follow": ("follow", MINIMAL, "--over", "excitation.speed_rpm=9000:9500", "--points", "5", "--out", "OUT"),
     "view": ("view", MINIMAL, "--out", "OUT"),
     "mesh": ("mesh", MINIMAL, *COARSE, "--out", "OUT"),
-    "plugins": ("plugins",),
-    "check-plugin": ("check-plugin", "hertz"),
-    "new-plugin": ("new-plugin", "contact_law", "my_law", "--out", "OUT"),
-    "new-scene": ("new-scene", "--out", "OUT/own.toml"),
-    "schema": ("schema",),
-    "cache": ("cache",),
+    "dev plugins": ("dev", "plugins",),
+    "dev check-plugin": ("dev", "check-plugin", "hertz"),
+    "dev new-plugin": ("dev", "new-plugin", "contact_law", "my_law", "--out", "OUT"),
+    "dev new-scene": ("dev", "new-scene", "--out", "OUT/own.toml"),
+    "dev schema": ("dev", "schema",),
+    "dev cache": ("dev", "cache",),
 }  # fmt: skip
 #: Commands that are done before anybody waits, whatever they are given.
-QUICK = {"plan", "check", "plugins", "new-plugin", "new-scene", "schema", "catalogue"}
+QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema", "catalogue"}
 
 
 #: Commands with a scene of their own and those that write more than their answer: no run of theirs is repeated in quick tests.
@@ -120,13 +119,12 @@ TOLD = {
     ),
     "run, static": ("static scene", "kyy tilts follow"),
     "plan": ("Kept", "Left out", "degrees of freedom", "time step", "wall time"),
-    "check": ("no mistakes",),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),
     "export": ("moments on the ring", "r/min"),
     "mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
-    "plugins": ("newmark", "hertz"),
-    "new-scene": ("raceway run",),
+    "dev plugins": ("newmark", "hertz"),
+    "dev new-scene": ("raceway run",),
 }
 #: Studies that go on where they were stopped, and what they keep.
 GOES_ON = {
@@ -171,9 +169,12 @@ def place(name, folder):
 
 def words(name, seen, folder, out=None):
     """A line of the table with its places; what it reads of other commands is made first."""
-    for other in {"plot": ["sweep"], "export": ["sweep"], "identify": ["study rig"], "fit, signals": ["study rig"]}.get(
-        name, []
-    ):
+    for other in {
+        "sweep, picture": ["sweep"],
+        "export": ["sweep"],
+        "fit, identify": ["study rig"],
+        "fit, signals": ["study rig"],
+    }.get(name, []):
         look(other, seen, folder)
     out = out or place(name, folder)
     places = {
@@ -265,7 +266,8 @@ def test_help(command, monkeypatch):
 
 def test_the_list_of_commands_says_what_each_says_itself():
     text = invoke("--help").stdout
-    listed = dict(line.split(maxsplit=1) for line in text.split("Commands:\n")[1].splitlines() if line[2] != " ")
+    lines = text.split("Answers:\n")[1].splitlines()
+    listed = dict(line.split(maxsplit=1) for line in lines if re.match(r"  \w", line))
     assert list(listed) == list(LISTED) and "Exit codes" in text
     assert all(one.short_help.startswith(listed[name]) for name, one in LISTED.items())
     assert rw.__version__ in invoke("--version").stdout
@@ -275,14 +277,14 @@ def test_the_list_of_commands_says_what_each_says_itself():
 def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
     shown, found, _ = look(name, seen, folder)
     narrow, wide = at(COLUMNS, shown), at(1000, shown)
-    assert shown or name in ("check", "schema")
+    assert shown or name == "dev schema"
     long = [line for line in narrow if len(line) > COLUMNS and str(folder) not in line]
     assert not long
     # A path may break, however long the folder's name is here.
     assert not [word for word in numbers(wide) - numbers(narrow) if str(folder) not in word]
     # A number stays beside its unit.
     assert not [line for line in narrow if re.match(r"\s*(N/µm|N s/m|µm|r/min|MPa|deg)\b(?! {2})", line)]
-    if name not in ("schema", "plugins"):  # keys and options in their own spelling
+    if name not in ("dev schema", "dev plugins"):  # keys and options in their own spelling
         # ROSS's own files are in rad/s, which a note tells.
         told = [line for line in at(1000, shown) if not (name == "export" and line.startswith("note: "))]
         assert not OLD_UNITS.findall("\n".join(told).replace("_rpm", ""))
@@ -313,8 +315,8 @@ def full(*_given, **_named):
 )  # meshes and views are files alone, written by other libraries
 def test_json_is_all_there_is_and_a_full_disk_costs_the_file_alone(name, seen, folder, tmp_path, monkeypatch):
     given, out = words(name, seen, folder, tmp_path / "out"), place(name, folder)
-    if writes := "--out" in given and name != "new-scene":
-        if name != "new-plugin":
+    if writes := "--out" in given and name != "dev new-scene":
+        if name != "dev new-plugin":
             look(name, seen, folder)  # while there is room
         for method in ("write_bytes", "write_text"):
             monkeypatch.setattr(Path, method, full)
@@ -324,7 +326,7 @@ def test_json_is_all_there_is_and_a_full_disk_costs_the_file_alone(name, seen, f
     assert not writes or found.exit_code == 2 and os.strerror(errno.ENOSPC) in content["errors"][0]["message"]
     assert found.exit_code == (2 if writes else 0)
     assert not {*whole_files(tmp_path)} - {*GOES_ON.values(), "own.toml", "bearing.toml"}
-    if writes and name != "new-plugin":
+    if writes and name != "dev new-plugin":
         kept = [set(json.loads(path.read_bytes())) for path in out.glob("*.json")]
         assert set(content) - {"errors", "files"} in kept or name == "sweep"
 
@@ -341,7 +343,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(n
     given = words(name, seen, folder)
     monkeypatch.setattr(ProgressBar, "__call__", lambda *_: pytest.fail("computed"))
     for option in options(name).keys() & OUTPUTS.keys():
-        file = folder / "file" / "deeper" / ("a.png" if name == "plot" else OUTPUTS[option])
+        file = folder / "file" / "deeper" / OUTPUTS[option]
         found = invoke(*given, option, file)
         assert found.exit_code == 2 and str(folder / "file") in found.stderr, (option, found.output)
         assert found.stdout == "" or option == "--picture"  # the answer is there all the same
@@ -388,7 +390,7 @@ PATHS = {
 @pytest.mark.parametrize("name", plain())
 def test_a_value_of_a_wrong_type_is_refused_by_every_option(name, seen, folder, monkeypatch):
     given = words("infer, one" if name == "infer" else name, seen, folder)
-    if name not in ("identify", "fit"):  # columns are looked for in what was read
+    if name != "fit":  # columns are looked for in what was read
         monkeypatch.setattr(ProgressBar, "__call__", lambda *_: pytest.fail("computed"))
     for option, one in options(name).items():
         if option in OUTPUTS or option in TEXTS or option in ("--nastran", "--ansys"):
@@ -426,9 +428,9 @@ SLIPS = {
     "unknown option": (["run", ARTICLE, "--jsn"], "--json", ""),
     "no axis": (["compare", ARTICLE], "--vary", ""),
     "unknown case": (["verify", "--only", "nobody"], "no such case", ""),
-    "unknown bearing": (["new-scene", "b7206c"], "the nearest: B7206C, ", ""),
-    "file for a bearing": (["new-scene", "mine.toml"], "raceway new-scene B7206C --out mine.toml", ""),
-    "file that is there": (["new-scene", "--out", MINIMAL], "exists", ""),
+    "unknown bearing": (["dev", "new-scene", "b7206c"], "the nearest: B7206C, ", ""),
+    "file for a bearing": (["dev", "new-scene", "mine.toml"], "raceway dev new-scene B7206C --out mine.toml", ""),
+    "file that is there": (["dev", "new-scene", "--out", MINIMAL], "exists", ""),
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),
     "unknown format": (["mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, vtu", ""),
     "format that only reads": (["mesh", MINIMAL, "--format", "msh"], "'msh' only reads; files are written as abaqus, vtu", ""),
@@ -439,9 +441,9 @@ SLIPS = {
     "ending of no table": (["export", "STORE", "--ross", "b.xls", "--at", "load.axial=400"], "ROSS reads .toml and .json", ""),
     "no such load": (["export", "STORE", "--ross", "b.toml", "--at", "load.axial=7"], "is not in the sweep, which has 400, 1000", ""),
     "no store": (["export", "nowhere", "--ross", "b.toml"], "`nowhere` is no store of a sweep", ""),
-    "no quantity": (["plot", "STORE", "--value", "nothing"], "is not a quantity of this sweep", ""),
-    "no value": (["plot", "STORE", "--at", "load.axial"], "must have the form KEY=VALUE", ""),
-    "ending of no picture": (["plot", "STORE", "--out", "a.pdf"], "pictures are written as .png or .svg", ""),
+    "no quantity": (["sweep", "STORE", "--plot", "nothing"], "is not a quantity of this sweep", ""),
+    "no value": (["sweep", "STORE", "--at", "load.axial"], "must have the form KEY=VALUE", ""),
+    "ending of no picture": (["sweep", "STORE", "--picture", "a.pdf"], "pictures are written as .png or .svg", ""),
 }  # fmt: skip
 
 
@@ -461,7 +463,7 @@ def test_a_slip_on_the_command_line(case, seen, folder, tmp_path, monkeypatch):
 #: Packages that an installation may lack: what asks for them, and the extra that has them.
 MISSING = {
     "run": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
-    "plot": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
+    "sweep --plot=p0": ("raceway.cli.frame.find_spec", "matplotlib", "pictures"),
     "mesh": ("raceway.studies.view.mesh.find_spec", "meshio", "mesh"),
     "mesh --picture": (None, "pyvista", "view"),  # files come first
     "view": ("raceway.studies.view.view.find_spec", "pyvista", "view"),
@@ -488,7 +490,7 @@ def test_pictures_of_a_command_leave_pyplot_alone():
     """Figures of their own; only ``plot()``, in a notebook, hands out those of pyplot."""
     sources = Path(rw.__file__).parent.rglob("*.py")
     having = {path.name for path in sources if "import pyplot" in path.read_text(encoding="utf-8")}
-    assert having == {"pictures.py"}
+    assert having == {"pictures.py", "picture.py"}
 
 
 def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):
@@ -541,10 +543,10 @@ def test_json_of_the_commands_that_compute_nothing(tmp_path):
     assert {"kept", "left_out", "dofs", "time_step_s", "predicted_wall_s"} <= set(
         json.loads(invoke("plan", ARTICLE, "--json").stdout)
     )
-    assert json.loads(invoke("check", ARTICLE, "--json").stdout) == {"errors": []}
-    assert json.loads(invoke("schema").stdout)["$schema"].endswith("2020-12/schema")
+    assert json.loads(invoke("check", ARTICLE, "--json").stdout)["errors"] == []
+    assert json.loads(invoke("dev", "schema").stdout)["$schema"].endswith("2020-12/schema")
     (tmp_path / "listed.py").write_text(LAW.format(name="listed_law", kernel="        return None"))
-    content = json.loads(invoke("plugins", "--plugin", tmp_path / "listed.py", "--json").stdout)
+    content = json.loads(invoke("dev", "plugins", "--plugin", tmp_path / "listed.py", "--json").stdout)
     listed = {one["name"]: one for one in content["plugins"]}
     assert content["errors"] == [] and listed["listed_law"]["distribution"] == "listed.py"
     newmark = listed["newmark"]
@@ -555,18 +557,18 @@ def test_json_of_the_commands_that_compute_nothing(tmp_path):
 
 def test_cache_is_seen_and_cleared(tmp_path, monkeypatch):
     monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
-    empty = json.loads(invoke("cache", "--json").stdout)
+    empty = json.loads(invoke("dev", "cache", "--json").stdout)
     assert empty["folders"] == []
     for name, size in ((empty["current"], 100), ("older", 7)):
         folder = tmp_path / "kernels" / name / "core"
         folder.mkdir(parents=True)
         (folder / "kernel.1.nbc").write_bytes(b"x" * size)
         (folder / "kernel.nbi").write_bytes(b"x")
-    found = json.loads(invoke("cache", "--json").stdout)
+    found = json.loads(invoke("dev", "cache", "--json").stdout)
     assert [(f["current"], f["kernels"], f["bytes"]) for f in found["folders"]] == [(True, 1, 101), (False, 1, 8)]
-    assert "current" in invoke("cache").stdout
-    assert json.loads(invoke("cache", "--clear", "--json").stdout)["folders"] == []
-    assert not (tmp_path / "kernels").exists() and "the next run compiles" in invoke("cache").stdout
+    assert "current" in invoke("dev", "cache").stdout
+    assert json.loads(invoke("dev", "cache", "--clear", "--json").stdout)["folders"] == []
+    assert not (tmp_path / "kernels").exists() and "the next run compiles" in invoke("dev", "cache").stdout
 
 
 def test_the_light_key_is_the_one_that_kernels_are_kept_under():

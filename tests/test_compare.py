@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
+from raceway.out.answer import Interrupted
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes, points
-from raceway.points.compare import StudyInterrupt, compare_points, tables_at
+from raceway.points.compare import compare_points, tables_at
 from raceway.points.effects import Row, percent
 from raceway.testing import default_registry, run
 
@@ -199,7 +200,7 @@ def test_interruption_keeps_the_finished_rows():
         if done == 2:
             raise KeyboardInterrupt
 
-    with pytest.raises(StudyInterrupt) as caught:
+    with pytest.raises(Interrupted) as caught:
         compare_points(SCENE, ["excitation.speed_rpm=12000:13000:3"], on_progress=stop)
     partial = caught.value.partial
     assert len(partial.rows) == 2 and partial.table() and partial.words

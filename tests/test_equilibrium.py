@@ -7,7 +7,6 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
-from raceway.planning.cost import axial_approach
 from raceway.testing import Model, model_of, settled, solve_equilibrium
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring
@@ -134,7 +133,7 @@ def test_the_axial_approach_is_that_of_the_equilibrium(built, preset, axial):
     """Balls without inertia, tilt locked.  Hamrock and Brewe's fits are within 5 % in stiffness; here they are within 1 %."""
     model = built(bearing={"preset": preset}, load={"axial": axial}, kinematics={"ball_inertia": False})
     equilibrium = solve_equilibrium(model)
-    approach, load = axial_approach(model.scene)
+    approach, load = model.problem.axial_approach
     assert approach == pytest.approx(equilibrium.displacement[0], rel=0.02)
     assert load == pytest.approx(equilibrium.contact_force.mean(), rel=0.005)
 

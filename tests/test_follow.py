@@ -13,8 +13,8 @@ from raceway import ConvergenceError, SceneError
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly
+from raceway.out.answer import Interrupted
 from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
-from raceway.points.follow import FollowInterrupt
 from validation.command_line import invoke
 from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
 from validation.oscillators import Oscillator, Pressed, natural_frequency
@@ -185,7 +185,7 @@ def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
     size = point.solved.size
     assert np.abs(by_integration(point, 2, 150.0)[2][:3]).max() < 1e-6 * size
     assert np.abs(by_integration(point, 1, 150.0)[2][:3]).max() > 1e-2 * size
-    found.write(tmp_path)
+    found.save(tmp_path, pictures=True)
     rows = list(csv.DictReader((tmp_path / "follow.csv").open()))
     assert [row["branch"] for row in rows] == ["0"] * len(found.rows) + ["1"] * len(branch.rows)
     assert (tmp_path / "follow.png").is_file()
@@ -266,7 +266,7 @@ def test_a_branch_does_not_jump_to_its_neighbour():
 
 
 def test_files_hold_every_number(curve, tmp_path):
-    curve.write(tmp_path, picture=False)
+    curve.save(tmp_path)
     content = json.loads((tmp_path / "follow.json").read_text())
     rows = list(csv.DictReader((tmp_path / "follow.csv").open()))
     assert len(rows) == len(content["rows"]) == len(curve.rows)
@@ -337,7 +337,7 @@ def test_ctrl_c_keeps_the_orbits_so_far(tmp_path):
         if what == "orbits" and done == 5:
             raise KeyboardInterrupt
 
-    with pytest.raises(FollowInterrupt) as caught:
+    with pytest.raises(Interrupted) as caught:
         rw.follow(SCENE, OVER, out=tmp_path, progress=stop)
     partial = caught.value.partial
     content = json.loads((tmp_path / "follow.json").read_text())

@@ -8,6 +8,7 @@ import raceway as rw
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.pipeline.gradient import Gradients, SteadyOrbit, derivatives, values
 from raceway.pipeline.static_gradient import NoDerivative, derivative, static_gradient
+from raceway.planning.resolve import resolve
 from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
 from validation.command_line import invoke
@@ -195,7 +196,7 @@ def test_what_has_no_derivative_is_refused_in_one_sentence(path, tables, words):
 
 def test_surface_points_have_no_derivative():
     model, still = settled(LOADED)
-    nodal = attrs.evolve(model, scene=scene_from_dict(LOADED | {"bodies": {"kind": "elastic"}, "contact": {"kind": "penalty", "discretisation": "nodal"}, "mesh": {"kind": "structured", "element_size": 2e-3}}))  # fmt: skip
+    nodal = attrs.evolve(model, problem=resolve(scene_from_dict(LOADED | {"bodies": {"kind": "elastic"}, "contact": {"kind": "penalty", "discretisation": "nodal"}, "mesh": {"kind": "structured", "element_size": 2e-3}})))  # fmt: skip
     with pytest.raises(SceneError, match="one by one"):
         Gradients(nodal, still)
 

@@ -30,7 +30,7 @@ CASES = {
     "help of a command": (MAIN.format(["run", "--help"]), HEAVY),
     "run": (f"import tempfile; {MAIN.format(['run', ARTICLE, '--out'])[:-2]}, tempfile.mkdtemp()])", PICTURES),
 } | {word: (MAIN.format([word, *scene]), HEAVY) for word, *scene in (
-    ("check", ARTICLE), ("plan", ARTICLE), ("plugins",), ("schema",), ("cache",),
+    ("check", ARTICLE), ("plan", ARTICLE), ("dev", "plugins",), ("dev", "schema",), ("dev", "cache",),
 )}  # fmt: skip
 #: Mistakes in a study are told before the compiler is loaded.
 MISTAKES = {

@@ -1,4 +1,4 @@
-"""``raceway new-scene``: what it writes is right for every bearing of the catalogue, and overwrites nothing."""
+"""``raceway dev new-scene``: what it writes is right for every bearing of the catalogue, and overwrites nothing."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def test_keys_that_are_comments_can_be_taken_in():
 
 def test_it_is_written_once(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    found = invoke("new-scene")
+    found = invoke("dev", "new-scene")
     assert found.exit_code == 0 and "raceway run B7206C.toml" in found.stdout
     (tmp_path / "B7206C.toml").write_text("mine")
-    refused = invoke("new-scene")
+    refused = invoke("dev", "new-scene")
     assert refused.exit_code == 2
     assert "`B7206C.toml` exists" in refused.stderr and "--out" in refused.stderr
     assert (tmp_path / "B7206C.toml").read_text() == "mine"
-    found = invoke("new-scene", "B7206E", "--out", "inside/other.toml", "--json")
+    found = invoke("dev", "new-scene", "B7206E", "--out", "inside/other.toml", "--json")
     assert json.loads(found.stdout) == {"file": "inside/other.toml"}
     assert invoke("check", "inside/other.toml").exit_code == 0

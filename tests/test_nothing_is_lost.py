@@ -11,8 +11,7 @@ from raceway import ConvergenceError, MeshError, SceneError, build_model, make_p
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
-from raceway.planning.cost import highest_frequency
-from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
+from raceway.planning.resolve import fits, record_bytes, recorded_per_turn, resolve
 from raceway.plugins.formats import Vtu
 from raceway.plugins.mesh_files import File
 from raceway.studies.fit.signals import recording_of, signals_of
@@ -157,7 +156,7 @@ def test_the_plan_of_explicit_steps_knows_a_tilt_stiffness():
 
     scene, steps = planned(1e9)
     _, free = planned("free")
-    assert highest_frequency(scene) >= (1e9 / 2e-4) ** 0.5
+    assert resolve(scene).highest_frequency >= (1e9 / 2e-4) ** 0.5
     assert steps > 20 * free
     model = build_model(scene, make_plan(scene))
     real = model.system.critical_time_step(model.system.evaluate(model.guess).stiffness)

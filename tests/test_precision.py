@@ -79,7 +79,7 @@ def test_the_front_falls_and_the_cheapest_are_on_it(ladder):
 
 
 def test_json_is_what_the_design_promises(ladder, tmp_path):
-    files = {path.name: path for path in ladder.write(tmp_path, pictures=True)}
+    files = {path.name: path for path in ladder.save(tmp_path, pictures=True)}
     content = json.loads(files["precision.json"].read_text())
     assert {"value", "error", "how"} <= set(content["reference"])
     wanted = {"setting", "value", "error", "wall_s", "cpu_s", "compile_s", "steps", "status", "reason", "order", "cost"}

@@ -206,15 +206,15 @@ def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
 
 
 def test_a_precision_study_says_how_well_its_reference_is_known():
-    from raceway.points.commands import precision_screen
-
-    words = [
-        "reference: steady orbit to 1e-10; confirmed by two methods, each extrapolated; relative bound 1e-10",
-        "cheapest: a; b; c",
-    ]
-    rows = [{"setting": "steps_per_turn 45", "error": "1.4e-06"}]
-    screen = " ".join(lines(precision_screen("T", rows, words, [])))
-    assert all(text in screen for text in words)
+    scene = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 1000},
+        "rotor": {"mass": 2},
+        "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4},
+    }
+    study = rw.precision(scene, {"integrator.steps_per_turn": [45]}, repeats=1)
+    screen = " ".join(lines(study.screen(["precision.json"])))
+    assert "bound" in study.words[0] and all(text in screen for text in (*study.words, "written: precision.json"))
 
 
 #: Names of cases and quantities, which stored rows are found by, and column headers of files; screens write the former with the sign.

@@ -1,4 +1,4 @@
-"""Stores of sweeps: what is chosen of them, what is drawn, what ``raceway plot`` and ``raceway export`` write."""
+"""Stores of sweeps: what is chosen of them, what is drawn, what ``raceway sweep`` and ``raceway export`` write."""
 
 from __future__ import annotations
 
@@ -216,7 +216,7 @@ def store(tmp_path_factory):
 
 
 def test_plot_chooses_names_and_writes(store):
-    found = invoke("plot", store, "--json")
+    found = invoke("sweep", store, "--json")
     assert found.exit_code == 0, found.stderr
     content = json.loads(found.stdout)
     assert (content["value"], content["kind"]) == ("stiffness:y,y", "curves")
@@ -226,7 +226,7 @@ def test_plot_chooses_names_and_writes(store):
 
 
 def test_plot_of_a_chosen_load(store, tmp_path):
-    found = invoke("plot", store, "--value", "p0", "--at", "load.axial=600", "--out", tmp_path / "p0.svg")
+    found = invoke("sweep", store, "--plot", "p0", "--at", "load.axial=600", "--picture", tmp_path / "p0.svg")
     assert found.exit_code == 0, found.stderr
     assert "p0 over kinematics.spin_speed_rpm (curves)" in found.stdout
     assert f"written: {tmp_path / 'p0.svg'}" in found.stdout

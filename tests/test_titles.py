@@ -10,8 +10,7 @@ from raceway import load_scene, scene_from_dict
 from raceway.cli.frame import slug
 from raceway.out.page import Page
 from raceway.plugins.pictures import picture
-from raceway.points.commands import head
-from raceway.points.plot import select
+from raceway.points.plot import head, select
 from raceway.points.store import row_key
 from raceway.scene.changes import parse_change, titled
 from raceway.testing import b7206c, default_registry, run

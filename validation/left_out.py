@@ -224,10 +224,10 @@ def compliances() -> Rule:
     from raceway.bodies.basis import make_basis
     from raceway.bodies.condensed_bearing import _BODIES, elastic_bodies
     from raceway.core import structural
+    from raceway.planning.resolve import resolve
 
-    scene = load_scene(SCENE, ("bodies.kind=condensed",))
-    basis = make_basis(scene)
-    count = scene.bearing.ball_count
+    problem = resolve(load_scene(SCENE, ("bodies.kind=condensed",)))
+    basis, count = make_basis(problem), problem.bearing.ball_count
 
     def run(times: int) -> Answer:
         kept, structural.kept = structural.kept, _not_kept
@@ -235,7 +235,7 @@ def compliances() -> Rule:
         try:
             for _ in range(times):
                 _BODIES.clear()
-                bodies = elastic_bodies(scene, basis)
+                bodies = elastic_bodies(problem, basis)
                 found.append(np.concatenate([bodies.inner.direct, bodies.outer.direct, [bodies.ball_direct]]))
         finally:
             structural.kept = kept

@@ -13,6 +13,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.patches.pressure import Contact, ContactState
+from raceway.planning.resolve import resolve
 
 
 @attrs.frozen(eq=False)
@@ -66,7 +67,7 @@ def single(
     shear : with compliances along the groove, for friction
     """
     scene = scene_from_dict({"title": "single contact", "bearing": {"preset": "B7206C"}})
-    bearing, basis = scene.bearing, make_basis(scene)
+    bearing, basis = scene.bearing, make_basis(resolve(scene))
     radius, shape = 0.5 * bearing.ball_diameter, ring_shape(bearing, inner)
     ellipse = basis.inner if inner else basis.outer
     angle = bearing.contact_angle if angle is None else angle

@@ -27,9 +27,9 @@ from raceway import load_scene, scene_from_dict
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
-from raceway.planning.cost import START_S, highest_frequency
+from raceway.planning.cost import START_S
 from raceway.planning.plan import Plan, make_plan
-from raceway.planning.resolve import predicted_steps_per_turn, record_bytes
+from raceway.planning.resolve import record_bytes, resolve
 from raceway.planning.rules import foreseen, implausible
 from raceway.scene.scene import Scene
 
@@ -99,8 +99,8 @@ def check(tables: dict[str, Any]) -> tuple[Scene | None, Plan | None, str]:
         scene = scene_from_dict(tables)
         plan = make_plan(scene)
         json.dumps(plan.to_dict(), allow_nan=False)
-        mistakes = foreseen(scene)
-        implausible(scene)
+        mistakes = foreseen(resolve(scene))
+        implausible(resolve(scene))
     except RacewayError as error:
         assert error.exit_code in (1, 2), error.exit_code
         assert str(error).strip(), "no message"
@@ -113,7 +113,7 @@ def planned_bytes(scene: Scene, plan: Plan, before: int) -> float:
     record = 0
     if scene.excitation is not None and plan.time_step_s is not None:
         count = scene.bearing.ball_count * len(scene.bearing.rows)
-        record = record_bytes(plan.turns, predicted_steps_per_turn(scene), count, scene.integrator.method.inertial)
+        record = record_bytes(plan.turns, resolve(scene).steps_per_turn, count, scene.integrator.method.inertial)
     return before + record + (plan.mesh or {}).get("bytes", 0)
 
 
@@ -124,7 +124,7 @@ def cheap(scene: Scene, plan: Plan) -> bool:
     if scene.bodies.name != "elastic" and plan.predicted_steps > _STEPS:
         return False
     if scene.integrator.kind == "periodic" and scene.excitation is not None:
-        return highest_frequency(scene) / (2.0 * math.pi * scene.excitation.frequency_hz) <= _ORDER
+        return resolve(scene).highest_frequency / (2.0 * math.pi * scene.excitation.frequency_hz) <= _ORDER
     return True
 
 

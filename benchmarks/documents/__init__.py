@@ -51,11 +51,11 @@ A number of a key that has a unit may be text with another unit of the same dime
 scene is read. Known are m, N, Pa, g, s, Hz and rad with the prefixes n, u (µ), m, c, k, M and G, and in, min, deg, r, rev, rpm and K;
 products, quotients and powers are written as `N s/m`, `kg m2` or `N/mm^3`. In Python, quantities of pint are taken, too.
 
-`raceway check SCENE` validates, `raceway schema` prints the same declarations as a JSON schema for editors, `--set
+`raceway check SCENE` validates, `raceway dev schema` prints the same declarations as a JSON schema for editors, `--set
 table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
 `raceway/scene/bearing.py`, `raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
 
-`raceway new-scene` writes a scene with comments to start from.
+`raceway dev new-scene` writes a scene with comments to start from.
 
 ![a bearing in section, along its axis, and pairs of rows, with the keys that say their measures](pictures/parameters.svg)
 

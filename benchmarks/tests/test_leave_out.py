@@ -244,7 +244,7 @@ def test_a_time_integration_that_is_not_left_out_is_noticed(monkeypatch):
     # By its memory: times of a busy machine may differ by anything.
     monkeypatch.setattr(left_out, "_REPEATS", 1)
     assert left_out.RULES["integration"]().smaller
-    monkeypatch.setattr("raceway.planning.resolve.uses_record", lambda scene: True)
+    monkeypatch.setattr("raceway.planning.resolve.Problem.recorded", property(lambda problem: True))
     assert not left_out.RULES["integration"]().smaller
 
 

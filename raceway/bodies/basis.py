@@ -15,10 +15,9 @@ from raceway.core.signatures import FORCE
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import force_params
 from raceway.framework.probe import plugin_kernel
-from raceway.planning.cost import axial_approach
 from raceway.planning.plan import Plan
-from raceway.scene.growth import grooves, ring_inertia, speed_growth
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
+from raceway.scene.growth import speed_growth
 from raceway.storage.tables import Tables
 
 
@@ -57,9 +56,9 @@ class Basis:
         return self.geometries[self.row[ball]].ellipses(self.modulus)
 
 
-def make_basis(scene: Scene) -> Basis:
+def make_basis(problem: Problem) -> Basis:
     """Geometry and contacts of a scene."""
-    b = scene.bearing
+    b = problem.bearing
     geometries = tuple(
         BallBearing(
             one.ball_diameter,
@@ -80,27 +79,27 @@ def make_basis(scene: Scene) -> Basis:
     if not b.equal_rows:
         pairs = [one.ellipses(modulus) for one in geometries]
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
-    axial, ball_load = axial_approach(scene)
+    axial, ball_load = problem.axial_approach
     azimuths = np.concatenate(azimuth)
     return Basis(
-        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), growth_of(scene, row)
+        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), growth_of(problem, row)
     )
 
 
-def growth_of(scene: Scene, row: np.ndarray) -> Growth:
+def growth_of(problem: Problem, row: np.ndarray) -> Growth:
     """Of the grooves; ``row`` (Z,) is each ball's."""
-    rows = np.array([[*attrs.astuple(grooves(scene, k)), 0.0] for k in range(len(scene.bearing.rows))])
+    rows = np.array([[*attrs.astuple(grown), 0.0] for grown in problem.grooves])
     # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
     common = rows[0].copy()
-    if scene.bearing.equal_rows:
+    if problem.bearing.equal_rows:
         common[0] = rows[:, 0].mean()
     return Growth(common, (rows - common)[row])
 
 
-def contact_pairs(scene: Scene, basis: Basis) -> ContactPairs:
+def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
     """The contacts as a law sees them, mounted and at standstill."""
     inner, outer = basis.inner, basis.outer
-    z, rings, balls = len(basis.azimuth), scene.bearing.rings, scene.bearing.balls
+    z, rings, balls = len(basis.azimuth), problem.bearing.rings, problem.bearing.balls
 
     def both(a: float | np.ndarray, b: float | np.ndarray) -> np.ndarray:
         return np.concatenate([np.broadcast_to(one, z) for one in (a, b)]).astype(float)
@@ -138,69 +137,63 @@ def point_pairs(basis: Basis, inner: np.ndarray, area: np.ndarray) -> ContactPai
     )
 
 
-def linear_parts(scene: Scene, plan: Plan) -> dict[str, np.ndarray]:
+def linear_parts(problem: Problem, plan: Plan) -> dict[str, np.ndarray]:
     """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
-    rotor = scene.rotor
-    mass, tilt, polar = ring_inertia(scene)
-    translation, rotation = rotor.mass + mass, rotor.transverse_inertia + tilt
-    damping = np.diag([rotor.damping] * 3 + [0.0, 0.0]) + _gyroscopic(scene, polar)
-    shaft = scene.supports.tilt if isinstance(scene.supports.tilt, float) else 0.0
+    inertia = problem.inertia
+    damping = np.diag([problem.rotor.damping] * 3 + [0.0, 0.0]) + gyroscopic(problem)
+    shaft = problem.supports.tilt if isinstance(problem.supports.tilt, float) else 0.0
     return {
-        "mass": np.diag([translation] * 3 + [rotation] * 2),
+        "mass": np.diag([inertia.mass] * 3 + [inertia.transverse] * 2),
         "damping": damping,
         "stiffness": np.diag([0.0, 0.0, 0.0, shaft, shaft]),
         "free": np.array(plan.free, dtype=float),
-        "load": np.array([scene.load.axial, *scene.load.radial, *scene.load.moment]),
+        "load": np.array([problem.load.axial, *problem.load.radial, *problem.load.moment]),
     }
 
 
-def excitation(scene: Scene) -> Tables:
+def excitation(problem: Problem) -> Tables:
     """The excitation's kernel and parameters."""
-    if scene.excitation is None:
+    if problem.excitation is None:
         from raceway.core.excitations.harmonic import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
     return {
-        "force": plugin_kernel(scene.excitation, "excitation", FORCE, "FORCE"),
-        "force_params": force_params(scene.excitation),
+        "force": plugin_kernel(problem.excitation, "excitation", FORCE, "FORCE"),
+        "force_params": force_params(problem.excitation),
     }
 
 
-def changing_speed(scene: Scene) -> ChangingSpeed | None:
+def changing_speed(problem: Problem) -> ChangingSpeed | None:
     """What follows the speed of an excitation that changes it; None where the spin speed is steady."""
-    if not scene.spin_changes:
+    if not problem.spin_changes:
         return None
-    return ChangingSpeed(scene.excitation.phase, scene.spin_speed, speed_growth(scene), gyroscopic(scene))
+    return ChangingSpeed(problem.excitation.phase, problem.spin_speed, speed_growth(problem.scene), gyroscopic(problem))
 
 
-def gyroscopic(scene: Scene) -> np.ndarray:
+def gyroscopic(problem: Problem) -> np.ndarray:
     """(5, 5) part of the damping that the spinning ring and rotor make [N m s/rad].
 
     Notes
     -----
     dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
     """
-    return _gyroscopic(scene, ring_inertia(scene)[2])
+    moments = np.zeros((5, 5))
+    moments[3, 4] = problem.inertia.polar * problem.spin_speed
+    moments[4, 3] = -moments[3, 4]
+    return moments
 
 
-def _gyroscopic(scene: Scene, of_ring: float) -> np.ndarray:
-    found = np.zeros((5, 5))
-    found[3, 4] = (scene.rotor.polar_inertia + of_ring) * scene.spin_speed
-    found[4, 3] = -found[3, 4]
-    return found
-
-
-def seat_of(scene: Scene, inner: bool) -> str | float:
+def seat_of(problem: Problem, inner: bool) -> str | float:
     """What a ring sits on, as ``raceway.core.revolution.body.Revolution`` takes it: "clamped", or a bed [N/m3]."""
-    seat = scene.supports.inner_seat if inner else scene.supports.outer_seat
+    seat = problem.supports.inner_seat if inner else problem.supports.outer_seat
     return "clamped" if isinstance(seat, str) else float(seat)
 
 
-def first_guess(scene: Scene, basis: Basis) -> np.ndarray:
+def first_guess(problem: Problem, basis: Basis) -> np.ndarray:
     """(5,) displacement to look for the equilibrium from [m, rad]."""
     geometry, x = basis.geometry, basis.axial
     guess = np.zeros(5)
-    axial, radial = scene.load.axial, np.array(scene.load.radial)
+    axial, radial = problem.load.axial, np.array(problem.load.radial)
     rest_axial, rest_radial = geometry.rest
     size = float(np.hypot(*radial))
     if axial > 0.0:

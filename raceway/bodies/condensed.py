@@ -10,8 +10,9 @@ import attrs
 from raceway.bodies.mesh import unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.planning.cost import START_S, Times, compiled_motion, highest_frequency, runs
-from raceway.planning.resolve import Balls, Decisions, Motion, uses_record
+from raceway.planning.cost import START_S, Times, compiled_motion, runs
+from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -225,27 +226,27 @@ class Condensed:
             return Traits(compiled=False, resultants=False)
         return Traits(calibrated=scene.contact.kind == "hertz", renews=True, damps=True)
 
-    def stable_step(self, scene: Scene) -> float:
+    def stable_step(self, problem: Problem) -> float:
         """Of the ring on its contacts [s]."""
-        return 2.0 / highest_frequency(scene)
+        return 2.0 / problem.highest_frequency
 
-    def decide(self, scene: Scene, parts: Decisions) -> None:
+    def decide(self, problem: Problem, parts: Decisions) -> None:
         """What of the bodies' compliance is needed."""
         why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
         parts.keep("elastic rings and balls", why)
-        if _nodal(scene):
-            cost = patch_cost(scene)
+        if _nodal(problem.scene):
+            cost = patch_cost(problem.scene)
             why = f"contact.discretisation is nodal: some {cost.points} points carry a contact, {cost.bytes / 2**20:.0f} MiB"
             parts.keep("pressures at surface points", why)
-            moves = uses_record(scene) and scene.integrator.method.inertial and scene.kinematics.ball_inertia
+            moves = problem.recorded and problem.integrator.method.inertial and problem.kinematics.ball_inertia
             part, why = "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time"
             parts.decide(moves, part, why, "their slowest mode lies at some kHz: they follow at once")
         else:
             why_not = (
                 "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
             )
-            parts.decide(_balls_meet(scene), BETWEEN_BALLS, "soft seats or thick rings", why_not)
-            if scene.excitation is not None:
+            parts.decide(_balls_meet(problem.scene), BETWEEN_BALLS, "soft seats or thick rings", why_not)
+            if problem.excitation is not None:
                 why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
                 parts.leave_out("inertia of the bodies' deformation", why)
         parts.leave_out("a compliance for each ball and contact", "balls are equal and rings are bodies of revolution")
@@ -258,17 +259,17 @@ class Condensed:
         why = "points stick by the compliance of rings and balls themselves"
         return [("contact.stick_stiffness", why)] if _nodal(scene) else []
 
-    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Sections or patches first, then the motion."""
-        if not _nodal(scene):
-            more = _BETWEEN_S * (scene.bearing.ball_count / 12.0) ** 2 if parts.keeps(BETWEEN_BALLS) else 0.0
-            once = section_cost(scene).seconds
-            return Cost(START_S + once + compiled_motion(scene, balls, motion, _TIMES, more), once)
-        patches = patch_cost(scene)
-        guess = MOTION if scene.excitation is not None and scene.integrator.method.inertial else 0.0
+        if not _nodal(problem.scene):
+            more = _BETWEEN_S * (problem.bearing.ball_count / 12.0) ** 2 if parts.keeps(BETWEEN_BALLS) else 0.0
+            once = section_cost(problem.scene).seconds
+            return Cost(START_S + once + compiled_motion(problem, balls, motion, _TIMES, more), once)
+        patches = patch_cost(problem.scene)
+        guess = MOTION if problem.excitation is not None and problem.integrator.method.inertial else 0.0
         seconds = patches.setup_s + 3.0 * patches.equilibrium_s + guess * patches.step_s
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
-        return Cost(START_S + seconds + _WITH_HALF * runs(scene, motion) * steps * patches.step_s)
+        return Cost(START_S + seconds + _WITH_HALF * runs(problem, motion) * steps * patches.step_s)
 
     def same_bodies(self, scene: Scene, other: Scene) -> bool:
         """Whether sections, contacts and materials, which compliances are computed from, are the same."""
@@ -277,18 +278,18 @@ class Condensed:
 
         if (scene.bearing, scene.supports, scene.mesh) == (other.bearing, other.supports, other.mesh):
             return True  # all that sections are made of
-        one, two = (sections(each, make_basis(each)) for each in (scene, other))
+        one, two = (sections(each, make_basis(each)) for each in map(resolve, (scene, other)))
         return one == two
 
-    def build(self, scene: Scene, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: Plan) -> Bearing:
         """See ``raceway.bodies.condensed_bearing`` and ``raceway.bodies.patch_bearing``."""
-        if _nodal(scene):
+        if _nodal(problem.scene):
             from raceway.bodies.patch_bearing import build as nodal
 
-            return nodal(scene, plan)
+            return nodal(problem, plan)
         from raceway.bodies.condensed_bearing import build
 
-        return build(scene, plan)
+        return build(problem, plan)
 
 
 def _nodal(scene: Scene) -> bool:

@@ -33,7 +33,7 @@ from raceway.core.structural import (
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.estimate import Estimate
 from raceway.planning.plan import Plan
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -55,9 +55,9 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
     A ball pressed by Q between two grooves is held along them by k = Q_i / L_i + Q_o / L_o, where L is the distance from the
     ball's centre to the groove's.
     """
-    scene = model.scene
-    b = scene.bearing
-    excitation = scene.excitation
+    problem = model.problem
+    b = problem.bearing
+    excitation = problem.excitation
     frequency = None if excitation is None else float(excitation.frequency_hz)
     out: Tables = {}
 
@@ -67,7 +67,7 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
 
     for inner, word in ((True, "inner"), (False, "outer")):
         shape = ring_shape(b, inner)
-        for name, seat in (("supported", seat_of(scene, inner)), ("free", "free")):
+        for name, seat in (("supported", seat_of(problem, inner)), ("free", "free")):
             steel = (b.rings.young, b.rings.poisson, b.rings.density)
             tell(f"{word}_{name}", first_frequency(shape, b.ball_diameter, *steel, seat))
     z, geometry = model.system.ball_count, model.geometry
@@ -77,8 +77,8 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
     mass = geometry.ball_mass(b.balls.density)
     slowest = float(np.sqrt(loaded.min() / mass) / (2.0 * np.pi)) if len(loaded) else None
     tell("ball_along_grooves", slowest)
-    recorded = excitation is not None and "record" in scene.identifier.method.needs
-    moves = recorded and scene.integrator.method.inertial and getattr(model.system, "ball_mass", 0.0) > 0.0
+    recorded = problem.recorded
+    moves = recorded and problem.integrator.method.inertial and getattr(model.system, "ball_mass", 0.0) > 0.0
     out["ball_along_grooves_in_motion"] = moves
     if moves:
         out["ball_along_grooves_error"] = None
@@ -95,17 +95,17 @@ _KEPT = 8
 _BODIES: dict[Hashable, ElasticBodies] = {}
 
 
-def sections(scene: Scene, basis: Basis) -> Hashable:
+def sections(problem: Problem, basis: Basis) -> Hashable:
     """All that the compliances of the rings and their calibrations are computed from: loads and masses are not."""
-    b = scene.bearing
+    b = problem.bearing
     shape = b.ball_diameter, b.pitch_diameter, b.ball_count, b.conformity_inner, b.conformity_outer, b.contact_angle
     sizes = b.bore, b.outer_diameter, b.width, b.shoulder_height, b.inner_profile, b.outer_profile
     elastic = b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson
     pairs = tuple((float(one.factor), *(float(axis) for axis in one.semi_axes(1.0))) for one in (basis.inner, basis.outer))
-    return shape, sizes, elastic, pairs, scene.supports.inner_seat, scene.supports.outer_seat, scene.mesh
+    return shape, sizes, elastic, pairs, problem.supports.inner_seat, problem.supports.outer_seat, problem.mesh
 
 
-def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
+def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
     """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
 
     Parameters
@@ -117,12 +117,12 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     SceneError
         Bodies so soft that their contacts are as large as a ball.
     """
-    key = (sections(scene, basis), coarser)
-    found = _BODIES.pop(key, None) or _elastic_bodies(scene, basis, coarser)
+    key = (sections(problem, basis), coarser)
+    found = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
     _BODIES[key] = found  # the last in, and the last to go
     if len(_BODIES) > _KEPT:
         del _BODIES[next(iter(_BODIES))]
-    b, (a, across) = scene.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
+    b, (a, across) = problem.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
     if not abs(own) * basis.ball_load < b.ball_diameter:
         soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda one: one[1].young)
@@ -131,15 +131,15 @@ def elastic_bodies(scene: Scene, basis: Basis, coarser: float = 1.0) -> ElasticB
     return attrs.evolve(found, ball_direct=own, ball_opposite=opposite)
 
 
-def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies:
+def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBodies:
     """Rings and calibrations; the ball's own compliance, which follows the load, is filled in each time."""
-    b = scene.bearing
+    b = problem.bearing
     typical = typical_load(basis)
     rings, calibrations = [], []
     for inner in (True, False):
         shape = ring_shape(b, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
-        bulk, fine = element_sizes(scene, shape, half)
+        bulk, fine = element_sizes(problem, shape, half)
         rings.append(
             ring_compliance(
                 shape,
@@ -148,7 +148,7 @@ def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies
                 half,
                 b.rings.young,
                 b.rings.poisson,
-                seat_of(scene, inner),
+                seat_of(problem, inner),
                 coarser * bulk,
                 coarser * min(fine, bulk),
                 coarser * min(2.0 * fine, bulk),
@@ -156,7 +156,7 @@ def _elastic_bodies(scene: Scene, basis: Basis, coarser: float) -> ElasticBodies
         )
         size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
         steel, balls = (Solid(one.young, one.poisson, bulk=size) for one in (b.rings, b.balls))
-        body = RingBody(shape, steel, seat_of(scene, inner), (0.0, 0.0))
+        body = RingBody(shape, steel, seat_of(problem, inner), (0.0, 0.0))
         both = basis.inner, basis.outer
         calibrations.append(
             calibrated(body, balls, both, typical, 0.5 * b.ball_diameter, b.ball_count, abs(b.contact_angle))
@@ -169,12 +169,12 @@ def typical_load(basis: Basis) -> float:
     return float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
 
 
-def element_sizes(scene: Scene, shape: RingShape, half: float) -> tuple[float, float]:
+def element_sizes(problem: Problem, shape: RingShape, half: float) -> tuple[float, float]:
     """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
-    length = reach(shape, scene.bearing.ball_diameter)
-    if scene.mesh is None:
+    length = reach(shape, problem.bearing.ball_diameter)
+    if problem.mesh is None:
         return 0.62 * length, SURFACE * length
-    return min(scene.mesh.element_size, 0.62 * length), half / scene.mesh.nodes_per_semi_axis
+    return min(problem.mesh.element_size, 0.62 * length), half / problem.mesh.nodes_per_semi_axis
 
 
 #: How much coarser the mesh is that error.mesh is estimated with.
@@ -183,15 +183,15 @@ _COARSER = 2.0
 _NOTHING = 1e-6
 
 
-def build(scene: Scene, plan: Plan) -> CondensedBearing:
+def build(problem: Problem, plan: Plan) -> CondensedBearing:
     """The bearing of a scene with condensed bodies and contact resultants."""
-    stiff = rigid.build(scene, plan)
-    bodies = elastic_bodies(scene, stiff.basis)
-    _refuse_stiff_law(scene, stiff, bodies)
-    _refuse_dashpots(scene, plan, stiff, bodies)
-    angles = _angles(scene, stiff) if plan.keeps(BETWEEN_BALLS) else None
+    stiff = rigid.build(problem, plan)
+    bodies = elastic_bodies(problem, stiff.basis)
+    _refuse_stiff_law(problem, stiff, bodies)
+    _refuse_dashpots(problem, plan, stiff, bodies)
+    angles = _angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
-    guess = place_ring(scene, stiff.basis, system)
+    guess = place_ring(problem, stiff.basis, system)
     return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
 
 
@@ -248,8 +248,8 @@ class CondensedBearing(Bearing):
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
-        scene = model.scene
-        coarse = elastic_bodies(scene, self.rigid.basis, _COARSER)
+        problem = model.problem
+        coarse = elastic_bodies(problem, self.rigid.basis, _COARSER)
         system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:
@@ -269,10 +269,10 @@ class CondensedBearing(Bearing):
 
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""
-        basis, shape = self.rigid.basis, ring_shape(model.scene.bearing, inner)
+        basis, shape = self.rigid.basis, ring_shape(model.problem.bearing, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical_load(basis))[0])
-        bulk, fine = element_sizes(model.scene, shape, half)
-        return ring_section(shape, model.scene.bearing.ball_diameter, bulk, min(fine, bulk))
+        bulk, fine = element_sizes(model.problem, shape, half)
+        return ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
 
     def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
         """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
@@ -289,10 +289,10 @@ def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | No
     ]
 
 
-def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
+def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
     """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
     system: System = surrogate(stiff.system)
-    angles = np.full(system.ball_count, scene.bearing.contact_angle)
+    angles = np.full(system.ball_count, problem.bearing.contact_angle)
     try:
         q, ball, _ = system.settle(stiff.guess)
     except ConvergenceError:
@@ -300,14 +300,14 @@ def _angles(scene: Scene, stiff: RigidBearing) -> np.ndarray:
     centre, _ = system.centre_vectors(q)
     loaded = system.evaluate(q, ball=ball).contact_force[: system.ball_count] > 0.0
     found = np.arctan2(centre[:, 0], centre[:, 1])
-    if scene.kinematics.orbiting and loaded.any():
+    if problem.kinematics.orbiting and loaded.any():
         return np.full(system.ball_count, found[loaded].mean())
     return np.where(loaded, found, angles)
 
 
-def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) -> None:
+def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """A law so stiff that the bodies take off more compliance than its contact has."""
-    taken = min(bodies.at(scene.bearing.contact_angle))
+    taken = min(bodies.at(problem.bearing.contact_angle))
     if taken >= 0.0:
         return
     basis, system = stiff.basis, surrogate(stiff.system)
@@ -320,28 +320,28 @@ def _refuse_stiff_law(scene: Scene, stiff: RigidBearing, bodies: ElasticBodies) 
         )
         if (-d_gap * -taken).max() >= 1.0:
             thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
-            remedy = thin if scene.contact.kind == "hertz" else "Use 'hertz', or a softer law"
+            remedy = thin if problem.contact.kind == "hertz" else "Use 'hertz', or a softer law"
             raise SceneError.at(
                 "contact.kind",
-                scene.contact.kind,
+                problem.contact.kind,
                 f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
                 f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
             )
 
 
-def _refuse_dashpots(scene: Scene, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
+def _refuse_dashpots(problem: Problem, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
-    taken = -min(bodies.at(scene.bearing.contact_angle))
-    if plan.time_step_s is None or scene.integrator.method.steady or taken <= 0.0:
+    taken = -min(bodies.at(problem.bearing.contact_angle))
+    if plan.time_step_s is None or problem.integrator.method.steady or taken <= 0.0:
         return
     # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
     bound = 0.5 * plan.time_step_s / (1.5 * taken)
     told = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * taken:.3g} nm/N off them"
-    if scene.contact.dashpot > bound:
+    if problem.contact.dashpot > bound:
         why = f"{told}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
-        raise SceneError.at("contact.damping", scene.contact.damping, why)
+        raise SceneError.at("contact.damping", problem.contact.damping, why)
     load = float(typical_load(stiff.basis))
     stiffness = max(1.5 * load / float(one.approach(load)) for one in (stiff.basis.inner, stiff.basis.outer))
-    if scene.time_constant * stiffness > bound:
+    if problem.time_constant * stiffness > bound:
         why = f"{told}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
-        raise SceneError.at("contact.time_constant", scene.time_constant, why)
+        raise SceneError.at("contact.time_constant", problem.time_constant, why)

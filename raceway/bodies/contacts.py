@@ -13,8 +13,8 @@ from raceway.core.ring.system import surrogate
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import is_foundation, renews
 from raceway.framework.estimate import Estimate
+from raceway.planning.resolve import Problem
 from raceway.scene.growth import groove_depth, load_at_edge
-from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,18 +43,18 @@ def contact_angles(
     return np.where(force[..., :z] > 0, inner, np.nan), np.where(force[..., z:] > 0, outer, np.nan)
 
 
-def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
+def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
     """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    edges, found = groove_edges(scene, basis), []
+    edges, found = groove_edges(problem, basis), []
     overs = ellipse_ends(basis, inner, outer, force)
     for race, (word, angle, over) in enumerate(zip(("inner", "outer"), (inner, outer), overs, strict=True)):
         beyond = over - edges
         if np.nanmax(beyond, initial=0.0) > 0.0:
             ball = int(np.nanargmax(beyond))
-            bearing, edge, reach = scene.bearing.of_rows[basis.row[ball]], edges[ball], over[ball]
+            bearing, edge, reach = problem.bearing.of_rows[basis.row[ball]], edges[ball], over[ball]
             depth = groove_depth(bearing)
             begins = load_at_edge(basis.of_ball(ball)[race], 0.5 * bearing.ball_diameter, edge - abs(angle[ball]))
-            assumed = "" if scene.bearing.shoulder_height else ", assumed 0.2 D"
+            assumed = "" if problem.bearing.shoulder_height else ", assumed 0.2 D"
             found.append(
                 f"the contact ellipse on the {word} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
                 f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
@@ -63,9 +63,9 @@ def beyond_the_groove(scene: Scene, basis: Basis, inner: np.ndarray, outer: np.n
     return found
 
 
-def groove_edges(scene: Scene, basis: Basis) -> np.ndarray:
+def groove_edges(problem: Problem, basis: Basis) -> np.ndarray:
     """(Z,) angle from the groove's bottom to its edge, seen from the ball's centre, of every ball's row [rad]."""
-    rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in scene.bearing.of_rows]
+    rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in problem.bearing.of_rows]
     return np.asarray(np.array(rows)[basis.row])
 
 
@@ -133,7 +133,7 @@ def approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.
 
 
 def contact_ellipse(
-    scene: Scene, basis: Basis, ring: Ring, race: int, load: np.ndarray
+    problem: Problem, basis: Basis, ring: Ring, race: int, load: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Peak pressure (n,) [Pa] and semi-axes a, b (n,) [m] of the contacts of a race at loads (n,) [N].
 
@@ -144,12 +144,12 @@ def contact_ellipse(
     and the semi-axes are sqrt(delta / A), sqrt(delta / B).
     """
     ellipse: Ellipse = (basis.inner, basis.outer)[race]
-    contact = scene.contact
-    if not scene.bearing.equal_rows and len(load) != len(basis.azimuth):
+    contact = problem.contact
+    if not problem.bearing.equal_rows and len(load) != len(basis.azimuth):
         # Loads of no particular balls: of the row in which they press hardest.
         each = [one.ellipses(basis.modulus)[race] for one in basis.geometries]
         ellipse = max(each, key=lambda one: float(one.peak_pressure(1.0)))
-    if not scene.body_kind.traits.resultants or not is_foundation(contact.law):
+    if not problem.traits.resultants or not is_foundation(contact.law):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at(ring, basis.geometry.ball_diameter, race, load)
@@ -187,8 +187,8 @@ _ROUNDING = 1e-8
 
 def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
     """Largest relative difference of a loaded contact's approach or stiffness from Hertz's at the same load."""
-    if renews(model.scene.contact.law):
-        return None, Estimate.BEYOND_HERTZ(kind=model.scene.contact.kind)
+    if renews(model.problem.contact.law):
+        return None, Estimate.BEYOND_HERTZ(kind=model.problem.contact.kind)
     loaded = equilibrium.contact_force > 0.0
     split = model.system.ball_count
     force = equilibrium.contact_force
@@ -217,4 +217,4 @@ def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told
 
 def untold(model: Model) -> Told:
     """Of laws that are calibrated to Hertz and nothing more is known of."""
-    return None, Estimate.LAW_UNKNOWN(kind=model.scene.contact.kind)
+    return None, Estimate.LAW_UNKNOWN(kind=model.problem.contact.kind)

@@ -15,8 +15,9 @@ from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_constraint
 from raceway.framework.options import one_of, option, positive
-from raceway.planning.cost import START_S, axial_approach
-from raceway.planning.resolve import Balls, Decisions, Motion
+from raceway.planning.cost import START_S
+from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.resolve import Problem, axial_approach
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -147,7 +148,7 @@ def _stable_step(scene: Scene) -> float:
         b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
     )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
-    carried = axial_approach(scene)[1] or 300.0
+    carried = axial_approach(b, scene.load.axial)[1] or 300.0
     load = getattr(mesh, "ball_load", None) or carried
     ellipses = row.ellipses(modulus)
     minors = [float(e.semi_axes(load)[1]) for e in ellipses]
@@ -303,19 +304,19 @@ class Elastic:
         calibrated = resultants and scene.contact.kind == "hertz"
         return Traits(compiled=False, resultants=resultants, calibrated=calibrated, every_node=True)
 
-    def stable_step(self, scene: Scene) -> float | None:
+    def stable_step(self, problem: Problem) -> float | None:
         """Of elements and contacts [s]; None where the mesher cannot tell."""
-        cost = elastic_cost(scene)
+        cost = elastic_cost(problem.scene)
         return None if cost is None or cost.stable_step_s == 0.0 else cost.stable_step_s
 
-    def decide(self, scene: Scene, parts: Decisions) -> None:
+    def decide(self, problem: Problem, parts: Decisions) -> None:
         """What of the bodies is not left out: all of them."""
-        cost = elastic_cost(scene)
+        cost = elastic_cost(problem.scene)
         size = "" if cost is None else f": {words(cost)}"
         parts.keep(
             "elastic rings and balls", f"bodies.kind is elastic: finite elements of rings and balls, every node{size}"
         )
-        nodal = scene.contact.discretisation == "nodal"
+        nodal = problem.contact.discretisation == "nodal"
         why = "elastic bodies touch at the points of the balls' surfaces"
         why_not = (
             "contact.discretisation is resultant: one force a contact, whose law replaces what the mesh below it gives way"
@@ -327,12 +328,12 @@ class Elastic:
         parts.keep("a compliance for each ball and contact", "every node of every ball and ring is an unknown")
         why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
         parts.keep("other mirror half", why)
-        count = scene.bearing.ball_count
+        count = problem.bearing.ball_count
         why = f"the {count} balls are one ball turned, and each ring {count} equal sectors: one of each is factored"
-        if nodal and equal_sectors(scene):
+        if nodal and equal_sectors(problem.scene):
             parts.leave_out("factors of equal balls and sectors", why)
         elif nodal:
-            why = f"mesh.kind is {scene.mesh.name}: " if scene.mesh is not None else ""
+            why = f"mesh.kind is {problem.mesh.name}: " if problem.mesh is not None else ""
             why += (
                 "a ring is factored as a whole unless its sectors turn out to be equal, and each ball that is no turned copy"
             )
@@ -345,20 +346,20 @@ class Elastic:
         """Nothing beyond what holds for all bodies."""
         return []
 
-    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
-        cost = elastic_cost(scene)
+        cost = elastic_cost(problem.scene)
         if cost is None:
             return Cost(START_S, scales=False, at_least=True)
         seconds = START_S + cost.equilibrium_s
-        if scene.contact.discretisation == "resultant":
-            seconds += section_cost(attrs.evolve(scene, mesh=None)).seconds
+        if problem.contact.discretisation == "resultant":
+            seconds += section_cost(attrs.evolve(problem.scene, mesh=None)).seconds
         if motion.recorded:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
-        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(scene), scales=False, bytes=cost.bytes)
+        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(problem.scene), scales=False, bytes=cost.bytes)
 
-    def build(self, scene: Scene, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: Plan) -> Bearing:
         """See ``raceway.bodies.elastic_bearing``."""
         from raceway.bodies.elastic_bearing import build
 
-        return build(scene, plan)
+        return build(problem, plan)

@@ -25,14 +25,14 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import Plan
+from raceway.planning.resolve import Problem
 from raceway.scene.growth import radial_growth
-from raceway.scene.scene import Scene
 
 #: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
 _ENOUGH = 5.0
 
 
-def build(scene: Scene, plan: Plan) -> ElasticBodies:
+def build(problem: Problem, plan: Plan) -> ElasticBodies:
     """The bearing of a scene with elastic bodies.
 
     Raises
@@ -40,40 +40,40 @@ def build(scene: Scene, plan: Plan) -> ElasticBodies:
     MeshError
         Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
     """
-    basis, whole = make_basis(scene), scene.contact.discretisation == "resultant"
-    as_rigid = scene
+    basis, whole = make_basis(problem), problem.contact.discretisation == "resultant"
+    as_rigid = problem
     if not whole:
-        contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-        as_rigid = attrs.evolve(scene, contact=contact)
+        contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+        as_rigid = problem.changed(contact=contact)
     rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
-    setup = _setup(scene, basis, rigid)
+    setup = _setup(problem, basis, rigid)
     if whole:
         from raceway.bodies.condensed_bearing import elastic_bodies
 
         params = rigid.law_params
-        angles = _angles(scene, plan, rigid, guess)
+        angles = _angles(problem, plan, rigid, guess)
         # Of the bearing's own rings and balls, whatever mesh stands for them: the calibration is local.
-        compliances = elastic_bodies(attrs.evolve(scene, mesh=None), basis)
+        compliances = elastic_bodies(problem.changed(mesh=None), basis)
         beyond = np.concatenate([compliances.beyond(race, of) for race, of in enumerate(np.split(angles, 2))])
         setup = attrs.evolve(setup, angles=angles, beyond=beyond, params=lambda pair, area: params[pair])
-    meshes = mesh_scene(scene)
-    check_sets(scene_mesher(scene), meshes, scene.supports)
+    meshes = mesh_scene(problem.scene)
+    check_sets(scene_mesher(problem.scene), meshes, problem.supports)
     bodies = ElasticBearing(meshes, setup)
     if whole:
-        _refuse_stiff_law(scene, basis, bodies)
+        _refuse_stiff_law(problem, basis, bodies)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
-    held_by = scene.load.axial if scene.supports.axial == "displacement" else None
+    held_by = problem.load.axial if problem.supports.axial == "displacement" else None
     system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
     if whole:
         return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
     return ElasticPoints(basis, system, guess, bodies, rigid)
 
 
-def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:
+def _angles(problem: Problem, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:
     """(2 Z,) contact angles with rigid bodies, inner races first; the free one where a ball carries nothing."""
-    angles = np.full(2 * rigid.ball_count, scene.bearing.contact_angle)
+    angles = np.full(2 * rigid.ball_count, problem.bearing.contact_angle)
     try:
         q, ball, _ = rigid.settle(guess)
     except ConvergenceError:  # said better where the equilibrium is looked for
@@ -85,7 +85,7 @@ def _angles(scene: Scene, plan: Plan, rigid: System, guess: np.ndarray) -> np.nd
     return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, found, angles)
 
 
-def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> None:
+def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) -> None:
     """A law that has less compliance than the mesh under its contacts."""
     contact: Any = bodies.system.contact
     n, load = len(contact.local), _ENOUGH * basis.ball_load
@@ -93,22 +93,22 @@ def _refuse_stiff_law(scene: Scene, basis: Basis, bodies: ElasticBearing) -> Non
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
     contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
     if (-d_gap * contact.local).max() >= 1.0:
-        remedy = "Take a smaller load" if scene.contact.kind == "hertz" else "Use 'hertz' or a softer law"
+        remedy = "Take a smaller load" if problem.contact.kind == "hertz" else "Use 'hertz' or a softer law"
         raise SceneError.at(
             "contact.kind",
-            scene.contact.kind,
+            problem.contact.kind,
             f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
             f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. {remedy}, or take "
             "contact.discretisation = 'nodal'",
         )
 
 
-def _setup(scene: Scene, basis: Basis, rigid: System) -> BearingData:
-    b, rotor, contact = scene.bearing, scene.rotor, scene.contact
+def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
+    b, rotor, contact = problem.bearing, problem.rotor, problem.contact
     inertia = [rotor.mass] * 3 + [rotor.transverse_inertia] * 2  # the ring's own is in its mesh
-    outer = 0.0 if scene.excitation is None else scene.excitation.amplitude_n
+    outer = 0.0 if problem.excitation is None else problem.excitation.amplitude_n
     # A radial load is carried by a few balls: 5 F / Z (Stribeck).
-    most = basis.ball_load + 5.0 * (float(np.hypot(*scene.load.radial)) + outer) / b.ball_count
+    most = basis.ball_load + 5.0 * (float(np.hypot(*problem.load.radial)) + outer) / b.ball_count
     return BearingData(
         geometry=basis.geometry,
         azimuth=basis.azimuth,
@@ -116,40 +116,40 @@ def _setup(scene: Scene, basis: Basis, rigid: System) -> BearingData:
         balls=(b.balls.young, b.balls.poisson, b.balls.density),
         reference_load=0.25 * most if most > 4.0 * basis.ball_load else basis.ball_load,
         law=plugin_kernel(contact.law, "contact law", LAW, "LAW"),
-        params=_params(scene, basis),
+        params=_params(problem, basis),
         state_size=contact.law.state_size,
         mass=np.diag(inertia),
         damping=rigid.damping,
         stiffness=rigid.stiffness,
         free=rigid.free > 0.0,
         load=rigid.load,
-        formulation=scene.bodies.formulation,
-        hourglass=scene.bodies.hourglass,
-        seat_inner=scene.supports.inner_seat,
-        seat_outer=scene.supports.outer_seat,
+        formulation=problem.bodies.formulation,
+        hourglass=problem.bodies.hourglass,
+        seat_inner=problem.supports.inner_seat,
+        seat_outer=problem.supports.outer_seat,
         contact_damping=contact.dashpot,
         ball_force=float(rigid.table[0, CENTRIFUGAL]),
-        growth=radial_growth(scene),
+        growth=radial_growth(problem.scene),
         friction=contact.friction,
-        stick=_stick(scene, basis),
+        stick=_stick(problem, basis),
     )
 
 
-def _stick(scene: Scene, basis: Basis) -> float | None:
+def _stick(problem: Problem, basis: Basis) -> float | None:
     """Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse; None where nothing is given."""
-    given = scene.contact.stick_stiffness
+    given = problem.contact.stick_stiffness
     if given is None:
         return None
     along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     return given / (np.pi * along * across)
 
 
-def _params(scene: Scene, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+def _params(problem: Problem, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
     z = len(basis.azimuth)
 
     def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
         pairs = point_pairs(basis, pair < z, area)
-        return law_params(scene.contact.law, pairs, "surface point")
+        return law_params(problem.contact.law, pairs, "surface point")
 
     return params

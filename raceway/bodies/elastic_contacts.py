@@ -114,7 +114,7 @@ class ElasticBodies(Bearing):
         force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
         load = np.concatenate([model.system.load[:3], model.system.load[3:]])
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
-        scene = model.scene
+        scene = model.problem
         mesh = contacts.pop("mesh", {})
         return {
             "rigid_rings": {

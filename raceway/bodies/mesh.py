@@ -12,7 +12,7 @@ import numpy as np
 
 from raceway.errors import MeshError, Mistake, PluginError, SceneError
 from raceway.framework.sources import blamed
-from raceway.planning.cost import axial_approach
+from raceway.planning.resolve import axial_approach
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -155,7 +155,7 @@ def scene_mesher(scene: Scene) -> Mesher:
         raise SceneError.at("mesh", None, 'is required here: for instance [mesh] with kind = "structured"')
     known = {field.name for field in attrs.fields(type(scene.mesh))}
     if "ball_load" in known and scene.mesh.ball_load is None and scene.load.axial != 0.0:
-        return attrs.evolve(scene.mesh, ball_load=axial_approach(scene)[1])
+        return attrs.evolve(scene.mesh, ball_load=axial_approach(scene.bearing, scene.load.axial)[1])
     return scene.mesh
 
 

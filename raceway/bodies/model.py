@@ -29,6 +29,7 @@ from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door
 from raceway.planning.plan import Plan
+from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -116,7 +117,7 @@ class Bearing(ABC):
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Peak pressure [Pa] and semi-axes [m] (n,) of the contacts of a race (0 inner, 1 outer) at loads (n,) [N]."""
-        return contact_ellipse(model.scene, self.basis, model.system, race, load)
+        return contact_ellipse(model.problem, self.basis, model.system, race, load)
 
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
         """Loads (2 Z,) that no contact can carry.
@@ -130,12 +131,12 @@ class Bearing(ABC):
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""
-        return beyond_the_groove(model.scene, self.basis, inner, outer, force)
+        return beyond_the_groove(model.problem, self.basis, inner, outer, force)
 
     def over_edges(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> np.ndarray:
         """(n,) whether any contact of a state may run over its edge; angles (n, Z), forces (n, 2 Z)."""
         ends = ellipse_ends(self.basis, inner, outer, force)
-        return np.asarray(np.logical_or(*(end > groove_edges(model.scene, self.basis) for end in ends)).any(axis=-1))
+        return np.asarray(np.logical_or(*(end > groove_edges(model.problem, self.basis) for end in ends)).any(axis=-1))
 
     @property
     def largest_motion(self) -> float:
@@ -172,10 +173,15 @@ class Model:
     bearing : what was built of the bodies;  system : its ring, or a copy at another speed
     """
 
-    scene: Scene
+    problem: Problem
     plan: Plan
     bearing: Bearing
     system: Ring
+
+    @property
+    def scene(self) -> Scene:
+        """What the user said."""
+        return self.problem.scene
 
     @property
     def basis(self) -> Basis:
@@ -208,17 +214,17 @@ class Model:
 
     @property
     def excitation(self) -> Any:
-        return self.scene.excitation
+        return self.problem.excitation
 
     @property
     def traits(self) -> Traits:
         """Of the bodies in this scene."""
-        return self.scene.body_kind.traits
+        return self.problem.traits
 
     @property
     def mass_used(self) -> float:
         """m of K = Re Z + m w^2 [kg]: that of the ring and its share of the rotor; 0 without inertia forces."""
-        return float(self.system.mass[1, 1]) if self.scene.integrator.method.inertial else 0.0
+        return float(self.system.mass[1, 1]) if self.problem.integrator.method.inertial else 0.0
 
 
 @door
@@ -239,12 +245,13 @@ def build_model(scene: Scene, plan: Plan) -> Model:
     >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
     2.06
     """
-    bearing = scene.body_kind.build(plan)
+    problem = resolve(scene)
+    bearing = scene.body_kind.build(problem, plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(
             f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
         )
-    return Model(scene, plan, bearing, bearing.system)
+    return Model(problem, plan, bearing, bearing.system)
 
 
 @attrs.frozen(eq=False)

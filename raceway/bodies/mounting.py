@@ -22,8 +22,7 @@ from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
 from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
-from raceway.planning.resolve import turns_of
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -41,28 +40,28 @@ _LIFTED = 1e-3
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 
-def place_ring(scene: Scene, basis: Basis, system: Ring) -> np.ndarray:
+def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
-    guess = first_guess(scene, basis)
+    guess = first_guess(problem, basis)
     growth, place = basis.growth, None
-    if scene.bearing.preloaded:
-        system.table[:, ring.SHIFT] = _ground_shifts(scene, basis, system.standing(growth))
+    if problem.bearing.preloaded:
+        system.table[:, ring.SHIFT] = _ground_shifts(problem, basis, system.standing(growth))
         guess[0] = 0.0
-    if scene.bearing.preloaded and scene.bearing.preload_kind == "spring":
+    if problem.bearing.preloaded and problem.bearing.preload_kind == "spring":
         system.sliding = np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
-        place = partial(_follow_spring, scene, basis, float(system.table[system.sliding[0], ring.SHIFT]))
-    if scene.supports.axial == "displacement":
-        loose = _under(system.standing(growth), scene.load.axial)
+        place = partial(_follow_spring, problem, basis, float(system.table[system.sliding[0], ring.SHIFT]))
+    if problem.supports.axial == "displacement":
+        loose = _under(system.standing(growth), problem.load.axial)
         start = guess[0] * _AXIAL
         guess = loose.settle(start)[0] if place is None else place(loose, start)
-    if renews(scene.contact.law) and isinstance(system, System):
-        guess = renew(scene, basis, system, guess, place)
+    if renews(problem.contact.law) and isinstance(system, System):
+        guess = renew(problem, basis, system, guess, place)
     if place is not None and system.spin is not None:
-        system.spin = _follow_speed(scene, system, guess, place)
+        system.spin = _follow_speed(problem, system, guess, place)
     return guess if place is None else place(system, guess)
 
 
-def _ground_shifts(scene: Scene, basis: Basis, loose: R) -> np.ndarray:
+def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
     """(Z,) axial approach of every ball's row that the preload builds in [m].
 
     Notes
@@ -70,7 +69,7 @@ def _ground_shifts(scene: Scene, basis: Basis, loose: R) -> np.ndarray:
     Of a set, the rows of either direction approach alike, together under their force; of rows that were ground, each by itself
     under its own.  Rows that differ in nothing are solved for once.
     """
-    bearing = scene.bearing
+    bearing = problem.bearing
     given = [row.preload for row in bearing.row] or [None] * len(bearing.rows)
     own = [bearing.preload if force is None else force for force in given]
     sides = {side: [k for k, (other, _) in enumerate(bearing.rows) if other == side] for side in (1.0, -1.0)}
@@ -103,13 +102,15 @@ def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
     return system.of_balls(balls, table)
 
 
-def _follow_speed(scene: Scene, system: Ring, guess: np.ndarray, place: Callable[[Ring, np.ndarray], np.ndarray]) -> Spin:
+def _follow_speed(
+    problem: Problem, system: Ring, guess: np.ndarray, place: Callable[[Ring, np.ndarray], np.ndarray]
+) -> Spin:
     """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
     from scipy.interpolate import CubicSpline
 
     assert isinstance(system.spin, ChangingSpeed)
     spin = attrs.evolve(system.spin, shift=None)
-    duration = turns_of(scene) / scene.excitation.frequency_hz
+    duration = problem.turns / problem.excitation.frequency_hz
     met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
     speeds = np.linspace(met.min(), met.max(), _SPEEDS)
     shifts = []
@@ -120,7 +121,7 @@ def _follow_speed(scene: Scene, system: Ring, guess: np.ndarray, place: Callable
     return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
-def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, guess: np.ndarray) -> np.ndarray:
+def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, guess: np.ndarray) -> np.ndarray:
     """(5,) equilibrium at which the sliding rows carry the spring's force; builds their place into the system.
 
     Notes
@@ -133,7 +134,7 @@ def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, gues
     ConvergenceError
         No such place, or one beyond the spring's travel.
     """
-    second, wanted = system.sliding, scene.bearing.other_preload
+    second, wanted = system.sliding, problem.bearing.other_preload
     assert second is not None, "the scene's rows are on a spring"
     side, free = float(system.table[second[0], ring.SIDE]), system.free > 0.0
     low, high = -np.inf, np.inf
@@ -148,7 +149,7 @@ def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, gues
         whole, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
         excess = side * float(rows.force[0]) - wanted
         if abs(excess) <= _TOLERANCE * wanted:
-            _refuse_travel(scene, shift - origin)
+            _refuse_travel(problem, shift - origin)
             return q
         low, high = (low, shift) if excess > 0.0 else (shift, high)
         tangent = system.reduced(whole.stiffness + system.stiffness)
@@ -159,7 +160,7 @@ def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, gues
             bounded = np.isfinite(low) and np.isfinite(high)
             trial = 0.5 * (low + high) if bounded else shift - np.copysign(step, excess)
         shift = trial
-    key = "preload" if scene.bearing.second_preload is None else "second_preload"
+    key = "preload" if problem.bearing.second_preload is None else "second_preload"
     raise ConvergenceError(
         f"no place of the second row was found at which it carries the spring of `bearing.{key}` = {wanted:g} N under these "
         "loads: raise the preload, or take preload_kind = 'rigid'.",
@@ -167,9 +168,9 @@ def _follow_spring(scene: Scene, basis: Basis, origin: float, system: Ring, gues
     )
 
 
-def _refuse_travel(scene: Scene, slid: float) -> None:
+def _refuse_travel(problem: Problem, slid: float) -> None:
     """A spring that would have to slide further than it can."""
-    travel = scene.bearing.spring_travel
+    travel = problem.bearing.spring_travel
     if travel is not None and abs(slid) > travel:
         raise ConvergenceError(
             f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where the preload sets them before mounting, beyond "
@@ -189,13 +190,13 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     coordinates but x held and the scene's loads left out, at which the first row carries nothing any more, ``lift_off_row`` its
     number, from 1; None where none ever does.
     """
-    bearing, system = model.scene.bearing, model.system
+    bearing, system = model.problem.bearing, model.system
     if not bearing.preloaded:
         return None
     first, second = bearing.preload, bearing.other_preload
     if bearing.preload_of == "row":
         first = second = _unloaded(model, system.standing(model.basis.growth))
-    fitted = model.scene.mounting.fitted or first != second
+    fitted = model.problem.mounting.fitted or first != second
     mounted = _unloaded(model, _mounted(model)) if fitted else first
     rows = _row_forces(model, system, equilibrium.displacement, equilibrium.ball)
     return {
@@ -206,22 +207,22 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
 
 def _mounted(model: Model) -> Ring:
     """The bearing with its fits, at standstill and at the temperature of assembly."""
-    scene, growth = model.scene, model.basis.growth
-    still = attrs.evolve(scene.kinematics, spin_speed_rpm=0.0, radial_expansion=0.0, ring_growth=False, ball_growth=False)
-    cold = attrs.evolve(scene.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
-    fits = growth_of(attrs.evolve(scene, kinematics=still, mounting=cold), model.basis.row)
+    problem, growth = model.problem, model.basis.growth
+    still = attrs.evolve(problem.kinematics, spin_speed_rpm=0.0, radial_expansion=0.0, ring_growth=False, ball_growth=False)
+    cold = attrs.evolve(problem.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
+    fits = growth_of(problem.changed(kinematics=still, mounting=cold), model.basis.row)
     return model.system.standing(Growth(growth.common - fits.common, growth.by_ball - fits.by_ball))
 
 
 def _unloaded(model: Model, system: Ring) -> float:
     """What the rows of either direction carry against each other without any load [N]; 0 where all are loose."""
     if system.sliding is not None:
-        return model.scene.bearing.other_preload
+        return model.problem.bearing.other_preload
     try:
         q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
     except ConvergenceError:
         return 0.0
-    rows = model.scene.bearing.rows
+    rows = model.problem.bearing.rows
     forces = _row_forces(model, system, q, ball)
     return sum(force for force, (side, _) in zip(forces, rows, strict=True) if side == rows[0][0])
 
@@ -238,7 +239,7 @@ def _lift_off(model: Model) -> Tables:
     balls = np.arange(system.ball_count)
     if system.sliding is not None:
         balls = np.setdiff1d(balls, system.sliding)
-        spring = float(system.table[system.sliding[0], ring.SIDE]) * model.scene.bearing.other_preload
+        spring = float(system.table[system.sliding[0], ring.SIDE]) * model.problem.bearing.other_preload
     rows, start = _some(system, balls), 0.0
     with suppress(ConvergenceError):  # all rows are loose
         start = float(_under(rows, -spring).settle(np.zeros(5))[0][0])
@@ -282,14 +283,14 @@ def lost_preload(model: Model) -> str:
     -----
     Centrifugal forces of balls and growth of rings raise a pair's preload: a raceway that shrinks is what takes it.
     """
-    bearing, kinematics = model.scene.bearing, model.scene.kinematics
+    bearing, kinematics = model.problem.bearing, model.problem.kinematics
     if not bearing.preloaded or _unloaded(model, model.system) > 0.0:
         return ""
     radial = model.basis.growth.common[1]
     shrunk = f"the inner raceway has shrunk by {-1e6 * radial:.3g} µm (kinematics.radial_expansion = {kinematics.radial_expansion:g} m)"
     warm = ", ".join(
         f"mounting.{key} = {value:g} {'K' if 'temperature' in key else 'm'}"
-        for key, value in model.scene.mounting.changes.items()
+        for key, value in model.problem.mounting.changes.items()
     )
     return (
         f"The preload of {max(bearing.preload, *(row.preload or 0.0 for row in bearing.row), 0.0):g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
@@ -299,22 +300,22 @@ def lost_preload(model: Model) -> str:
 
 def held_table(model: Model, equilibrium: Equilibrium) -> dict[str, float] | None:
     """``equilibrium.held_axial`` of result.json: the axial force that gave the held displacement, what it takes mounted, and now."""
-    scene, q = model.scene, equilibrium.displacement
-    if scene.supports.axial != "displacement":
+    problem, q = model.problem, equilibrium.displacement
+    if problem.supports.axial != "displacement":
         return None
-    first = mounted = scene.load.axial
-    if scene.mounting.fitted:
-        mounted = float(evaluate_following(scene, _mounted(model), q * _AXIAL).force[0])
+    first = mounted = problem.load.axial
+    if problem.mounting.fitted:
+        mounted = float(evaluate_following(problem, _mounted(model), q * _AXIAL).force[0])
     now = model.system.without(ring.CAGE).evaluate(q, ball=equilibrium.ball)
     return {"before_mounting_n": first, "mounted_n": mounted, "running_n": float(now.force[0])}
 
 
-def evaluate_following(scene: Scene, system: Ring, q: np.ndarray, ball: np.ndarray | None = None) -> Evaluation:
+def evaluate_following(problem: Problem, system: Ring, q: np.ndarray, ball: np.ndarray | None = None) -> Evaluation:
     """Contacts at a displacement (5,) of the ring to which rows on a spring have followed, with their constant force."""
     if system.sliding is None:
         return system.evaluate(q, ball=ball)
     side, table = float(system.table[system.sliding[0], ring.SIDE]), system.table.copy()
-    place, _, _ = _under(_some(system, system.sliding), side * scene.bearing.other_preload).settle(q)
+    place, _, _ = _under(_some(system, system.sliding), side * problem.bearing.other_preload).settle(q)
     table[system.sliding, ring.SHIFT] += side * (place[0] - q[0])
     moved = attrs.evolve(system, table=table)
     now = moved.evaluate(q, ball=ball)
@@ -325,7 +326,7 @@ def evaluate_following(scene: Scene, system: Ring, q: np.ndarray, ball: np.ndarr
 def _row_forces(model: Model, system: Ring, q: np.ndarray, ball: np.ndarray) -> list[float]:
     """Axial force of each row in its seating direction [N]."""
     still, found = system.without(ring.CAGE), []
-    for k, (side, _) in enumerate(model.scene.bearing.rows):
+    for k, (side, _) in enumerate(model.problem.bearing.rows):
         balls = np.flatnonzero(model.basis.row == k)
         found.append(side * float(_some(still, balls).evaluate(q, ball=ball[balls]).force[0]))
     return found

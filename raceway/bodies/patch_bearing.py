@@ -36,8 +36,8 @@ from raceway.framework.duties import is_constraint, law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import Plan
+from raceway.planning.resolve import Problem
 from raceway.scene.growth import load_at_edge
-from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -178,7 +178,7 @@ class NodalBearing(Bearing):
         of the points, against the mean over all places; a motion of some micrometres meets a few places and averages some of it.
         """
         error, how = self._change_from_coarser(model, equilibrium)
-        if model.scene.excitation is None or not {"record", "speeds"} & set(model.scene.identifier.method.needs):
+        if model.problem.excitation is None or not {"record", "speeds"} & set(model.problem.identifier.method.needs):
             return error, how
         ripple = self._ripple(model, equilibrium)
         if error is not None and error >= ripple:
@@ -245,7 +245,7 @@ BULK = 0.8e-3
 _ROOM = 1.2
 
 
-def build(scene: Scene, plan: Plan) -> NodalBearing:
+def build(problem: Problem, plan: Plan) -> NodalBearing:
     """The bearing of a scene with condensed bodies and pressures at surface points.
 
     Raises
@@ -253,35 +253,37 @@ def build(scene: Scene, plan: Plan) -> NodalBearing:
     MeshError
         Rings without dimensions, sections that cannot be meshed.
     """
-    basis = make_basis(scene)
-    contact = attrs.evolve(scene.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-    as_rigid = attrs.evolve(scene, contact=contact)
+    basis = make_basis(problem)
+    contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+    as_rigid = problem.changed(contact=contact)
     rigid = rigid_system(as_rigid, plan, basis)
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
-    reach = _first_reach(scene, basis, rigid, guess)
-    nodes, load = _layout(scene, reach)
-    system, spacing = _system(scene, basis, rigid, reach, nodes, load)
+    reach = _first_reach(problem, basis, rigid, guess)
+    nodes, load = _layout(problem, reach)
+    system, spacing = _system(problem, basis, rigid, reach, nodes, load)
     beside = guess
-    if scene.bearing.preloaded or scene.supports.axial == "displacement":
+    if problem.bearing.preloaded or problem.supports.axial == "displacement":
         rigid = attrs.evolve(rigid, table=rigid.table.copy())
         guess = place_ring(as_rigid, basis, system)
 
     def coarser() -> Ring:
-        coarse, _ = _system(scene, basis, system, reach, 0.5 * nodes, load)
+        coarse, _ = _system(problem, basis, system, reach, 0.5 * nodes, load)
         return coarse
 
     fewer = coarser if nodes >= 2.0 else None
     return NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
 
 
-def _system(scene: Scene, basis: Basis, like: Ring, reach: Reach, nodes: float, load: float) -> tuple[PatchSystem, Spacing]:
+def _system(
+    problem: Problem, basis: Basis, like: Ring, reach: Reach, nodes: float, load: float
+) -> tuple[PatchSystem, Spacing]:
     """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
     spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
-    make = _maker(scene, spacing)
-    laws = _point_laws(scene, basis, spacing)
-    pool = Pool(make(reach), laws, _widening(basis, reach, make), scene.contact.friction)
-    mass = basis.geometry.ball_mass(scene.bearing.balls.density) if scene.kinematics.ball_inertia else 0.0
+    make = _maker(problem, spacing)
+    laws = _point_laws(problem, basis, spacing)
+    pool = Pool(make(reach), laws, _widening(basis, reach, make), problem.contact.friction)
+    mass = basis.geometry.ball_mass(problem.bearing.balls.density) if problem.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(like, f.name) for f in attrs.fields(Ring)}
     return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=surrogate(like), pool=pool, ball_mass=mass), spacing
 
@@ -291,11 +293,11 @@ def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
     return float(a), float(b)
 
 
-def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:
+def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:
     """Loads and contact angles of rigid bodies at rest and, where the excitation repeats, on its orbit."""
     q, ball, _ = rigid.settle(guess)
     states = [(q, ball, 0.0)]
-    excitation = scene.excitation
+    excitation = problem.excitation
     if excitation is not None and excitation.period_s is not None:
         try:
             orbit = steady_orbit(rigid.at_standstill(), excitation.period_s, q, samples=33)
@@ -319,26 +321,27 @@ def _first_reach(scene: Scene, basis: Basis, rigid: System, guess: np.ndarray) -
     return reach_of(given[0], given[1], (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
 
 
-def _layout(scene: Scene, reach: Reach) -> tuple[float, float]:
+def _layout(problem: Problem, reach: Reach) -> tuple[float, float]:
     """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry.
 
     Notes
     -----
     The mean is rounded to two digits: states near each other then share their compliances.
     """
-    nodes = float(nodes_of(scene))
-    load = getattr(scene.mesh, "ball_load", None)
+    nodes = float(nodes_of(problem.scene))
+    load = getattr(problem.mesh, "ball_load", None)
     return nodes, float(load) if load is not None else float(f"{reach.mean_load:.1e}")
 
 
-def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:
+def _maker(problem: Problem, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:
     """Patches for a reach; the ball's grid follows the larger one of the two."""
-    b = scene.bearing
-    bulk = float(getattr(scene.mesh, "element_size", BULK))
+    b = problem.bearing
+    bulk = float(getattr(problem.mesh, "element_size", BULK))
     rings = Solid(b.rings.young, b.rings.poisson, bulk=bulk)
     steel = Solid(b.balls.young, b.balls.poisson, bulk=bulk)
     seats = [
-        value if isinstance(value, float) else "clamped" for value in (scene.supports.inner_seat, scene.supports.outer_seat)
+        value if isinstance(value, float) else "clamped"
+        for value in (problem.supports.inner_seat, problem.supports.outer_seat)
     ]
 
     def make(reach: Reach) -> tuple[Patch, Patch]:
@@ -350,7 +353,7 @@ def _maker(scene: Scene, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Pat
             for inner, seat, window in zip((True, False), seats, (reach.inner, reach.outer), strict=True)
         ]
         rows = max(int((body.window[1] - body.window[0]) * body.shape.groove / grid.along) + 2 for body in bodies)
-        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows, shear=scene.contact.friction > 0.0)
+        ball = make_ball(0.5 * b.ball_diameter, steel, grid, rows, shear=problem.contact.friction > 0.0)
         first, second = (make_patch(body, ball, grid, b.ball_count) for body in bodies)
         return first, second
 
@@ -371,9 +374,9 @@ def _widening(
     return wider
 
 
-def _point_laws(scene: Scene, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
+def _point_laws(problem: Problem, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
     """Laws of the inner and the outer race's points; the plan has refused those that remember."""
-    law = scene.contact.law
+    law = problem.contact.law
     if is_constraint(law):
         return None, None
     pairs = point_pairs(basis, np.array([True, False]), np.full(2, spacing.area))

@@ -8,8 +8,9 @@ import attrs
 
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.planning.cost import START_S, Times, compiled_motion, highest_frequency
-from raceway.planning.resolve import Balls, Decisions, Motion
+from raceway.planning.cost import START_S, Times, compiled_motion
+from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.resolve import Problem
 from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -45,11 +46,11 @@ class Rigid:
         """Contact resultants with compiled forces."""
         return Traits(renews=True, damps=True)
 
-    def stable_step(self, scene: Scene) -> float:
+    def stable_step(self, problem: Problem) -> float:
         """Of the ring on its contacts [s]."""
-        return 2.0 / highest_frequency(scene)
+        return 2.0 / problem.highest_frequency
 
-    def decide(self, scene: Scene, parts: Decisions) -> None:
+    def decide(self, problem: Problem, parts: Decisions) -> None:
         """No part of a body that deforms."""
         parts.leave_out("elastic rings and balls", "bodies.kind is rigid: only contacts deform")
         for part in ("a compliance for each ball and contact", "other mirror half", "stress recovery"):
@@ -59,12 +60,12 @@ class Rigid:
         """Nothing beyond what holds for all bodies."""
         return []
 
-    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's: an equilibrium takes microseconds."""
-        return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
+        return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
-    def build(self, scene: Scene, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: Plan) -> Bearing:
         """See ``raceway.bodies.rigid_bearing``."""
         from raceway.bodies.rigid_bearing import build
 
-        return build(scene, plan)
+        return build(problem, plan)

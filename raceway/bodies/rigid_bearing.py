@@ -19,7 +19,7 @@ from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway.planning.plan import Plan
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
@@ -41,33 +41,33 @@ class RigidBearing(Bearing):
         return against_hertz(model, equilibrium)
 
 
-def build(scene: Scene, plan: Plan) -> RigidBearing:
+def build(problem: Problem, plan: Plan) -> RigidBearing:
     """The bearing of a scene with rigid bodies."""
-    basis = make_basis(scene)
-    system = rigid_system(scene, plan, basis)
-    probe(scene, basis, system)
+    basis = make_basis(problem)
+    system = rigid_system(problem, plan, basis)
+    probe(problem, basis, system)
     system = by_address(system)
-    return RigidBearing(basis, system, place_ring(scene, basis, system))
+    return RigidBearing(basis, system, place_ring(problem, basis, system))
 
 
-def rigid_system(scene: Scene, plan: Plan, basis: Basis) -> System:
+def rigid_system(problem: Problem, plan: Plan, basis: Basis) -> System:
     """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
     kernel, base = _bodies_kernels(plan)
     return System(
         kernel=kernel,
         base_kernel=base,
-        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
-        law_params=law_params(scene.contact.law, contact_pairs(scene, basis)),
-        law_state=np.zeros((2 * len(basis.azimuth), scene.contact.law.state_size)),
-        scalars=_scalars(scene, plan, basis),
-        table=_ball_table(scene, plan, basis),
-        **linear_parts(scene, plan),
-        **excitation(scene),
-        spin=changing_speed(scene),
+        law=plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
+        law_params=law_params(problem.contact.law, contact_pairs(problem, basis)),
+        law_state=np.zeros((2 * len(basis.azimuth), problem.contact.law.state_size)),
+        scalars=_scalars(problem, plan, basis),
+        table=_ball_table(problem, plan, basis),
+        **linear_parts(problem, plan),
+        **excitation(problem),
+        spin=changing_speed(problem),
     )
 
 
-def probe(scene: Scene, basis: Basis, system: System) -> None:
+def probe(problem: Problem, basis: Basis, system: System) -> None:
     """Try the plug-ins' kernels as deep as the scene's own load presses, and well beyond.
 
     Notes
@@ -77,9 +77,9 @@ def probe(scene: Scene, basis: Basis, system: System) -> None:
     load = basis.ball_load + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(basis.azimuth)
     approach = float(np.max(basis.inner.approach(load)))
     depths = [factor * approach for factor in (0.3, 1.0, 3.0, 10.0)]
-    probe_law(scene.contact.law, system.law, system.law_params, system.law_state, depths=depths)
-    if scene.excitation is not None:
-        probe_excitation(scene.excitation, system.force, system.force_params)
+    probe_law(problem.contact.law, system.law, system.law_params, system.law_state, depths=depths)
+    if problem.excitation is not None:
+        probe_excitation(problem.excitation, system.force, system.force_params)
 
 
 def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
@@ -95,50 +95,50 @@ def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
     return rigid_tangential, base
 
 
-def _grooves(scene: Scene, geometry: BallBearing) -> np.ndarray:
+def _grooves(problem: Problem, geometry: BallBearing) -> np.ndarray:
     """(5,) of the scalars REST_AXIAL to TILT_ARM of a row's geometry, before anything grows [m]."""
-    arm = geometry.inner_centre_radius if scene.bearing.tilt_arm == "groove" else 0.5 * geometry.pitch_diameter
+    arm = geometry.inner_centre_radius if problem.bearing.tilt_arm == "groove" else 0.5 * geometry.pitch_diameter
     return np.array([*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm])
 
 
-def _scalars(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
+def _scalars(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out, growth = np.zeros(ring.SCALARS), basis.growth
-    out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(scene, geometry)
+    out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
-    out[ring.DAMPING], out[ring.TIME_CONSTANT] = scene.contact.dashpot, scene.time_constant
-    if scene.kinematics.orbiting:
-        out[ring.CAGE] = geometry.cage_speed(scene.spin_speed)
+    out[ring.DAMPING], out[ring.TIME_CONSTANT] = problem.contact.dashpot, problem.time_constant
+    if problem.kinematics.orbiting:
+        out[ring.CAGE] = geometry.cage_speed(problem.spin_speed)
     out[ring.DIAMETER] = geometry.ball_diameter
-    if scene.contact.friction > 0.0:
-        out[ring.FRICTION] = scene.contact.friction
-        out[ring.STICK] = scene.contact.stick_stiffness or _stick_stiffness(scene, inner, outer, reference)
+    if problem.contact.friction > 0.0:
+        out[ring.FRICTION] = problem.contact.friction
+        out[ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
     if plan.gyroscopic:
-        add_moments(out, scene, geometry)
+        add_moments(out, problem, geometry)
     return out
 
 
-def add_moments(scalars: np.ndarray, scene: Scene, geometry: BallBearing) -> None:
+def add_moments(scalars: np.ndarray, problem: Problem, geometry: BallBearing) -> None:
     """The balls' gyroscopic moments, by the scene's hypothesis."""
-    scalars[[ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[scene.kinematics.gyroscopic]
+    scalars[[ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[problem.kinematics.gyroscopic]
     scalars[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
-    moment_of_inertia = geometry.ball_mass(scene.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
-    scalars[ring.GYROSCOPIC] = moment_of_inertia * scene.spin_speed * geometry.cage_speed(scene.spin_speed)
+    moment_of_inertia = geometry.ball_mass(problem.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
+    scalars[ring.GYROSCOPIC] = moment_of_inertia * problem.spin_speed * geometry.cage_speed(problem.spin_speed)
 
 
-def _stick_stiffness(scene: Scene, inner: Ellipse, outer: Ellipse, load: float) -> float:
+def _stick_stiffness(problem: Problem, inner: Ellipse, outer: Ellipse, load: float) -> float:
     """Tangential stiffness [N/m] of a contact that sticks along the groove, the ellipse's major axis; mean of both races."""
-    nu = 0.5 * (scene.bearing.rings.poisson + scene.bearing.balls.poisson)
+    nu = 0.5 * (problem.bearing.rings.poisson + problem.bearing.balls.poisson)
     return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
 
 
-def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
+def _ball_table(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
     inner, outer, azimuth, row = basis.inner, basis.outer, basis.azimuth, basis.row
     z, centrifugal = len(azimuth), np.zeros(len(basis.geometries))
     if plan.centrifugal:
         for k, one in enumerate(basis.geometries):
-            cage = one.cage_speed(scene.spin_speed)
-            centrifugal[k] = one.ball_mass(scene.bearing.balls.density) * 0.5 * one.pitch_diameter * cage**2
+            cage = one.cage_speed(problem.spin_speed)
+            centrifugal[k] = one.ball_mass(problem.bearing.balls.density) * 0.5 * one.pitch_diameter * cage**2
     softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
     share = softness[1] / sum(softness)
     table = np.zeros((z, ring.COLUMNS))
@@ -148,9 +148,9 @@ def _ball_table(scene: Scene, plan: Plan, basis: Basis) -> np.ndarray:
         share,
         outer.factor,
     )
-    table[:, [ring.SIDE, ring.LEVER]] = np.array(scene.bearing.rows)[row]
-    if not scene.bearing.equal_rows:
-        grooves = np.array([_grooves(scene, one) for one in basis.geometries])
+    table[:, [ring.SIDE, ring.LEVER]] = np.array(problem.bearing.rows)[row]
+    if not problem.bearing.equal_rows:
+        grooves = np.array([_grooves(problem, one) for one in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
     table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
     return table

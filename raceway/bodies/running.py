@@ -16,7 +16,7 @@ from raceway.core.ring.system import ChangingSpeed, System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
 from raceway.framework.duties import law_params, law_report, reach_of, renews
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
@@ -28,7 +28,7 @@ _TOLERANCE, _LIMIT = 1e-11, 40
 
 
 def running_pairs(
-    scene: Scene,
+    problem: Problem,
     basis: Basis,
     force: np.ndarray,
     angles: tuple[np.ndarray, np.ndarray],
@@ -49,7 +49,7 @@ def running_pairs(
         chosen = basis.row == row
         for race in (0, 1):
             of_row = load[race * z : (race + 1) * z]
-            if scene.kinematics.orbiting:
+            if problem.kinematics.orbiting:
                 of_row[chosen] = of_row[chosen].mean()
             of_row[chosen] = np.maximum(of_row[chosen], _LEAST * of_row[chosen].max())
             open_, known = chosen & np.isnan(alpha[race]), chosen & ~np.isnan(alpha[race])
@@ -57,24 +57,24 @@ def running_pairs(
     pitch, ball = (
         np.array([getattr(one, name) for one in basis.geometries])[basis.row] for name in ("pitch_diameter", "ball_diameter")
     )
-    speeds = entraining_speed(scene.spin_speed if speed is None else speed, pitch, ball, *alpha)
+    speeds = entraining_speed(problem.spin_speed if speed is None else speed, pitch, ball, *alpha)
     # A set of which no ball is loaded runs as one that is about to be.
     load = np.where(load > 0.0, load, _LEAST * basis.ball_load)
-    known = contact_pairs(scene, basis) if mounted is None else mounted
+    known = contact_pairs(problem, basis) if mounted is None else mounted
     return attrs.evolve(known, entraining_speed=np.concatenate(speeds), load=load)
 
 
 def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
     """What the scene's law tells of its contacts in an equilibrium; None where it tells nothing."""
-    if not renews(model.scene.contact.law):
+    if not renews(model.problem.contact.law):
         return None
     angles = (equilibrium.angle_inner, equilibrium.angle_outer)
-    pairs = running_pairs(model.scene, model.basis, equilibrium.contact_force, angles)
-    return law_report(model.scene.contact.law, pairs)
+    pairs = running_pairs(model.problem, model.basis, equilibrium.contact_force, angles)
+    return law_report(model.problem.contact.law, pairs)
 
 
 def renew(
-    scene: Scene,
+    problem: Problem,
     basis: Basis,
     system: System,
     guess: np.ndarray,
@@ -91,7 +91,7 @@ def renew(
     ConvergenceError
         No equilibrium, or loads and parameters that do not meet.
     """
-    law, q, before = scene.contact.law, guess, np.zeros(2 * system.ball_count)
+    law, q, before = problem.contact.law, guess, np.zeros(2 * system.ball_count)
     for trial in range(_LIMIT):
         try:
             q = q if place is None else place(system, q)
@@ -100,7 +100,7 @@ def renew(
             if trial == 0:  # at standstill
                 raise
             raise ConvergenceError(
-                f"contact law '{scene.contact.kind}' at the running speed: {why}. Give more load or a lower "
+                f"contact law '{problem.contact.kind}' at the running speed: {why}. Give more load or a lower "
                 "speed, or options of the law that move its contacts less from those at standstill",
                 why.state,
             ) from why
@@ -110,31 +110,31 @@ def renew(
             return q
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
         angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
-        pairs = running_pairs(scene, basis, force, angles)
+        pairs = running_pairs(problem, basis, force, angles)
         found = system.running(law_params(law, pairs), reach_of(law, pairs))
         system.table, system.law_params = found.table, found.law_params
         system.mounted_params, system.reach = found.mounted_params, found.reach
         if isinstance(system.spin, ChangingSpeed):
-            system.spin = attrs.evolve(system.spin, law=_following(scene, basis, force, angles))
+            system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force
     raise ConvergenceError(
-        f"contact law '{scene.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria",
+        f"contact law '{problem.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria",
         {"q": q, "ball": ball},
     )
 
 
 def _following(
-    scene: Scene, basis: Basis, force: np.ndarray, angles: tuple[np.ndarray, np.ndarray]
+    problem: Problem, basis: Basis, force: np.ndarray, angles: tuple[np.ndarray, np.ndarray]
 ) -> Callable[[System, float], System]:
     """A system and another speed [rad/s] -> the system with its law there, at the loads and angles of the equilibrium."""
 
-    law, mounted = scene.contact.law, contact_pairs(scene, basis)
+    law, mounted = problem.contact.law, contact_pairs(problem, basis)
 
     def follow(system: System, speed: float) -> System:
         if speed <= 0.0:
             assert system.mounted_params is not None and system.reach is not None, "built in above"
             return system.running(system.mounted_params, np.zeros_like(system.reach))
-        pairs = running_pairs(scene, basis, force, angles, speed, mounted)
+        pairs = running_pairs(problem, basis, force, angles, speed, mounted)
         return system.running(law_params(law, pairs), reach_of(law, pairs))
 
     return follow

@@ -1,7 +1,8 @@
 """The command line, the only place that prints or exits.
 
-main       the commands by group;  console: messages and exit codes;  frame: what commands share
+main       the group of all commands;  console: messages and exit codes;  frame: what commands share
+commands   their table;  command: one made from a public function
 interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only;  verbose: what -v reports
-run        reports and files of a failed run;  run_screen, run_parts, plan_screen: tables of a run and a plan
+run        run and plan, reports, files of a failed run;  run_screen, run_parts, plan_screen: tables of a run and a plan
 cache, plugins, new_scene   commands for caches, plug-ins and a first scene
 """

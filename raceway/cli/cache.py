@@ -31,7 +31,7 @@ def cache_screen(found: ReadTables) -> RenderableType:
         remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"
         rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
     if len(arrays) > _SHOWN:
-        rows.append(("", "", f"the {_SHOWN} last used of {len(arrays)}; all: raceway cache --json; by sort:"))
+        rows.append(("", "", f"the {_SHOWN} last used of {len(arrays)}; all: raceway dev cache --json; by sort:"))
         for kind, count in sorted(Counter(entry["kind"] for entry in arrays).items()):
             size = sum(entry["bytes"] for entry in arrays if entry["kind"] == kind) / 2**20
             rows.append((kind, f"{size:.2f} MiB", f"{count} in all"))
@@ -49,7 +49,7 @@ def cache(clear: bool, as_json: bool) -> int:
 
     \b
     Example:
-      raceway cache --clear
+      raceway dev cache --clear
     """
     import attrs
 

@@ -40,6 +40,7 @@ scene_if_any = click.argument("scene", type=PATH, required=False)
 set_keys = click.option(
     "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
 )
+at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
 processes_at_a_time = click.option(
     "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
 )

@@ -1,4 +1,4 @@
-"""``raceway new-scene``: a scene with comments to start from.  Part of ``raceway.cli.main``."""
+"""``raceway dev new-scene``: a scene with comments to start from.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _KINDS = {
         "bidirectional",
         "a force that turns; 'unidirectional': along one line.  Without this table the scene is static",
     ),
-    "contact": ("hertz", "contact law; raceway plugins lists others"),
+    "contact": ("hertz", "contact law; raceway dev plugins lists others"),
     "integrator": ("newmark", "'periodic' finds the steady motion at once"),
 }
 _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  Lines that begin with # are comments;
@@ -50,15 +50,15 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
 
     \b
     Example:
-      raceway new-scene
-      raceway new-scene 7206A-NSK --out spindle.toml
+      raceway dev new-scene
+      raceway dev new-scene 7206A-NSK --out spindle.toml
     """
     from rich.text import Text
 
     from raceway.scene.catalogue import preset as known
 
     if Path(preset).suffix == ".toml":
-        raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway new-scene B7206C --out {preset}")
+        raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway dev new-scene B7206C --out {preset}")
     known(preset)
     file = Path(f"{preset}.toml") if out is None else out
     if file.exists():

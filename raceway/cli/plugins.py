@@ -37,8 +37,8 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
 
     \b
     Example:
-      raceway plugins --json
-      raceway plugins --plugin my_law.py
+      raceway dev plugins --json
+      raceway dev plugins --plugin my_law.py
     """
     registry = registry_with(plugins)
     rows = plugin_rows(registry.all())
@@ -59,7 +59,7 @@ def schema(as_json: bool) -> int:
 
     \b
     Example:
-      raceway schema > scene.schema.json
+      raceway dev schema > scene.schema.json
     """
     from raceway.scene.schema import scene_schema
 
@@ -77,9 +77,9 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
 
     \b
     Example:
-      raceway check-plugin hertz
-      raceway check-plugin contact_law:hunt_crossley
-      raceway check-plugin my_law --plugin my_law.py
+      raceway dev check-plugin hertz
+      raceway dev check-plugin contact_law:hunt_crossley
+      raceway dev check-plugin my_law --plugin my_law.py
     """
     from raceway.testing import check_named
 
@@ -101,7 +101,7 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
 
     \b
     Example:
-      raceway new-plugin contact_law my_law
+      raceway dev new-plugin contact_law my_law
     """
     from raceway.testing.scaffold import new_plugin as write
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from raceway.framework.shown import in_micro
-from raceway.out.quantities import FORCE_AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, PHASE_LAG, Z_IMAG, Z_REAL, X, read_in
+from raceway.out.quantities import FORCE_AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, PHASE_LAG, Z_IMAG, Z_REAL, X
 from raceway.out.table import Row, number, tilt_words
 from raceway.storage.tables import ReadTables
 
@@ -184,21 +184,6 @@ def _hertz(one: ReadTables, speed: float, *names: str) -> str:
     return ", ".join(f"{one[name + '_hz']:.5g}" for name in names) + " Hz" if speed else ""
 
 
-def tolerance_rows(found: ReadTables | None) -> list[Row]:
-    """The band over the scene's tolerances to first order; of each answer the tolerance that makes most of it."""
-    if not found:
-        return []
-    rows: list[Row] = [("Tolerances, 95 % to first order", "", found["why"])]
-    for name, one in found["quantities"].items():
-        (low, unit), (high, _) = (read_in(one[end], one["unit"]) for end in ("low", "high"))
-        key, share = max(one["shares"].items(), key=lambda item: item[1], default=("", 0.0))
-        told = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
-        told += [one["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
-        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(told)))
-    rows += [("", "", f"without {one['key']}: {one['reason']}") for one in found["left_out"]]
-    return rows
-
-
 def stiffness_rows(result: ReadTables) -> list[Row]:
     """Parts of Z and the force that they belong to."""
     found = result["identification"]
@@ -249,9 +234,9 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 def cost_rows(cost: ReadTables) -> list[Row]:
     """Time and memory."""
     memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
-    kept = "kernels were in the cache (raceway cache)"
+    kept = "kernels were in the cache (raceway dev cache)"
     if cost["compile_s"]:
-        kept = "once; kept for the next run (raceway cache)"
+        kept = "once; kept for the next run (raceway dev cache)"
         if not cost.get("compiled_kept", True):
             kept = "not kept: the cache cannot be written; the next run compiles again"
     processor = f"{number(cost['cpu_s'], 'CPU-s', 3)}, " if "cpu_s" in cost else ""

@@ -18,7 +18,6 @@ from raceway.cli.run_parts import (
     stability_rows,
     stiffness_rows,
     tangent_rows,
-    tolerance_rows,
 )
 from raceway.framework.shown import percents
 from raceway.out.quantities import (
@@ -175,7 +174,7 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
         *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
         *stiffness_rows(result),
-        *tolerance_rows(result.get("tolerances")),
+        *_tolerances(result),
         *error_rows(result),
     ]
     rows = only_resolved(rows, result["error"])
@@ -192,6 +191,14 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
         Words("notes in full: result.json", "dim"),
     ]
     return Group(*parts, *written(files))
+
+
+def _tolerances(result: ReadTables) -> list[Row]:
+    if not result.get("tolerances"):
+        return []
+    from raceway.pipeline.gradient import tolerance_rows
+
+    return tolerance_rows(result["tolerances"])
 
 
 def _left_out(result: ReadTables) -> str:

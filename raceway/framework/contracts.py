@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from raceway.core.time.schemes import Scheme
     from raceway.errors import Mistake
     from raceway.pipeline.result import Result
+    from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import Plan
-    from raceway.planning.resolve import Balls, Decisions, Motion
+    from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
     from raceway.scene.scene import Scene
 
@@ -338,7 +339,7 @@ class Traits:
     calibrated : what the contacts' calibration leaves is part of the total error
     every_node : all nodes are unknowns: a second run to compare with would cost as much as the first
     renews : parameters of contact laws are renewed at the running speed and equilibrium (``ContactLaw``, duty 8)
-    damps : contacts have dashpots in proportion to their stiffness (``scene.time_constant``)
+    damps : contacts have dashpots in proportion to their stiffness (``Problem.time_constant``)
     """
 
     compiled: bool = True
@@ -378,11 +379,12 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
 
     1. ``faults(scene)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.
     2. ``traits(scene)``: ``Traits``.
-    3. ``stable_step(scene)``: rough stable limit of explicit steps [s]; None where nothing is known.
-    4. ``decide(scene, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.resolve``).
+    3. ``stable_step(problem)``: rough stable limit of explicit steps [s]; None where nothing is known.  A ``Problem`` of
+        ``raceway.planning.resolve`` has the tables of the scene, and what follows from them.
+    4. ``decide(problem, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
     5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
-    6. ``cost(scene, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    7. ``build(scene, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
+    6. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
+    7. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
     8. The fields of the class are the keys of the table [bodies] beside ``kind``.
     9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
@@ -394,11 +396,11 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
 
     def faults(self, scene: Scene) -> list[Mistake]: ...
     def traits(self, scene: Scene) -> Traits: ...
-    def stable_step(self, scene: Scene) -> float | None: ...
-    def decide(self, scene: Scene, parts: Decisions) -> None: ...
+    def stable_step(self, problem: Problem) -> float | None: ...
+    def decide(self, problem: Problem, parts: Decisions) -> None: ...
     def unused(self, scene: Scene) -> list[tuple[str, str]]: ...
-    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
-    def build(self, scene: Scene, plan: Plan) -> BuiltBearing: ...
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
+    def build(self, problem: Problem, plan: Plan) -> BuiltBearing: ...
 
 
 class Study(attrs.AttrsInstance, Protocol):

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
     from raceway.errors import Mistake
     from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation
+    from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import Plan
-    from raceway.planning.resolve import Balls, Decisions, Motion
+    from raceway.planning.resolve import Problem
     from raceway.scene.scene import Scene
 
 T = TypeVar("T")
@@ -36,7 +37,7 @@ def _answer(plugin: str, duty: str, call: Callable[[], T], *types: type) -> T:
 
 
 class BodyKind:
-    """The kind of bodies of a scene: its duties for this scene, which raise ``PluginError`` where the kind breaks them."""
+    """The kind of bodies of a scene: duties for this scene or its problem, which raise ``PluginError`` where the kind breaks them."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene, self._plugin, self._name = scene, scene.bodies, f"bodies '{scene.bodies.name}'"
@@ -48,20 +49,20 @@ class BodyKind:
     def traits(self) -> Traits:
         return _answer(self._name, "traits", lambda: self._plugin.traits(self._scene), Traits)
 
-    def stable_step(self) -> float | None:
-        return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(self._scene), float, type(None))
+    def stable_step(self, problem: Problem) -> float | None:
+        return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(problem), float, type(None))
 
-    def decide(self, parts: Decisions) -> None:
-        _answer(self._name, "decide", lambda: self._plugin.decide(self._scene, parts), type(None))
+    def decide(self, problem: Problem, parts: Decisions) -> None:
+        _answer(self._name, "decide", lambda: self._plugin.decide(problem, parts), type(None))
 
     def unused(self) -> list[tuple[str, str]]:
         return _answer(self._name, "unused", lambda: self._plugin.unused(self._scene), list)
 
-    def cost(self, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
-        return _answer(self._name, "cost", lambda: self._plugin.cost(self._scene, balls, motion, parts), Cost)
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+        return _answer(self._name, "cost", lambda: self._plugin.cost(problem, balls, motion, parts), Cost)
 
-    def build(self, plan: Plan) -> Bearing:
-        return _answer(self._name, "build", lambda: self._plugin.build(self._scene, plan), object)
+    def build(self, problem: Problem, plan: Plan) -> Bearing:
+        return _answer(self._name, "build", lambda: self._plugin.build(problem, plan), object)
 
     def same_bodies(self, other: Scene) -> bool:
         """Whether another scene of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""

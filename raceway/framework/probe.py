@@ -1,6 +1,6 @@
 """Calls a plug-in's kernel a few times before a run, so that a broken one is refused by name and not met inside a loop.
 
-This takes less than a millisecond.  It finds what would corrupt a run; ``raceway check-plugin`` finds the rest.
+This takes less than a millisecond.  It finds what would corrupt a run; ``raceway dev check-plugin`` finds the rest.
 """
 
 from __future__ import annotations

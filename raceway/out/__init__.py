@@ -1,6 +1,8 @@
 """How an answer is shown, written once for all: tables, pages, progress.
 
+answer     what a public function answers: its screen, files and picture
 table      rows and sections on a screen;  wrapping: lines that end between words
+picture    figures of matplotlib, without a window or on a caller's axes
 page       one HTML page that opens without a network
 progress   the bar on standard error
 """

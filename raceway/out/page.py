@@ -13,7 +13,7 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -99,6 +99,11 @@ class Page:
             f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table>{title}'
             f"<thead><tr>{head}</tr></thead><tbody>{''.join(lines)}</tbody></table></div>"
         )
+
+    def rows(self, rows: Sequence[Mapping[str, object]], caption: str = "") -> None:
+        """A table of dictionaries with the same keys, which head its columns; nothing without a row."""
+        if rows:
+            self.table(list(rows[0]), [list(row.values()) for row in rows], caption)
 
     def card(self, heading: str, badge: Cell, parts: Iterable[tuple[str, str]]) -> None:
         """A box about one thing: what it is, a coloured word on it, and named paragraphs."""

@@ -83,7 +83,7 @@ def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
     return rows + [(f"balls ({count})", said) for said, count in balls]
 
 
-_NUMBER = re.compile(r"[+-]?\d[\d.]*(e[+-]?\d+)?( %)?[*~]*")
+_NUMBER = re.compile(r"[+\-−]?\d[\d.]*(e[+-]?\d+)?([ \u202f]%)?[*~]*")
 #: Words of a cell or head up to which a column is not made narrower by breaking lines; blanks between columns.
 _WHOLE, _BETWEEN = 14, 2
 #: Head of the column that tells which rows belong together where one table is too wide.
@@ -113,7 +113,7 @@ class _Column:
 
     @property
     def numeric(self) -> bool:
-        return all(_NUMBER.fullmatch(cell) or cell in ("", "-") for cell in self.cells)
+        return all(_NUMBER.fullmatch(cell) or cell in ("", "-", "–") for cell in self.cells)
 
     @property
     def whole(self) -> bool:

@@ -28,7 +28,6 @@ from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
-from raceway.scene.growth import free_angle
 from raceway.storage.tables import Tables
 
 #: Share of its free contact angle at which a row without a clearance counts as unseated.
@@ -112,7 +111,7 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
     bearing, warnings = model.scene.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
-        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), free_angle(model.scene, k)
+        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), model.problem.free_angles[k]
         if least == np.inf:
             warnings.append(f"{name} lifts off: none of its balls touches the inner race")
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:
@@ -127,7 +126,7 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
     warnings, scene = _seating(model, inner), model.scene
     if any(scene.load.moment) and scene.supports.tilt == "locked":
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
-    if scene.contact.friction > 0.0 and scene.body_kind.traits.every_node:
+    if scene.contact.friction > 0.0 and model.traits.every_node:
         warnings.append(
             "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
         )

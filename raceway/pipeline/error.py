@@ -38,7 +38,7 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
-from raceway.planning.resolve import compares_with_steady_motion, fits, remembers_its_start
+from raceway.planning.resolve import fits
 from raceway.plugins.identifiers import Fft1x
 from raceway.storage.tables import Tables
 
@@ -144,7 +144,7 @@ def error_warnings(error: dict[str, Any], identified: bool) -> list[str]:
 def _motion_errors(run: Identified) -> dict[str, Part]:
     step, second = _time_step(run)
     transient = _transient(run, step)
-    if remembers_its_start(run.model.scene) and transient.size is not None:
+    if run.model.problem.depends_on_start and transient.size is not None:
         transient = _from_other_start(run, second or Run.of(run.motion), transient)
     return {"time_step": step, "transient": transient, "identification": _identification(run)}
 
@@ -207,7 +207,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         ]
     except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, Estimate.SECOND_RUN_FAILED(steps=count, why=why)), None
-    second = Run.of(again[-1]) if count < steps and remembers_its_start(model.scene) else None
+    second = Run.of(again[-1]) if count < steps and model.problem.depends_on_start else None
     # Several speeds are told apart by the identifier alone.
     fine, coarse = (without_free_vibration(motion) if len(run.motions) == 1 else None for motion in (first, again[-1]))
     ratio = (steps / count) ** method.order - 1.0
@@ -312,7 +312,7 @@ def _transient(run: Identified, step: Part) -> Part:
     memory = not model.system.conservative or model.scene.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, Estimate.EQUILIBRIA())
-    if compares_with_steady_motion(model.scene):
+    if model.problem.compared_with_steady:
         try:
             settled = settled_value(run)
         except BeyondPlanError as why:
@@ -409,7 +409,7 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
 
 def misfit_warnings(model: Model, error: Tables) -> list[str]:
     """Says where Z over the whirl speeds is not what K and C make of it."""
-    several_speeds = model.scene.excitation is not None and "speeds" in model.scene.identifier.method.needs
+    several_speeds = model.problem.several_speeds
     if not several_speeds or (error["identification"] or 0.0) <= _MISFIT:
         return []
     return [

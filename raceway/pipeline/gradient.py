@@ -14,7 +14,7 @@ limits of 95 % are taken.  Tolerances that bend the answer within their range ne
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
 import attrs
@@ -29,13 +29,12 @@ from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System, by_address, surrogate
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.shown import race_words, tilt_words
-from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X
+from raceway.framework.shown import Fact, race_words, tilt_words
+from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X, read_in
 from raceway.pipeline.equilibrium import race_of
 from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
 from raceway.scene.changes import Key, key_of
-from raceway.scene.inputs import leaves
-from raceway.scene.tolerance import tolerances_of
+from raceway.scene.tolerance import stated_tolerances, tolerances_of
 from raceway.storage.tables import Tables
 
 #: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none.
@@ -362,8 +361,10 @@ def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | st
     return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
 
 
-def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
-    """The table ``tolerances`` of result.json; None where the scene has none.
+def first_order_band(
+    model: Model, equilibrium: Equilibrium, tolerances: Iterable[str] | Mapping[str, str] = ()
+) -> Tables | None:
+    """The table ``tolerances`` of result.json, of the scene's own tolerances or of others; None without any.
 
     Returns
     -------
@@ -371,8 +372,9 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
     why : why there are no quantities, or none of the motion; empty else
     """
     scene = model.scene
-    if "tolerances" not in scene.source:
+    if not tolerances and "tolerances" not in scene.source:
         return None
+    ranges = tolerances_of(scene, tolerances or stated_tolerances(scene))
     try:
         gradients = Gradients(model, equilibrium)
     except SceneError as refusal:
@@ -383,7 +385,7 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
     except (SceneError, ConvergenceError) as failure:
         why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
     words, slopes, left_out = definitions(model, equilibrium), {}, []
-    for tolerance in tolerances_of(scene, dict(leaves(scene.source["tolerances"]))):
+    for tolerance in ranges:
         key = tolerance.key
         try:
             statics = static_gradient(model, equilibrium, key)
@@ -405,6 +407,21 @@ def first_order_band(model: Model, equilibrium: Equilibrium) -> Tables | None:
             "shares": dict(zip(slopes, shares.tolist(), strict=True)),
         }
     return {"quantities": quantities, "left_out": left_out, "why": why}
+
+
+def tolerance_rows(band: Tables | None) -> list[Fact]:
+    """The band over the scene's tolerances to first order, as rows of a screen; of each answer the tolerance that makes most of it."""
+    if not band:
+        return []
+    rows: list[Fact] = [("Tolerances, 95 % to first order", "", band["why"])]
+    for name, quantity in band["quantities"].items():
+        (low, unit), (high, _) = (read_in(quantity[end], quantity["unit"]) for end in ("low", "high"))
+        key, share = max(quantity["shares"].items(), key=lambda item: item[1], default=("", 0.0))
+        remarks = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
+        remarks += [quantity["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
+        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(remarks)))
+    rows += [("", "", f"without {left_out['key']}: {left_out['reason']}") for left_out in band["left_out"]]
+    return rows
 
 
 def limits(ends: Sequence[Sequence[float]], share: float = _COVERAGE) -> tuple[float, float]:

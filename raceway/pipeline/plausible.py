@@ -37,8 +37,8 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.out.quantities import KYY, KYY_TILTS_FOLLOW, K
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
+from raceway.planning.resolve import Problem
 from raceway.planning.rules import refuse_what_cannot_run
-from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 #: Samples of the last turn that are looked at.
@@ -198,8 +198,8 @@ def model_spread(
             continue
         change: Tables = dict.fromkeys(_QUANTITIES)
         try:
-            scene = attrs.evolve(model.scene, kinematics=attrs.evolve(kinematics, **changed))
-            variant, state = _under(model, scene, equilibrium)
+            problem = model.problem.changed(kinematics=attrs.evolve(kinematics, **changed))
+            variant, state = _under(model, problem, equilibrium)
             before, after = ((e.stiffness[1, 1], tilts_follow(e.stiffness, tilt)) for e in (equilibrium, state))
             for name, a, b in zip(_QUANTITIES[1:], before, after, strict=True):
                 change[name] = None if a is None or b is None else float((b - a) / abs(a))
@@ -219,22 +219,22 @@ def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
 
 def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     """Values of the keys left at their defaults that the scene can run with, and what it cannot; a note where there are none."""
-    scene = model.scene
-    if scene.spin_speed == 0.0:
+    problem = model.problem
+    if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
-    unstated = [key for key in _HYPOTHESES if not scene.says(f"kinematics.{key}")]
+    unstated = [key for key in _HYPOTHESES if not problem.scene.says(f"kinematics.{key}")]
     if not unstated:
         return {}, Estimate.HYPOTHESES_STATED()
     if compiled(model.system) is None:
-        return {}, Estimate.POINTS_TOO_SLOW(kind=scene.bodies.name)
-    if scene.contact.law.state_size > 0 or scene.spin_changes:
+        return {}, Estimate.POINTS_TOO_SLOW(kind=problem.bodies.name)
+    if problem.contact.law.state_size > 0 or problem.spin_changes:
         return {}, Estimate.NO_STEADY_MOTION()
     values: dict[str, list[Any]] = {}
     why = ""
     for key in unstated:
         for value in _HYPOTHESES[key]:
             try:
-                refuse_what_cannot_run(attrs.evolve(scene, kinematics=attrs.evolve(scene.kinematics, **{key: value})))
+                refuse_what_cannot_run(problem.changed(kinematics=attrs.evolve(problem.kinematics, **{key: value})))
             except SceneError as error:
                 why = f"{why}; without kinematics.{key}: {error.mistakes[0].message}"
                 break
@@ -250,36 +250,36 @@ def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> flo
     if "gyroscopic" in keys:
         bound += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
     if "ring_growth" in keys:
-        grown = attrs.evolve(model.scene, kinematics=attrs.evolve(model.scene.kinematics, ring_growth=True))
+        grown = model.problem.changed(kinematics=attrs.evolve(model.problem.kinematics, ring_growth=True))
         more, now = growth_of(grown, model.basis.row), model.basis.growth
         radial = np.abs(more.common[1] + more.by_ball[:, 1] - now.common[1] - now.by_ball[:, 1]).max()
         bound += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
     return bound
 
 
-def _under(model: Model, scene: Scene, near: Equilibrium) -> tuple[Model, Equilibrium]:
+def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Equilibrium]:
     """The model and its equilibrium under other ``[kinematics]``, without building its bodies again."""
     ring = compiled(model.system)
     assert ring is not None, "refused above"
-    growth, kernel = growth_of(scene, model.basis.row), ring.kernel
+    growth, kernel = growth_of(problem, model.basis.row), ring.kernel
     scalars, table = ring.scalars.copy(), ring.table.copy()
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
     table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.by_ball - model.basis.growth.by_ball
-    if scene.kinematics.gyroscopic != "none":
+    if problem.kinematics.gyroscopic != "none":
         from raceway.core.ring.kernels.structural import condensed
         from raceway.core.ring.kernels.tangential import rigid_tangential
 
-        add_moments(scalars, scene, model.geometry)
+        add_moments(scalars, problem, model.geometry)
         kernel = condensed(rigid_tangential) if ring.condensed else rigid_tangential
     system = attrs.evolve(ring, scalars=scalars, table=table, kernel=kernel)
     if system.mounted_params is not None and system.reach is not None:  # a law is renewed from standstill, as in a run
         system = system.running(system.mounted_params, np.zeros_like(system.reach))
     basis, q = attrs.evolve(model.basis, growth=growth), near.displacement
-    if renews(scene.contact.law) or (scene.bearing.preloaded and scene.bearing.preload_kind == "spring"):
-        q = place_ring(scene, basis, system)
+    if renews(problem.contact.law) or (problem.bearing.preloaded and problem.bearing.preload_kind == "spring"):
+        q = place_ring(problem, basis, system)
     system = by_address(system)
     bearing = attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
-    variant = attrs.evolve(model, scene=scene, system=system, bearing=bearing)
+    variant = attrs.evolve(model, problem=problem, system=system, bearing=bearing)
     return variant, solve_equilibrium(variant)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from functools import cached_property
 from itertools import zip_longest
@@ -25,7 +24,7 @@ from raceway.plugins.pictures import plot
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
-from raceway.storage.files import write_whole
+from raceway.storage.files import without_nan, write_json
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -357,30 +356,6 @@ def band_table(ends: list[Result]) -> Tables:
         "loss_factor": [z.equivalent_damping * z.speed / z.equivalent_stiffness for z in identified],
         "phase_lag_deg": [z.phase_lag_deg for z in identified],
     }
-
-
-def without_nan(value: Any) -> Any:
-    """The same tree with null for numbers that are not finite, and plain Python types."""
-    if isinstance(value, dict):
-        return {str(k): without_nan(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [without_nan(v) for v in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
-def write_json(content: object, path: Path) -> Path:
-    """Write JSON so that a reader sees the old file or the whole new one.
-
-    Raises
-    ------
-    RacewayError
-        Folder or disk that cannot be written.
-    """
-    return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)
 
 
 #: Of scenes without any damping.

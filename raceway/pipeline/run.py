@@ -114,7 +114,7 @@ def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:
     contacts = [attrs.evolve(scene.contact, damping=0.0, time_constant=tau) for tau in TIME_CONSTANTS]
     low, high = (once(attrs.evolve(scene, contact=contact)) for contact in contacts)
     sums = {key: value + high.cost[key] for key, value in low.cost.items() if key not in ("peak_memory_bytes", "threads")}
-    model = attrs.evolve(low.model, scene=attrs.evolve(low.model.scene, contact=scene.contact))
+    model = attrs.evolve(low.model, problem=low.model.problem.changed(contact=scene.contact))
     warnings = tuple(dict.fromkeys((*low.warnings, *high.warnings)))
     return attrs.evolve(low, model=model, cost={**high.cost, **sums}, band=band_table([low, high]), warnings=warnings)
 
@@ -238,7 +238,7 @@ def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: T
         *equilibrium.warnings,
         *sliding_warnings(model, equilibrium),
         *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
-        *implausible(model.scene),
+        *implausible(model.problem),
         *unused(model.scene),
     ]
     return tuple(dict.fromkeys(warnings))

@@ -20,7 +20,7 @@ from raceway.errors import ConvergenceError, SceneError, StabilityError
 from raceway.framework.duties import at_whirl, ramp_turns, steady_form
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, searches_orbits, stable_steps_per_turn
+from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
@@ -155,7 +155,7 @@ def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = N
     scene, method = model.scene, model.scene.integrator.method
     if method.steady:
         return Start("static")
-    kind = "ramp" if ramp_turns(scene.excitation) > 0.0 else scene.integrator.start
+    kind = "ramp" if model.problem.ramped else scene.integrator.start
     start = _orbit_start(model, equilibrium, watch) if kind == "orbit" and method.inertial else Start(kind)
     return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if scene.contact.friction > 0.0 else start
 
@@ -179,7 +179,7 @@ def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) ->
 
 def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, watch: Watch | None) -> Start:
     ring = compiled(system)
-    if ring is None or not searches_orbits(model.scene):
+    if ring is None or not model.problem.searches_orbits:
         return Start("orbit", steady_orbit(system, period, q))
     from raceway.core.periodic.steady import starting_orbit
 

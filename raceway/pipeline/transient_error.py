@@ -47,7 +47,7 @@ from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
-from raceway.planning.resolve import compares_with_steady_motion, remembers_its_start
+from raceway.planning.resolve import resolve
 from raceway.plugins.identifiers import Tangent, whole_turns
 from raceway.storage.tables import Tables
 
@@ -262,12 +262,12 @@ def _started_by(model: Model, kind: str) -> Model:
     if ramp_turns(excitation) > 0.0:
         excitation = attrs.evolve(excitation, ramp_turns=0.0)
     scene = attrs.evolve(scene, excitation=excitation, integrator=attrs.evolve(scene.integrator, start=kind))
-    return attrs.evolve(model, scene=scene)
+    return attrs.evolve(model, problem=resolve(scene))
 
 
 def start_warnings(model: Model, error: Tables) -> list[str]:
     """Says that an error is not known because no other start could be compared with."""
-    if not remembers_its_start(model.scene) or error["transient"] is not None:
+    if not model.problem.depends_on_start or error["transient"] is not None:
         return []
     return [
         f"friction: how far the answer depends on the motion's start is not known, and so is its error: {error['how']['transient']}"
@@ -288,7 +288,7 @@ def with_series_error(run: Identified, time_step: float | None) -> Identificatio
     identification, errors = run.identification, list[float | None]()
     if not identification.series_error:
         return identification
-    compared = run.model.excitation.period_s is None and compares_with_steady_motion(run.model.scene)
+    compared = run.model.excitation.period_s is None and run.model.problem.compared_with_steady
     for (speed, z), stated in zip(identification.series, identification.series_error, strict=True):
         try:
             settled = run.steady.value(speed) if compared else None

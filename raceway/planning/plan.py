@@ -15,7 +15,8 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
 from raceway.framework.shown import Fact, Shown, number
 from raceway.planning.machine import slowness
-from raceway.planning.resolve import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts, refuse_memory
+from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
+from raceway.planning.resolve import Problem, refuse_memory, resolve
 from raceway.planning.rules import foreseen, implausible, refuse_what_cannot_run
 from raceway.scene.inputs import as_scene
 from raceway.scene.scene import Scene
@@ -96,18 +97,22 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     >>> rw.make_plan(rw.Scene.from_toml("examples/b7206.toml")).time_step_s  # [s]
     1.388888888888889e-05
     """
-    refuse_what_cannot_run(scene)
+    return _plan(resolve(scene), force)
+
+
+def _plan(problem: Problem, force: Collection[str] = ()) -> Plan:
+    refuse_what_cannot_run(problem)
     parts = Decisions(force)
-    tilts = decide_tilts(scene, parts)
-    balls = decide_balls(scene, parts)
-    scene.body_kind.decide(parts)
-    motion = decide_motion(scene, parts, tilts, balls.friction)
-    decide_output(scene, parts, motion)
-    count = scene.bearing.balls_in_all
+    tilts = decide_tilts(problem, parts)
+    balls = decide_balls(problem, parts)
+    problem.scene.body_kind.decide(problem, parts)
+    motion = decide_motion(problem, parts, tilts, balls.friction)
+    decide_output(problem, parts, motion)
+    count = problem.bearing.balls_in_all
     if motion.recorded:
-        refuse_memory(scene, motion.turns, motion.steps_per_turn, count)
-    cost = scene.body_kind.cost(balls, motion, parts)
-    free = (0 if scene.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
+        refuse_memory(problem, motion.turns, motion.steps_per_turn, count)
+    cost = problem.scene.body_kind.cost(problem, balls, motion, parts)
+    free = (0 if problem.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return Plan(
         kept=tuple(parts.kept),
@@ -118,7 +123,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         free=free,
         turns=motion.turns,
         dofs=cost.unknowns or unknowns,
-        time_step_s=_period(scene) / motion.steps_per_turn if motion.recorded else None,
+        time_step_s=problem.period / motion.steps_per_turn if motion.recorded else None,
         predicted_steps=motion.turns * motion.steps_per_turn,
         predicted_wall_s=cost.seconds * (slowness() if cost.scales else 1.0),
         predicted_work_s=cost.seconds,
@@ -127,11 +132,6 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
         mesh=cost.mesh,
         at_least=cost.at_least,
     )
-
-
-def _period(scene: Scene) -> float:
-    """Of the force [s]."""
-    return float(scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz)
 
 
 @attrs.frozen(repr=False)
@@ -189,12 +189,12 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     >>> rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}).dofs
     15
     """
-    read = as_scene(scene, plugins=plugins)
-    if mistakes := foreseen(read):
+    problem = resolve(as_scene(scene, plugins=plugins))
+    if mistakes := foreseen(problem):
         raise SceneError(mistakes)
-    made = make_plan(read)
+    made = _plan(problem)
     values = {str(field.alias): getattr(made, field.name) for field in attrs.fields(Plan)}
-    return ScenePlan(**values, title=read.title)
+    return ScenePlan(**values, title=problem.scene.title)
 
 
 @attrs.frozen(repr=False)
@@ -262,8 +262,8 @@ def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
     (False, 'load.axail')
     """
     try:
-        read = as_scene(scene, plugins=plugins)
-        make_plan(read)
+        problem = resolve(as_scene(scene, plugins=plugins))
+        _plan(problem)
     except SceneError as error:
         return Check(tuple(error.mistakes))
-    return Check(tuple(foreseen(read)), implausible(read))
+    return Check(tuple(foreseen(problem)), implausible(problem))

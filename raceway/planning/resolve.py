@@ -1,63 +1,20 @@
-"""Parts that a scene needs, and why: coordinates, balls, bodies, motion, output."""
+"""What a scene implies, each answer once: after ``resolve`` nobody asks the scene again."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from math import ceil, pi, sqrt
+from functools import cached_property
+from math import ceil, cos, log, pi, sin, sqrt
+from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
+from raceway.framework.contracts import Traits
 from raceway.framework.duties import changes_speed, duration_s, ramp_turns, steady_form
-from raceway.scene.growth import ring_inertia
+from raceway.scene.bearing import Bearing
+from raceway.scene.growth import Grooves, free_angle, grooves, ring_inertia
 from raceway.scene.scene import Scene
-
-
-def searches_orbits(scene: Scene) -> bool:
-    """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
-    return scene.integrator.start == "orbit" and not ramp_turns(scene.excitation) and has_orbits(scene)
-
-
-def has_orbits(scene: Scene) -> bool:
-    """Whether steady orbits of a transient, or of it without friction, can be searched for."""
-    method, excitation, contact = scene.integrator.method, scene.excitation, scene.contact
-    if excitation is None or method.steady or not method.inertial:
-        return False
-    repeats = excitation.period_s is not None or steady_form(excitation) is not None
-    return repeats and scene.body_kind.traits.compiled and contact.law.state_size == 0
-
-
-def remembers_its_start(scene: Scene) -> bool:
-    """Whether the answer depends on how the motion began, and a second run tells how far.
-
-    Notes
-    -----
-    With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
-    fits over several speeds no transient is estimated: a second run of them would tell nothing more.
-    """
-    if scene.excitation is None or scene.contact.friction == 0.0 or scene.body_kind.traits.every_node:
-        return False
-    needs = scene.identifier.method.needs
-    return "record" in needs and "speeds" not in needs
-
-
-def compares_with_steady_motion(scene: Scene) -> bool:
-    """Whether the error of a transient is its distance from the steady motion.
-
-    Notes
-    -----
-    A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
-    have no steady motion that can be solved for by itself.
-    """
-    method, excitation = scene.integrator.method, scene.excitation
-    if excitation is None or not method.inertial or method.steady:
-        return False
-    if not scene.body_kind.traits.compiled or scene.contact.friction > 0.0 or scene.contact.law.state_size > 0:
-        return False
-    if excitation.period_s is None:
-        return steady_form(excitation) is not None
-    return ramp_turns(excitation) > 0.0 or scene.integrator.start != "orbit" or "speeds" in scene.identifier.method.needs
-
+from raceway.scene.tables import Contact, Identifying, Integration, Kinematics, Load, Mounting, Rotor, Supports
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
@@ -71,24 +28,199 @@ _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
 
 
-def turns_of(scene: Scene) -> int:
-    """Turns that are integrated: the scene's, or as many as the excitation lasts."""
-    duration = duration_s(scene.excitation)
-    if duration is None:
-        return scene.integrator.turns
-    return max(int(duration * scene.excitation.frequency_hz + 0.5), 1)
+@attrs.frozen
+class Inertia:
+    """Mass [kg], transverse and polar inertia [kg m2] of the inner rings and of the rotor's share."""
+
+    mass: float
+    transverse: float
+    polar: float
 
 
-def predicted_steps_per_turn(scene: Scene) -> int:
-    """The scene's number; for 'auto' 360, or the multiple of it that a rough stiffness asks of an explicit method."""
-    given = scene.integrator.steps_per_turn
-    if isinstance(given, int):
-        return given
-    if scene.integrator.method.implicit:
-        return STEPS_PER_TURN
-    period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-    stable = scene.body_kind.stable_step()
-    return STEPS_PER_TURN if stable is None else stable_steps_per_turn(period, damped_limit(stable, scene.time_constant))
+@attrs.frozen
+class Problem:
+    """What is computed: the tables of a scene, and what follows from them.
+
+    Attributes
+    ----------
+    scene : what the user said, for messages and results
+    bearing ... identifier : its tables and plug-ins
+    spin_speed : of the inner ring [rad/s];  spin_changes : whether it follows an excitation that changes its speed
+    time_constant : of contact dashpots c = tau k [s]
+
+    Notes
+    -----
+    What follows is computed when it is asked for first: rules ask only for what a scene that may be refused has.
+    """
+
+    scene: Scene
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Any
+    mesh: Any
+    contact: Contact
+    kinematics: Kinematics
+    mounting: Mounting
+    integrator: Integration
+    identifier: Identifying
+    spin_speed: float
+    spin_changes: bool
+    time_constant: float
+
+    def changed(self, **tables: Any) -> Problem:
+        """The same problem with other tables."""
+        return resolve(attrs.evolve(self.scene, **tables))
+
+    @property
+    def traits(self) -> Traits:
+        """Of the bodies."""
+        return self.scene.body_kind.traits
+
+    @cached_property
+    def inertia(self) -> Inertia:
+        """Of the inner rings and the rotor's share."""
+        mass, transverse, polar = ring_inertia(self.scene)
+        rotor = self.rotor
+        return Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar)
+
+    @cached_property
+    def grooves(self) -> tuple[Grooves, ...]:
+        """Growth of the grooves of the running, warm rows."""
+        return tuple(grooves(self.scene, row) for row in range(len(self.bearing.rows)))
+
+    @cached_property
+    def free_angles(self) -> tuple[float, ...]:
+        """Free contact angles of the running, warm rows [rad]."""
+        return tuple(free_angle(b, grown) for b, grown in zip(self.bearing.of_rows, self.grooves, strict=True))
+
+    @cached_property
+    def axial_approach(self) -> tuple[float, float]:
+        """(x [m], load of a ball [N]) of the first row under the axial load alone."""
+        return axial_approach(self.bearing, self.load.axial)
+
+    @cached_property
+    def highest_frequency(self) -> float:
+        """Largest natural frequency of the ring on its contacts [rad/s], roughly."""
+        b, (_, load) = self.bearing, self.axial_approach
+        if self.excitation is not None:
+            load += self.excitation.amplitude_n * (5.0 / b.ball_count)  # of any size that is a number
+        normal = 1.5 * load / (load / series_factor(b)) ** (2.0 / 3.0) if load > 0.0 else 1.0
+        alpha, inertia, tilt = b.contact_angle, self.inertia, self.supports.tilt
+        best = b.ball_count * normal * max(sin(alpha) ** 2, 0.5 * cos(alpha) ** 2) / inertia.mass
+        if tilt != "locked" and inertia.transverse > 0.0:
+            shaft = tilt if isinstance(tilt, float) else 0.0
+            tilting = 0.5 * b.ball_count * normal * (sin(alpha) * b.pitch_diameter / 2.0) ** 2 + shaft
+            best = max(best, tilting / inertia.transverse)
+        return sqrt(best) + 1e-6 * pi
+
+    @property
+    def recorded(self) -> bool:
+        """Whether anything is integrated: there is a force, and the identifier needs a record of the motion."""
+        return self.excitation is not None and "record" in self.identifier.method.needs
+
+    @property
+    def several_speeds(self) -> bool:
+        """Whether the identifier compares motions at several whirl speeds."""
+        return self.excitation is not None and "speeds" in self.identifier.method.needs
+
+    @property
+    def period(self) -> float:
+        """Of the force [s]; of one that does not repeat, of its frequency."""
+        return float(self.excitation.period_s or 1.0 / self.excitation.frequency_hz)
+
+    @property
+    def ramped(self) -> bool:
+        """Whether the force grows from zero."""
+        return ramp_turns(self.excitation) > 0.0
+
+    @property
+    def sweeps(self) -> bool:
+        """Whether the force runs through speeds."""
+        return changes_speed(self.excitation)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether contacts depend on what was before: by friction, or by a law with a state."""
+        return self.contact.friction > 0.0 or self.contact.law.state_size > 0
+
+    @cached_property
+    def turns(self) -> int:
+        """Turns that are integrated: the scene's, or as many as the excitation lasts."""
+        duration = duration_s(self.excitation)
+        if duration is None:
+            return self.integrator.turns
+        return max(int(duration * self.excitation.frequency_hz + 0.5), 1)
+
+    @cached_property
+    def steps_per_turn(self) -> int:
+        """The scene's number; for 'auto' 360, or the multiple of it that a rough stiffness asks of an explicit method."""
+        steps = self.integrator.steps_per_turn
+        if isinstance(steps, int):
+            return steps
+        stable = None if self.integrator.method.implicit else self.stable_step
+        return (
+            STEPS_PER_TURN
+            if stable is None
+            else stable_steps_per_turn(self.period, damped_limit(stable, self.time_constant))
+        )
+
+    @cached_property
+    def stable_step(self) -> float | None:
+        """Rough stable limit of explicit steps [s], by the bodies; None where nothing is known."""
+        return self.scene.body_kind.stable_step(self)
+
+    @cached_property
+    def has_orbits(self) -> bool:
+        """Whether steady orbits of a transient, or of it without friction, can be searched for."""
+        method, excitation = self.integrator.method, self.excitation
+        if excitation is None or method.steady or not method.inertial:
+            return False
+        repeats = excitation.period_s is not None or steady_form(excitation) is not None
+        return repeats and self.traits.compiled and self.contact.law.state_size == 0
+
+    @property
+    def searches_orbits(self) -> bool:
+        """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
+        return self.integrator.start == "orbit" and not self.ramped and self.has_orbits
+
+    @cached_property
+    def depends_on_start(self) -> bool:
+        """Whether the answer depends on how the motion began, and a second run tells how far.
+
+        Notes
+        -----
+        With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
+        fits over several speeds no transient is estimated: a second run of them would tell nothing more.
+        """
+        rubbing = self.contact.friction != 0.0 and self.recorded and not self.several_speeds
+        return rubbing and not self.traits.every_node
+
+    @cached_property
+    def compared_with_steady(self) -> bool:
+        """Whether the error of a transient is its distance from the steady motion.
+
+        Notes
+        -----
+        A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
+        have no steady motion that can be solved for by itself.
+        """
+        method, excitation = self.integrator.method, self.excitation
+        if excitation is None or not method.inertial or method.steady or not self.traits.compiled or self.remembers:
+            return False
+        if excitation.period_s is None:
+            return steady_form(excitation) is not None
+        return self.ramped or self.integrator.start != "orbit" or self.several_speeds
+
+
+_TABLES = tuple(field.name for field in attrs.fields(Problem) if field.name != "scene")
+
+
+def resolve(scene: Scene) -> Problem:
+    """What a scene asks for; pure."""
+    return Problem(scene, **{name: getattr(scene, name) for name in _TABLES})
 
 
 def damped_limit(limit: float, time_constant: float) -> float:
@@ -142,173 +274,65 @@ def fits(turns: int, steps_per_turn: int, count: int, inertial: bool = True) -> 
     return record_bytes(turns, steps_per_turn, count, inertial) <= _MEMORY_LIMIT
 
 
-def refuse_memory(scene: Scene, turns: int, steps_per_turn: int, count: int) -> None:
+def refuse_memory(problem: Problem, turns: int, steps_per_turn: int, count: int) -> None:
     """Records that will not fit are refused before anything is computed."""
-    needed = record_bytes(turns, steps_per_turn, count, scene.integrator.method.inertial)
+    needed = record_bytes(turns, steps_per_turn, count, problem.integrator.method.inertial)
     if needed > _MEMORY_LIMIT:
         raise SceneError.at(
             "integrator.turns",
-            scene.integrator.turns,
+            problem.integrator.turns,
             f"the record of {turns} turns would take {needed / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
             "fewer turns, or steps_per_turn = 360 or a multiple of it",
         )
 
 
-@attrs.frozen
-class Part:
-    """One part, and why it is kept or left out."""
-
-    part: str
-    why: str
+#: Of the axial displacement at most; a dozen do.
+_ITERATIONS = 60
 
 
-class Decisions:
-    """The parts of one scene, as they are decided.
+def series_factor(b: Bearing) -> float:
+    """K [N/m^1.5] of both races of a ball in series.
 
-    Parameters
+    References
     ----------
-    force : parts that are kept although the scene does not need them
+    Hamrock, Brewe: Simplified solution for stresses and deformations, J. Lubr. Tech. 105 (1983): within 5 %.
     """
-
-    def __init__(self, force: Collection[str] = ()) -> None:
-        self.force = force
-        self.kept: list[Part] = []
-        self.left_out: list[Part] = []
-
-    def decide(self, needed: bool, part: str, why: str, why_not: str) -> bool:
-        """Keep a part or leave it out; whether it is kept."""
-        stays = needed or part in self.force
-        (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not))
-        return stays
-
-    def keeps(self, part: str) -> bool:
-        """Whether a part was kept, by its name."""
-        return any(one.part == part for one in self.kept)
-
-    def keep(self, part: str, why: str) -> None:
-        """A part that no scene of this kind can do without."""
-        self.kept.append(Part(part, why))
-
-    def leave_out(self, part: str, why: str) -> None:
-        """A part that no scene of this kind has."""
-        self.left_out.append(Part(part, why))
+    e = 1.0 / ((1 - b.rings.poisson**2) / b.rings.young + (1 - b.balls.poisson**2) / b.balls.young)
+    d, g = b.ball_diameter, b.ball_diameter * cos(b.contact_angle) / b.pitch_diameter
+    softness = 0.0
+    for f, rolling in ((b.conformity_inner, 2 * g / (1 - g)), (b.conformity_outer, -2 * g / (1 + g))):
+        along, across = (2.0 - 1.0 / f) / d, (2.0 + rolling) / d
+        ratio = across / along
+        ellipticity = 1.0339 * ratio**0.636
+        second, first = 1.0003 + 0.5968 / ratio, 1.5277 + 0.6023 * log(ratio)
+        factor = pi * ellipticity * 2.0 * e * sqrt(second / (along + across) / (4.5 * first**3))
+        softness += factor ** (-2.0 / 3.0)
+    return softness**-1.5
 
 
-#: Name of what repeats itself, for ``make_plan``'s ``force``.
-OTHER_TURNS = "other turns"
+def axial_approach(b: Bearing, axial: float) -> tuple[float, float]:
+    """(x [m], load of a ball [N]) under an axial load [N] alone, by Newton's iteration on the axial displacement."""
+    factor, alpha = series_factor(b), b.contact_angle
+    distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
+    target = abs(axial)
 
+    def state(x: float) -> tuple[float, float]:
+        a, r = distance * sin(alpha) + x, distance * cos(alpha)
+        s = sqrt(a * a + r * r)
+        load = factor * max(s - distance, 0.0) ** 1.5
+        return b.ball_count * load * a / s, load
 
-@attrs.frozen
-class Balls:
-    """Requirements of the balls.
-
-    Attributes
-    ----------
-    kind : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
-    centrifugal, gyroscopic, friction : whether they have these loads
-    """
-
-    kind: str
-    centrifugal: bool
-    gyroscopic: bool
-    friction: bool
-
-
-@attrs.frozen
-class Motion:
-    """Motion that is integrated: none, where ``recorded`` is False."""
-
-    recorded: bool
-    turns: int
-    steps_per_turn: int
-
-
-def uses_record(scene: Scene) -> bool:
-    """Whether anything is integrated."""
-    return scene.excitation is not None and "record" in scene.identifier.method.needs
-
-
-def _off(scene: Scene, key: str, value: str) -> str:
-    """A key as the reason of what is left out, and whether nobody asked for that."""
-    return f"{key} is {value}{'' if scene.says(key) else ', by default'}"
-
-
-def decide_tilts(scene: Scene, parts: Decisions) -> bool:
-    """Whether the ring tilts."""
-    why_not = _off(scene, "supports.tilt", "locked")
-    return parts.decide(scene.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", why_not)
-
-
-def decide_balls(scene: Scene, parts: Decisions) -> Balls:
-    """Forces on the balls."""
-    inertia = scene.kinematics.ball_inertia and scene.spin_speed > 0.0
-    why_not = "kinematics.ball_inertia is false" if scene.spin_speed > 0.0 else "nothing turns: no spin speed"
-    inertia = parts.decide(
-        inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
-    )
-    if scene.spin_speed > 0.0 and changes_speed(scene.excitation):
-        rpm = scene.spin_speed * 30.0 / pi
-        why = f"balls, ring and rotor follow the speed of excitation '{scene.excitation.name}'"
-        why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
-        parts.decide(scene.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
-    rates = scene.excitation is not None and (scene.integrator.method.inertial or not uses_record(scene))
-    damped = scene.contact.dashpot > 0.0 or scene.time_constant > 0.0
-    why_not = "nothing moves, or no rates: a series of equilibria" if damped else _off(scene, "contact.damping", "0")
-    why = "contact.damping is set" if scene.contact.dashpot > 0.0 else f"c = tau k, tau = {scene.time_constant:.3g} s"
-    parts.decide(damped and rates, "contact damping", why, why_not)
-    rubbing = scene.contact.friction > 0.0
-    why_not = _off(scene, "contact.friction", "0")
-    if rubbing and not uses_record(scene) and scene.body_kind.traits.every_node:
-        rubbing = False
-        why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
-    friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
-    wanted = scene.kinematics.gyroscopic != "none"
-    still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
-    why_not = still if wanted else _off(scene, "kinematics.gyroscopic", "none")
-    moments = parts.decide(wanted and scene.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not)
-    grows, part, key = scene.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
-    why_not = still if grows else _off(scene, key, "false")
-    parts.decide(grows and scene.spin_speed > 0.0, part, f"{key} is true", why_not)
-    why_not = _off(scene, "kinematics.orbiting", "false")
-    parts.decide(scene.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
-    rows = f"bearing.arrangement is {scene.bearing.arrangement if not scene.bearing.row else scene.bearing.signs}"
-    parts.decide(len(scene.bearing.rows) > 1, "further rows of balls", rows, rows)
-    kind = "tangential" if friction or moments else "inertial" if inertia else "weightless"
-    return Balls(kind, inertia, moments, friction)
-
-
-def decide_motion(scene: Scene, parts: Decisions, tilts: bool, friction: bool) -> Motion:
-    """Coordinates that move, and the turns that are integrated."""
-    dynamic, integrator, identifier = scene.excitation is not None, scene.integrator, scene.identifier
-    spins = scene.rotor.polar_inertia + ring_inertia(scene)[2] > 0.0 and scene.spin_speed != 0.0
-    part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
-    parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
-    unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
-    part, why = f"time integration ({integrator.kind})", "the identifier needs recorded motion"
-    recorded = parts.decide(uses_record(scene), part, why, unused)
-    if not recorded:
-        return Motion(False, 0, 0)
-    turns = turns_of(scene)
-    # Only what turns alike every turn needs one turn; a window over several turns needs them.
-    repeats = scene.contact.law.state_size == 0 and not friction and not scene.kinematics.orbiting
-    repeats = repeats and scene.excitation.period_s is not None and "phase" not in identifier.method.needs
-    steady = integrator.method.steady
-    once = (steady or not integrator.method.inertial) and repeats and turns > 1
-    if once and OTHER_TURNS not in parts.force:
-        what = "the steady motion" if steady else "a series of equilibria without memory"
-        parts.leave_out(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn")
-        turns = 1
-    why = "friction: the answer depends on how the motion began, the error is how far"
-    why_not = "contact.friction is 0" if not friction else "the transient of this scene is not estimated"
-    parts.decide(remembers_its_start(scene), "run from another start", why, why_not)
-    return Motion(True, turns, predicted_steps_per_turn(scene))
-
-
-def decide_output(scene: Scene, parts: Decisions, motion: Motion) -> None:
-    """What of the answer is not made."""
-    every = motion.steps_per_turn
-    samples = recorded_per_turn(every, motion.turns, scene.integrator.method.inertial) if motion.recorded else 0
-    why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
-    part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
-    parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
-    parts.leave_out("pictures", "drawn by --pictures only")
+    high = distance
+    while state(high)[0] < target and high < 100.0 * distance:
+        high *= 2.0
+    # The force grows faster than the displacement: Newton's iteration stays above and falls, until rounding ends it.
+    for _ in range(_ITERATIONS):
+        force, load = state(high)
+        a, r = distance * sin(alpha) + high, distance * cos(alpha)
+        s = sqrt(a * a + r * r)
+        slope = b.ball_count * (1.5 * factor * sqrt(max(s - distance, 0.0)) * (a / s) ** 2 + load * r * r / s**3)
+        step = (force - target) / slope if slope > 0.0 else 0.0
+        if not 0.0 < step <= high or step <= 1e-15 * high:
+            break
+        high -= step
+    return high, state(high)[1]

@@ -10,16 +10,15 @@ import attrs
 
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
-from raceway.framework.duties import changes_speed, has_phase, renews, speed_rpm
-from raceway.planning.resolve import predicted_steps_per_turn, recorded_per_turn, turns_of
-from raceway.scene.growth import growth_faults, loose_rings, ring_inertia
-from raceway.scene.scene import Scene
+from raceway.framework.duties import has_phase, renews, speed_rpm
+from raceway.planning.resolve import Problem, recorded_per_turn
+from raceway.scene.growth import growth_faults, loose_rings
 
 #: Called as ``refuse(bad, path, value, why)``.
 _Refuse = Callable[[bool, str, object, str], None]
 
 
-def refuse_what_cannot_run(scene: Scene) -> None:
+def refuse_what_cannot_run(problem: Problem) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
     faults: list[Mistake] = []
 
@@ -27,122 +26,123 @@ def refuse_what_cannot_run(scene: Scene) -> None:
         if bad:
             faults.append(Mistake(path, value, why))
 
-    kinematics, contact, method = scene.kinematics, scene.contact, scene.integrator.method
-    faults += scene.body_kind.faults()
+    kinematics, contact, method = problem.kinematics, problem.contact, problem.integrator.method
+    faults += problem.scene.body_kind.faults()
     law = contact.law
     if contact.discretisation not in law.discretisations:
         choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
         faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
-    _refuse_renewed(scene, refuse)
-    _refuse_time_constant(scene, refuse)
+    _refuse_renewed(problem, refuse)
+    _refuse_time_constant(problem, refuse)
     need_bore = "needs the bearing's `bore`"
-    refuse(kinematics.ring_growth and scene.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
+    refuse(kinematics.ring_growth and problem.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
     alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
     why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
     refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
-    refuse(kinematics.orbiting and scene.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns")
-    compiled = scene.body_kind.traits.compiled
+    refuse(
+        kinematics.orbiting and problem.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns"
+    )
+    compiled = problem.traits.compiled
     why = (
-        f"has no terms that follow the changing speed of '{getattr(scene.excitation, 'name', None)}', which contact resultants on "
+        f"has no terms that follow the changing speed of '{getattr(problem.excitation, 'name', None)}', which contact resultants on "
         "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
     )
-    refuse(scene.spin_changes and not compiled, *_slow(scene), why)
+    refuse(problem.spin_changes and not compiled, *_slow(problem), why)
     why = "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm"
-    refuse(kinematics.ball_growth and scene.spin_changes, "kinematics.ball_growth", True, why)
-    faults += growth_faults(scene)
-    _refuse_different_rows(scene, refuse)
-    if scene.excitation is not None and scene.excitation.amplitude_n == 0.0:
-        faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static scene"))
-    if scene.excitation is not None:
-        _refuse_identifier(scene, refuse)
-        if "record" in scene.identifier.method.needs:
-            _refuse_driver(scene, refuse)
-        if method.steady and "record" in scene.identifier.method.needs:
-            _refuse_steady(scene, refuse)
-    if scene.excitation is not None and "record" in scene.identifier.method.needs and method.inertial:
-        mass, tilt, _ = ring_inertia(scene)
-        if scene.rotor.mass + mass <= 0.0:
+    refuse(kinematics.ball_growth and problem.spin_changes, "kinematics.ball_growth", True, why)
+    faults += growth_faults(problem.scene)
+    _refuse_different_rows(problem, refuse)
+    if problem.excitation is not None and problem.excitation.amplitude_n == 0.0:
+        faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static problem"))
+    if problem.excitation is not None:
+        _refuse_identifier(problem, refuse)
+        if "record" in problem.identifier.method.needs:
+            _refuse_driver(problem, refuse)
+        if method.steady and "record" in problem.identifier.method.needs:
+            _refuse_steady(problem, refuse)
+    if problem.recorded and method.inertial:
+        if problem.inertia.mass <= 0.0:
             why = "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own"
-            faults.append(Mistake("rotor.mass", scene.rotor.mass, why))
-        if scene.supports.tilt != "locked" and scene.rotor.transverse_inertia + tilt <= 0.0:
+            faults.append(Mistake("rotor.mass", problem.rotor.mass, why))
+        if problem.supports.tilt != "locked" and problem.inertia.transverse <= 0.0:
             why = "free tilts need an inertia: set it, or give bearing.bore and bearing.width"
-            faults.append(Mistake("rotor.transverse_inertia", scene.rotor.transverse_inertia, why))
+            faults.append(Mistake("rotor.transverse_inertia", problem.rotor.transverse_inertia, why))
     if faults:
         raise SceneError(faults)
 
 
-def _refuse_renewed(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_renewed(problem: Problem, refuse: _Refuse) -> None:
     """Laws that follow the running speed, where nothing turns or bodies do not renew them."""
-    contact = scene.contact
+    contact = problem.contact
     if not renews(contact.law):
         return
     why = (
         "needs the speed at which its contacts run, and nothing turns: give excitation.speed_rpm or kinematics.spin_speed_rpm, or take "
         "kind = 'hertz', the dry law"
     )
-    refuse(scene.spin_speed == 0.0, "contact.kind", contact.kind, why)
+    refuse(problem.spin_speed == 0.0, "contact.kind", contact.kind, why)
     if contact.discretisation in contact.law.discretisations:
         why = "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'"
-        refuse(not scene.body_kind.traits.renews, "contact.kind", contact.kind, why)
+        refuse(not problem.traits.renews, "contact.kind", contact.kind, why)
 
 
-def _refuse_time_constant(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_time_constant(problem: Problem, refuse: _Refuse) -> None:
     """Damping in proportion to the stiffness, where bodies have none."""
-    contact = scene.contact
+    contact = problem.contact
     ways = {"damping": contact.damping if contact.in_a_band else None, "time_constant": contact.time_constant}
     ways["loss_factor"] = contact.loss_factor
     why = "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, or contact.damping in N s/m"
     for key, value in ways.items():
-        refuse(value is not None and not scene.body_kind.traits.damps, f"contact.{key}", value, why)
-    changing = scene.excitation is not None and scene.excitation.period_s is None
+        refuse(value is not None and not problem.traits.damps, f"contact.{key}", value, why)
+    changing = problem.excitation is not None and problem.excitation.period_s is None
     why = "belongs to one frequency, and the excitation has none: give contact.time_constant"
     refuse(contact.loss_factor is not None and changing, "contact.loss_factor", contact.loss_factor, why)
 
 
-def _refuse_different_rows(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_different_rows(problem: Problem, refuse: _Refuse) -> None:
     """What holds one number for the balls of all rows."""
-    if scene.bearing.equal_rows:
+    if problem.bearing.equal_rows:
         return
-    kinematics, rows = scene.kinematics, "the rows of this set are different bearings"
+    kinematics, rows = problem.kinematics, "the rows of this set are different bearings"
     why = f"{rows}, whose balls travel at different speeds: set it false"
     refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
     why = f"{rows}: moments are computed for balls of one kind only. Set it 'none'"
     refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
     why = f"{rows}: friction is computed for balls of one kind only. Set it 0"
-    refuse(scene.contact.friction > 0.0, "contact.friction", scene.contact.friction, why)
+    refuse(problem.contact.friction > 0.0, "contact.friction", problem.contact.friction, why)
     why = f"{rows}: a speed that changes is followed by balls of one kind only. Give one with kinematics.spin_speed_rpm"
-    refuse(scene.spin_changes, "excitation.kind", getattr(scene.excitation, "name", None), why)
+    refuse(problem.spin_changes, "excitation.kind", getattr(problem.excitation, "name", None), why)
 
 
-def _slow(scene: Scene) -> tuple[str, str]:
+def _slow(problem: Problem) -> tuple[str, str]:
     """The key, and its value, by which bodies have no compiled forces."""
-    if scene.body_kind.traits.every_node or scene.contact.discretisation == "resultant":
-        return "bodies.kind", scene.bodies.name
-    return "contact.discretisation", scene.contact.discretisation
+    if problem.traits.every_node or problem.contact.discretisation == "resultant":
+        return "bodies.kind", problem.bodies.name
+    return "contact.discretisation", problem.contact.discretisation
 
 
-def _refuse_driver(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_driver(problem: Problem, refuse: _Refuse) -> None:
     """A method without the driver that the bodies ask for."""
-    missing = missing_driver(scene.integrator.method.scheme, scene.body_kind.traits.compiled)
-    key, value = _slow(scene)
+    missing = missing_driver(problem.integrator.method.scheme, problem.traits.compiled)
+    key, value = _slow(problem)
     why = (
         f"has no driver `{missing}`, which {key} = '{value}' needs: its forces are not compiled. Use 'newmark' or "
         "'quasi_static', or contact resultants on rigid or condensed bodies"
     )
-    refuse(bool(missing), "integrator.kind", scene.integrator.kind, why)
+    refuse(bool(missing), "integrator.kind", problem.integrator.kind, why)
 
 
-def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_identifier(problem: Problem, refuse: _Refuse) -> None:
     """Requirements of the identifier on the excitation."""
-    needs, kind = scene.identifier.method.needs, scene.identifier.kind
-    name, excitation = scene.excitation.name, scene.excitation
-    changing = excitation.period_s is None and changes_speed(excitation)
+    needs, kind = problem.identifier.method.needs, problem.identifier.kind
+    name, excitation = problem.excitation.name, problem.excitation
+    changing = excitation.period_s is None and problem.sweeps
     why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
     refuse("period" in needs and changing, "identifier.kind", kind, why)
     why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
-    fitted = getattr(scene.identifier.method, "harmonics", None)
+    fitted = getattr(problem.identifier.method, "harmonics", None)
     if fitted is not None and "record" in needs:
-        samples = recorded_per_turn(predicted_steps_per_turn(scene), turns_of(scene))
+        samples = recorded_per_turn(problem.steps_per_turn, problem.turns)
         least = 2 * fitted + 2
         why = (
             f"{fitted} harmonics, mean and drift are {least} unknowns, but {samples} samples a turn are recorded: take at most "
@@ -156,7 +156,7 @@ def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
     unable = changing or speed_rpm(excitation) is None
     refuse(several and unable, "identifier.kind", kind, why)
     if several and not unable:
-        for rpm in scene.identifier.method.speeds_rpm:
+        for rpm in problem.identifier.method.speeds_rpm:
             why = f"runs several speeds, but excitation '{name}' does not repeat every turn at {rpm:g} r/min"
             bad = attrs.evolve(excitation, speed_rpm=float(rpm)).period_s is None
             refuse(bad, "identifier.kind", kind, why)
@@ -164,26 +164,26 @@ def _refuse_identifier(scene: Scene, refuse: _Refuse) -> None:
                 break
 
 
-def _refuse_steady(scene: Scene, refuse: _Refuse) -> None:
+def _refuse_steady(problem: Problem, refuse: _Refuse) -> None:
     """Scenes without a motion that repeats itself every turn and depends on the force alone."""
-    kind, excitation = scene.integrator.kind, scene.excitation
+    kind, excitation = problem.integrator.kind, problem.excitation
     other = "use 'newmark'"
     why = f"needs a force that repeats every turn, which excitation '{excitation.name}' does not: {other}"
     refuse(excitation.period_s is None, "integrator.kind", kind, why)
     why = f"contact.friction: where a contact sticks depends on how the motion began, there is no single one: {other}"
-    refuse(scene.contact.friction > 0.0, "integrator.kind", kind, why)
-    why = f"contact law '{scene.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
-    refuse(scene.contact.law.state_size > 0, "integrator.kind", kind, why)
+    refuse(problem.contact.friction > 0.0, "integrator.kind", kind, why)
+    why = f"contact law '{problem.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
+    refuse(problem.contact.law.state_size > 0, "integrator.kind", kind, why)
     alone = (
         excitation.sense != 0
-        and not any(scene.load.radial)
-        and not (any(scene.load.moment) and scene.supports.tilt != "locked")
+        and not any(problem.load.radial)
+        and not (any(problem.load.moment) and problem.supports.tilt != "locked")
     )
     why = (
         "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
         f"force turns and no radial load acts: {other}"
     )
-    refuse(scene.kinematics.orbiting and not alone, "integrator.kind", kind, why)
+    refuse(problem.kinematics.orbiting and not alone, "integrator.kind", kind, why)
 
 
 #: By unit or key the largest plausible size, and what is right: bearings of 2 m exist; rotors on ball bearings weigh tons at most.
@@ -199,11 +199,11 @@ _ROUGH = 2.0
 _TABLES = ("bearing", "rotor", "contact", "kinematics", "mesh", "supports", "mounting")
 
 
-def implausible(scene: Scene) -> tuple[str, ...]:
+def implausible(problem: Problem) -> tuple[str, ...]:
     """A sentence for each value that is likely to be in another unit, and for each ring that is loose."""
-    found = loose_rings(scene)
+    found = loose_rings(problem.scene)
     for table in _TABLES:
-        for path, unit, value in _numbers(getattr(scene, table), table):
+        for path, unit, value in _numbers(getattr(problem, table), table):
             most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))
             if abs(value) > most:
                 found.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
@@ -231,23 +231,23 @@ def _units(cls: type) -> tuple[tuple[str, str | None], ...]:
     return tuple((field.name, field.metadata.get("unit")) for field in attrs.fields(cls))
 
 
-def foreseen(scene: Scene) -> list[Mistake]:
+def foreseen(problem: Problem) -> list[Mistake]:
     """Failures of a run that closed formulas foresee: for ``raceway check``."""
     found = []
-    load, free = scene.load, scene.supports.axial != "displacement"
-    moment = any(load.moment) and scene.supports.tilt != "locked"
-    if free and not (load.axial or any(load.radial) or moment or scene.bearing.preloaded):
+    load, free = problem.load, problem.supports.axial != "displacement"
+    moment = any(load.moment) and problem.supports.tilt != "locked"
+    if free and not (load.axial or any(load.radial) or moment or problem.bearing.preloaded):
         found.append(Mistake("load.axial", load.axial, "nothing loads the bearing: there is no stiffness to find"))
-    if scene.excitation is None or "record" not in scene.identifier.method.needs:
+    if not problem.recorded:
         return found
-    window, turns = getattr(scene.identifier.method, "window_turns", None), turns_of(scene)
+    window, turns = getattr(problem.identifier.method, "window_turns", None), problem.turns
     if window is not None and window > turns:
         why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
         found.append(Mistake("identifier.window_turns", window, why))
-    steps = scene.integrator.steps_per_turn
-    if not scene.integrator.method.implicit and isinstance(steps, int) and not scene.body_kind.traits.every_node:
-        period = scene.excitation.period_s or 1.0 / scene.excitation.frequency_hz
-        stable = scene.body_kind.stable_step()
+    steps = problem.integrator.steps_per_turn
+    if not problem.integrator.method.implicit and isinstance(steps, int) and not problem.traits.every_node:
+        period = problem.period
+        stable = problem.stable_step
         least = 0 if stable is None else int(period / stable)
         if steps * _ROUGH < least:
             why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"

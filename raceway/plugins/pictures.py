@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from pathlib import Path
 from textwrap import wrap
@@ -12,7 +11,7 @@ import attrs
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
-from raceway.storage.files import write_whole
+from raceway.out.picture import new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,61 +114,6 @@ def _new_axes(names: tuple[str, ...]) -> tuple[Any, ...]:
     figure = pyplot.figure(figsize=(6.4 * len(names), 6.0), layout="constrained")
     frames = [{"projection": _DRAWINGS[name].projection} for name in names]
     return tuple(figure.add_subplot(1, len(names), k, **frame) for k, frame in enumerate(frames, 1))
-
-
-def new_figure(width: float, height: float) -> Figure:
-    """An empty figure [inch] that belongs to no window.
-
-    Raises
-    ------
-    RacewayError
-        Where matplotlib is not installed.
-    """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise RacewayError(
-            f"pictures need matplotlib, which is not installed: {extra('pictures')}, or leave out --pictures"
-        ) from None
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Axes:
-    """The axes that a caller gave, or new ones of a figure [inch] that notebooks and ``pyplot.show`` display.
-
-    Raises
-    ------
-    RacewayError
-        Where matplotlib is not installed.
-    """
-    if axes is not None:
-        return axes
-    try:
-        from matplotlib import pyplot
-    except ImportError:
-        raise RacewayError(f"plots need matplotlib, which is not installed: {extra('pictures')}") from None
-    return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
-
-
-def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
-    """Write a figure as PNG, whole or not at all.
-
-    Raises
-    ------
-    RacewayError
-        A folder or disk that cannot be written.
-    """
-    return write_whole(figure_png(figure, dots_per_inch), path)
-
-
-def figure_png(figure: Figure, dots_per_inch: int) -> bytes:
-    """A figure as the content of a PNG file."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    figure.set_dpi(dots_per_inch)
-    memory = io.BytesIO()
-    FigureCanvasAgg(figure).print_png(memory)
-    return memory.getvalue()
 
 
 def _draw_orbit(axes: Axes, result: Result) -> None:

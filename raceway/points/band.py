@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -14,22 +14,25 @@ from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, default_registry
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, number
+from raceway.out.answer import Answer, Part
+from raceway.out.picture import new_figure
 from raceway.out.progress import telling
 from raceway.out.quantities import DIFFERENTIABLE, read_in
+from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, values
-from raceway.pipeline.result import without_nan, write_json
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
-from raceway.plugins.pictures import new_figure
 from raceway.points.engine import Item, local, work_through
+from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_number
-from raceway.scene.inputs import as_scene, leaves
+from raceway.scene.inputs import as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.scene.tolerance import Tolerance, tolerances_of
+from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of
+from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -78,7 +81,7 @@ def indices(values: np.ndarray, dimensions: int) -> _Indices:
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
 
 
-def draw(content: ReadTables) -> Figure:
+def _draw(content: ReadTables) -> Figure:
     """A column a quantity: histogram of its samples, and bars of Sobol indices where they are known."""
     quantities, keys = content["quantities"], [one["key"] for one in content["tolerances"]]
     known = any(one["total"] is not None for one in quantities.values())
@@ -134,7 +137,7 @@ _ROUGH = 0.05
 
 
 @attrs.frozen(eq=False, repr=False)
-class Band(Shown):
+class Band(Answer):
     """95 % of the samples of each quantity, and what causes their spread.
 
     Attributes
@@ -151,6 +154,8 @@ class Band(Shown):
     >>> found.samples, found.lost
     (12, 0)
     """
+
+    stem: ClassVar[str] = "band"
 
     title: str
     tolerances: tuple[Tolerance, ...]
@@ -177,7 +182,7 @@ class Band(Shown):
             )
         shares = [one for some in (self.first, self.total) for name in some for one in some[name]]
         if any(abs(one - 0.5) > 0.5 + _ROUGH for one in shares):
-            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take a larger --count")
+            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take more --samples")
         return found
 
     def _shown(self) -> tuple[str, list[Fact]]:
@@ -215,27 +220,33 @@ class Band(Shown):
             )
         )
 
-    def save(self, folder: Path) -> Path:
-        """Write band.json.
+    def draw(self) -> Figure:
+        """Histograms with their limits, and Sobol indices."""
+        return _draw(self.to_dict())
 
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
-        return write_json(self.to_dict(), folder / "band.json")
+    def report(self) -> Iterator[Part]:
+        """A line a quantity; below it the tolerances, the definitions, and the samples that have no answer."""
+        yield Words(self.title, "italic")
+        yield [self._row(name) for name in self.nominal]
+        for tolerance in self.tolerances:
+            (low, unit), (high, _) = (read_in(end, tolerance.key.unit) for end in (tolerance.low, tolerance.high))
+            yield f"{tolerance.key.path}: {low:.6g} to {high:.6g} {unit}".rstrip()
+        yield from (f"{name.replace('_', ' ')}: {self.definitions[name]}" for name in self.nominal)
+        yield f"{self.samples} samples"
+        if self.lost:
+            yield f"{self.lost} have no answer, so that no indices are given: {self.why}"
+        yield from (f"warning: {text}" for text in self.remarks)
 
-    def picture(self, folder: Path) -> Path:
-        """Draw band.png: histograms with their limits, and Sobol indices.
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the folder cannot be written.
-        """
-        from raceway.plugins.pictures import save_figure
-
-        return save_figure(draw(self.to_dict()), folder / "band.png", 100)
+    def _row(self, name: str) -> dict[str, str]:
+        ends = (self.nominal[name], self.low[name], self.high[name])
+        (value, unit), (low, _), (high, _) = (read_in(end, DIFFERENTIABLE[name].unit) for end in ends)
+        row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
+        row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
+        indices = self.total.get(name)
+        return row | {
+            f"total index, {tolerance.key.path}": "" if indices is None else f"{indices[k]:.3f}"
+            for k, tolerance in enumerate(self.tolerances)
+        }
 
 
 def _band_of(
@@ -387,7 +398,7 @@ def band(
         raise SceneError.at(
             "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
-    chosen = tolerances_of(read, tolerances or dict(leaves(read.source.get("tolerances", {}))))
+    chosen = tolerances_of(read, tolerances or stated_tolerances(read))
     with telling(progress) as told:
         return _band_of(
             read,
@@ -400,3 +411,48 @@ def band(
             [Path(one) for one in plugins],
             told,
         )
+
+
+@door
+def uncertainty(
+    scene: Any,
+    tolerances: Mapping[str, str] | Iterable[str] = (),
+    keys: Iterable[str] = (),
+    *,
+    samples: int = 0,
+    seed: int = 1,
+    processes: int = 0,
+    kept: str | Path | None = None,
+    progress: ShowProgress = None,
+    plugins: Iterable[str | Path] = (),
+) -> Band | Sensitivities:
+    """How much the numbers and tolerances of a scene change its answer: K, C, stiffness, displacement and ball loads.
+
+    First-order derivatives by every number, and from them the 95 % band over the tolerances, without solving the scene again. With
+    --samples the band of samples and its Sobol indices instead, which see large tolerances, interactions and contacts that open.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables
+    tolerances : as ``band`` takes them
+    keys : to differentiate by; none: every number of the scene
+    samples : n, a power of 2: (d + 2) n samples for d tolerances; 0: derivatives alone
+    seed : of the samples;  processes : that work on samples at a time; 0: in this one
+    kept : file of finished samples, read and added to
+    progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
+    plugins : files of one-off plug-ins that the scene uses
+
+    Raises
+    ------
+    SceneError, ConvergenceError
+        As ``band`` and ``sensitivities``.
+    """
+    if samples:
+        if keys:
+            raise SceneError.at(
+                "keys", ", ".join(keys), "asks for derivatives, which samples do not give: leave it or the samples out"
+            )
+        return band(
+            scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
+        )
+    return sensitivities(scene, keys, tolerances=tolerances, progress=progress, plugins=plugins)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
-from pathlib import Path
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -17,16 +18,21 @@ from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
 from raceway.core.ring.orbit import States
 from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
-from raceway.framework.doors import door
-from raceway.pipeline.result import write_json
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
+from raceway.out.wrapping import Words
 from raceway.points.attractor import Attractor
-from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 #: Samples a turn: harmonics up to this order alias nothing.
 _SAMPLES = 360
 #: Samples of a span at which contacts are looked at.
 _CONTACTS = 72
+#: Special points and peaks that a screen shows at most; all are in the file.
+_SHOWN = 24
 #: Step of the difference quotient along the branch, over the motion's size.
 _ALONG = 1e-4
 #: Multipliers are outside the unit circle from here on.
@@ -86,16 +92,15 @@ class Orbit:
         """C [N s/m]."""
         return self.z.imag / self.speed
 
+    @property
+    def phase_deg(self) -> float:
+        """Lag of the displacement behind the force [deg]."""
+        return float(np.degrees(np.angle(self.z)))
+
     def to_dict(self) -> Tables:
-        z, phase = self.z, float(np.degrees(np.angle(self.z)))
-        derived = {
-            "z_real": z.real,
-            "z_imag": z.imag,
-            "stiffness": self.stiffness,
-            "damping": self.damping,
-            "phase_deg": phase,
-        }
-        return {name: derived.get(name, getattr(self, name, None)) for name in (*_COLUMNS, "verdict", "leaves_by")}
+        parts = {"z_real": self.z.real, "z_imag": self.z.imag}
+        names = (*_COLUMNS, "verdict", "leaves_by")
+        return {name: parts[name] if name in parts else getattr(self, name) for name in names}
 
 
 @attrs.frozen
@@ -117,8 +122,8 @@ class Label:
         return {"kind": self.kind, "angle_rad": self.angle, **self.row.to_dict()}
 
 
-@attrs.define(eq=False)
-class Followed:
+@attrs.define(eq=False, repr=False)
+class Followed(Answer):
     """The branch of steady orbits over a key of a scene.
 
     Attributes
@@ -136,6 +141,8 @@ class Followed:
     >>> curve.labels[0].kind, round(curve.labels[0].row.parameter)
     ('fold', 19574)
     """
+
+    stem: ClassVar[str] = "follow"
 
     key: str
     first: float
@@ -181,31 +188,73 @@ class Followed:
             "doubled": [branch.to_dict() for branch in self.doubled],
         }
 
-    @door
-    def write(self, folder: str | Path, picture: bool = True) -> list[Path]:
-        """Write follow.json, follow.csv and follow.png; the folder is made when it is missing.
-
-        Raises
-        ------
-        RacewayError
-            The folder cannot be written, or matplotlib is missing.
-        """
-        folder, content, text = Path(folder), self.to_dict(), io.StringIO()
-        branches = (content, *content["doubled"])
-        rows = [{"branch": k, **row} for k, branch in enumerate(branches) for row in branch["rows"]]
+    def texts(self, pictures: bool) -> dict[str, str]:
+        """follow.csv, a line an orbit."""
+        content, text = self.to_dict(), io.StringIO()
+        rows = [{"branch": k, **row} for k, branch in enumerate((content, *content["doubled"])) for row in branch["rows"]]
         table = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         table.writeheader()
         table.writerows(rows)
-        files = [
-            write_json(content, folder / "follow.json"),
-            write_whole(text.getvalue().encode(), folder / "follow.csv"),
-        ]
-        if picture:
-            from raceway.plugins.pictures import save_figure
-            from raceway.points.follow_picture import draw
+        return {"csv": text.getvalue()}
 
-            files.append(save_figure(draw(content), folder / "follow.png", 110))
-        return files
+    def draw(self) -> Figure:
+        """Amplitude and K over the key."""
+        from raceway.points.follow_picture import draw
+
+        return draw(self.to_dict())
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        ends = (
+            [
+                (word, f"{row.parameter:.6g}", f"K {1e-6 * row.stiffness:.4g} N/µm")
+                for word, row in zip(("begins", "ends"), (self.rows[0], self.rows[-1]), strict=True)
+            ]
+            if self.rows
+            else []
+        )
+        special = [(label.kind, f"{label.row.parameter:.6g}", "") for label in self.labels]
+        return f"{len(self.rows)} steady orbits over {self.key}\n{self.title.splitlines()[0]}", [*ends, *special]
+
+    def report(self) -> Iterator[Part]:
+        """What was followed, the special points and peaks, the stretches of unstable orbits, how it ends."""
+        yield Words(f"{len(self.rows)} steady orbits over {self.key}, {_range(self)}", "bold")
+        yield Words(self.title, "dim")
+        points = [
+            ("begins", self.rows[0]),
+            *((label.kind, label.row) for label in self.labels[:_SHOWN]),
+            ("ends", self.rows[-1]),
+        ]
+        yield [_line(what, row) for what, row in points]
+        if len(self.labels) > _SHOWN:
+            yield f"{len(self.labels) - _SHOWN} more special points and peaks are in the file"
+        for first, last in self.unstable:
+            yield f"unstable from {first.parameter:.6g} to {last.parameter:.6g} along the branch"
+        for k, branch in enumerate(self.doubled, 1):
+            yield f"branch {k} of twice the period: {len(branch.rows)} orbits, {_range(branch)}"
+        for attractor in (a for branch in (self, *self.doubled) for a in branch.attractors):
+            table = attractor.to_dict()
+            yield f"beside the unstable orbit at {table['parameter']:.6g}: {table['words']}"
+        yield from self.notes
+        if self.end:
+            yield Words(self.end, "bold")
+
+
+def _range(branch: Followed) -> str:
+    return f"{branch.rows[0].parameter:.6g} to {branch.rows[-1].parameter:.6g}"
+
+
+def _line(what: str, row: Orbit) -> dict[str, str]:
+    return {
+        "": what,
+        "value": f"{row.parameter:.7g}",
+        "K\nN/µm": f"{1e-6 * row.stiffness:.4g}",
+        "C\nN s/m": f"{row.damping:.4g}",
+        "1x\nµm": f"{1e6 * row.amplitude:.4g}",
+        "all harmonics\nµm": f"{1e6 * row.swing:.4g}",
+        "lag\ndeg": f"{row.phase_deg:.4g}",
+        "growth\na turn": f"{row.multiplier:.4g}",
+        "open\nballs": f"{row.lost}" if row.lost else "",
+    }
 
 
 def orbit_of(point: Point, arc: float, mass: float) -> Orbit:

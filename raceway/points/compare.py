@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -14,10 +14,11 @@ import numpy as np
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import Registry, default_registry, registry_with
-from raceway.framework.shown import Fact, Shown, number_within
+from raceway.framework.shown import Fact, number_within
+from raceway.out.answer import Answer, Interrupted, Part
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K_ERROR, C, Quantity, Z, named
-from raceway.pipeline.result import write_json
+from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.labelled import labelled_dataset
@@ -33,11 +34,12 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from xarray import Dataset
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Comparison(Shown, Findings):
+class Comparison(Answer, Findings):
     """One scene with some keys varied: the numbers, their effects, and both in words.
 
     Attributes
@@ -57,7 +59,13 @@ class Comparison(Shown, Findings):
     (('load.axial',), 27)
     """
 
+    stem: ClassVar[str] = "compare"
+
     fault: RacewayError | None = None
+
+    def failure(self) -> RacewayError | None:
+        """Why finished runs could not be kept."""
+        return self.fault
 
     @cached_property
     def words(self) -> list[str]:
@@ -137,18 +145,19 @@ class Comparison(Shown, Findings):
         names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
         return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
 
-    def picture(self, folder: Path) -> list[Path]:
-        """Draw all quantities into a folder; the files written.
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder that cannot be written.
-        """
-        from raceway.plugins.pictures import save_figure
+    def draw(self) -> Figure:
+        """All quantities."""
         from raceway.points.compare_picture import draw
 
-        return [save_figure(draw(self.to_dict()), folder / "comparison.png", 100)]
+        return draw(self.to_dict())
+
+    def report(self) -> Iterator[Part]:
+        """The effects, the largest first, a line for each point, and the other words."""
+        yield Words(self.title, "bold")
+        yield from self.short_words[:1]
+        yield self.table()
+        yield from self.short_words[1:]
+        yield Words("all quantities, courses and inertia in words: compare.json", "dim")
 
 
 def _number_of(row: Row) -> tuple[str, str]:
@@ -212,14 +221,6 @@ def labelled(found: Findings) -> Dataset:
     return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})
 
 
-class StudyInterrupt(KeyboardInterrupt):
-    """Ctrl-C in a study; ``partial``: the comparison of the runs that are finished."""
-
-    def __init__(self, partial: Comparison) -> None:
-        super().__init__()
-        self.partial = partial
-
-
 def compare_points(
     scene_tables: ReadTables,
     vary: Iterable[str] | Mapping[str, Any],
@@ -240,7 +241,7 @@ def compare_points(
     ------
     SceneError
         A mistake in an axis or in the scene; nothing has been run.
-    StudyInterrupt
+    Interrupted
         On Ctrl-C, with the finished rows; they are in ``store``, too.
 
     Notes
@@ -256,7 +257,8 @@ def compare_points(
     try:
         work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
     except KeyboardInterrupt as stop:
-        raise StudyInterrupt(_comparison(title, axes, places, items, kept, notes)) from stop
+        partial = _comparison(title, axes, places, items, kept, notes)
+        raise Interrupted(partial if partial.rows else None) from stop
     return _comparison(title, axes, places, items, kept, notes)
 
 
@@ -347,5 +349,5 @@ def compare(
     if found.fault is not None:
         warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
-        write_json(found.to_dict(), folder / _CONTENT)
+        found.save(folder)
     return found

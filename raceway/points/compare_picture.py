@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from itertools import product
 from typing import TYPE_CHECKING
 
+from raceway.out.picture import given_axes, new_figure
 from raceway.out.quantities import KXX, K, Quantity
-from raceway.plugins.pictures import given_axes, new_figure
 from raceway.points.axes import is_number
 from raceway.points.axes import shown as _text
 from raceway.points.effects import MOVING, STATIC, Row

@@ -19,6 +19,7 @@ from raceway.core.periodic.search import MOST, directly, find, highest_order, me
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
+from raceway.out.answer import Interrupted
 from raceway.out.progress import ShowProgress, telling
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
@@ -38,14 +39,6 @@ _MOST = 0.5
 #: Distance from the last value over the range, from which it is reached with the key held.
 _BESIDE = 1e-4
 OnProgress = Callable[[str, int, int], None]
-
-
-class FollowInterrupt(KeyboardInterrupt):
-    """Ctrl-C on the way; ``partial``: the curve up to there, whose ``end`` says so."""
-
-    def __init__(self, partial: Followed) -> None:
-        super().__init__()
-        self.partial = partial
 
 
 @door
@@ -89,7 +82,7 @@ def follow(
         A key that is not continuous, or a range whose ends or middle are no scenes.
     ConvergenceError
         No orbit at the first value.
-    FollowInterrupt
+    Interrupted
         On Ctrl-C: a KeyboardInterrupt with the curve up to there as ``partial``; it is written to ``out``, too, without a picture.
 
     Notes
@@ -115,12 +108,12 @@ def follow(
     try:
         with telling(progress) as on_progress:
             curve = _follow_branch(parameter, points, aim, doubled, turns, on_progress)
-    except FollowInterrupt as stop:
-        if out is not None and stop.partial.rows:
-            stop.partial.write(out, picture=False)
+    except Interrupted as stop:
+        if out is not None and stop.partial is not None:
+            stop.partial.save(out)
         raise
     if out is not None:
-        curve.write(out)
+        curve.save(out, pictures=True)
     return curve
 
 
@@ -162,7 +155,7 @@ def _follow_branch(
         for followed in (curve, *curve.doubled) if turns else ():
             followed.attractors += [attractor_beside(point, turns, on_progress) for point in followed.worst]
     except KeyboardInterrupt as stop:
-        raise FollowInterrupt(_stopped(curve)) from stop
+        raise Interrupted(_stopped(curve) if curve.rows else None) from stop
     return curve
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.plugins.pictures import new_figure
+from raceway.out.picture import new_figure
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

@@ -10,9 +10,9 @@ contacts.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -24,7 +24,10 @@ from raceway.core.ring.system import compiled
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact, Shown
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
+from raceway.out.table import sections
+from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.plan import make_plan
@@ -140,7 +143,7 @@ class Cycle:
 
 
 @attrs.frozen(eq=False, repr=False)
-class LawCurves(Shown):
+class LawCurves(Answer):
     """What a contact law does with one contact of a bearing, beside Hertz' law.
 
     Attributes
@@ -160,6 +163,8 @@ class LawCurves(Shown):
     >>> [round(1e-6 * curves.cycle.stiffness, 1), round(curves.cycle.damping, 1)]  # N/um, N s/m
     [86.7, 300.0]
     """
+
+    stem: ClassVar[str] = "law"
 
     law: str
     title: str
@@ -187,17 +192,41 @@ class LawCurves(Shown):
             "cycle": {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in cycle.items()},
         }
 
-    def picture(self, path: str | Path) -> Path:
-        """Draw force, stiffness, damping and the cycle's loop as a PNG file.
+    def draw(self) -> Figure:
+        """Force, stiffness, damping and the cycle's loop."""
+        return _draw(self)
 
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder that cannot be written.
-        """
-        from raceway.plugins.pictures import save_figure
-
-        return save_figure(draw(self), Path(path))
+    def report(self) -> Iterator[Part]:
+        """The contact, the law beside Hertz', the cycle."""
+        contact, loop = self.contact, self.cycle
+        load = f"{contact.load:.4g} N at an approach of {1e6 * contact.approach:.4g} µm"
+        yield Words(f"{self.law}: {contact.race} contact of ball {contact.ball}, {load}", "bold")
+        yield Words(self.title, "dim")
+        if contact.reach > 0.0:
+            yield f"it begins to carry at a gap of {1e6 * contact.reach:.4g} µm"
+        yield [
+            {
+                "approach\nµm": f"{1e6 * row['approach']:.4g}",
+                "force\nN": f"{row['force']:.5g}",
+                "F over\nHertz'": _ratio(row["force_ratio"]),
+                "stiffness\nN/µm": f"{1e-6 * row['stiffness']:.5g}",
+                "k over\nHertz'": _ratio(row["stiffness_ratio"]),
+                "damping\nN s/m": f"{row['damping']:.4g}",
+            }
+            for row in self.rows
+        ]
+        yield sections(
+            [
+                ("Cycle", "", ""),
+                ("amplitude", f"{1e6 * loop.amplitude:.4g} µm", f"about the equilibrium, at {loop.frequency:.4g} Hz"),
+                ("stiffness K", f"{1e-6 * loop.stiffness:.5g} N/µm", "in phase with the approach"),
+                ("damping C", f"{loop.damping:.4g} N s/m", "in phase with its rate"),
+                ("energy lost", f"{1e6 * loop.energy:.4g} µJ", f"a cycle; {self.damping_origin}"),
+                ("loss factor", _ratio(loop.loss_factor), "w C / K"),
+            ]
+        )
+        if loop.opens:
+            yield "the contact opens on the way"
 
     def _shown(self) -> tuple[str, list[Fact]]:
         c, loop = self.contact, self.cycle
@@ -237,7 +266,7 @@ def law(
     Returns
     -------
     LawCurves
-        ``approach``, ``force``, ``stiffness``, ``damping``, ``hertz_force``, ``cycle``; ``picture(path)``
+        ``approach``, ``force``, ``stiffness``, ``damping``, ``hertz_force``, ``cycle``; ``picture(folder)``
 
     Raises
     ------
@@ -325,9 +354,13 @@ def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
     )  # fmt: skip
 
 
-def draw(curves: LawCurves) -> Figure:
+def _ratio(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4g}"
+
+
+def _draw(curves: LawCurves) -> Figure:
     """Four panels over the approach: force, the loop of the cycle, stiffness and damping."""
-    from raceway.plugins.pictures import new_figure
+    from raceway.out.picture import new_figure
 
     figure = new_figure(9.6, 7.2)
     (force, loop), (stiffness, damping) = figure.subplots(2, 2)

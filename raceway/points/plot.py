@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway import __version__
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
+from raceway.out.picture import new_figure
 from raceway.out.quantities import AXIAL_DISPLACEMENT, STIFFNESS, Z_REAL, K, entry_unit, read_in
-from raceway.plugins.pictures import new_figure
 from raceway.points.axes import is_number, shown
 from raceway.points.axes import shown as _text
+from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
@@ -501,6 +503,19 @@ class Layout:
         """
 
         return write(draw(self.data, self.kind, self.x, self.y, self.panels, self.title, self.remark), path)
+
+
+def selection_of(store: Path, at: Iterable[str]) -> Selection:
+    """Of a store on disk; ``at``: texts KEY=VALUE."""
+    return select(open_store(store).to_xarray(), parse_at(at))
+
+
+def head(selection: Selection) -> tuple[str, ...]:
+    """Where the numbers come from, for the first lines of a file."""
+    bearing = selection.value("bearing.preset", "")
+    fixed = ", ".join(f"{key} = {shown(value)}" for key, value in selection.fixed.items())
+    words = (f"Raceway {__version__}: {selection.title}", f"bearing {bearing}" if bearing else "", fixed)
+    return tuple(word.replace("\n", "; ") for word in words if word)
 
 
 def layout(

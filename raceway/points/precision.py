@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
 
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import Registry, default_registry, registry_with
-from raceway.framework.shown import Fact, Shown
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
+from raceway.out.picture import given_axes
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import PRECISION
+from raceway.out.wrapping import Words
 from raceway.plugins.labelled import labelled_dataset
-from raceway.plugins.pictures import given_axes
 from raceway.points.axes import shown
 from raceway.points.engine import measured_once
 from raceway.points.settings import (
@@ -42,6 +44,7 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from xarray import Dataset
 
     from raceway.pipeline.simulate import OnProgress
@@ -58,7 +61,7 @@ Row = Tables
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
-class Precision(Shown):
+class Precision(Answer):
     """Findings of a precision study.
 
     Attributes
@@ -66,7 +69,7 @@ class Precision(Shown):
     rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
     references : by physics; ``base`` is the physics that the front and the other models refer to
     left_out : (family, values, reason) of the default design
-    fault : why rows could not be kept on disk
+    fault : why rows could not be kept on disk;  named_reference : whether the user named the reference
 
     Examples
     --------
@@ -78,6 +81,8 @@ class Precision(Shown):
     True
     """
 
+    stem: ClassVar[str] = "precision"
+
     title: str
     rows: tuple[Row, ...]
     references: dict[str, Reference]
@@ -85,6 +90,7 @@ class Precision(Shown):
     left_out: tuple[tuple[str, Tables, str], ...]
     notes: tuple[str, ...] = ()
     fault: RacewayError | None = None
+    named_reference: bool = False
 
     @cached_property
     def judged(self) -> list[Row]:
@@ -299,17 +305,41 @@ class Precision(Shown):
         front = set(self.front(self.base))
         return [_screen_row(row, place in front) for place, row in enumerate(self.judged)]
 
-    def write(self, folder: Path, pictures: bool) -> list[Path]:
-        """precision.json, precision.md and, if wanted, precision.png.
+    def texts(self, pictures: bool) -> dict[str, str]:
+        """precision.md."""
+        from raceway.points.precision_picture import page
 
-        Raises
-        ------
-        RacewayError
-            A folder or disk that cannot be written, or matplotlib missing.
-        """
-        from raceway.points.precision_picture import PrecisionReport
+        return {"md": page(self.to_dict(), pictures)}
 
-        return PrecisionReport(picture=pictures).write(self.to_dict(), folder)
+    def draw(self) -> Figure:
+        """Error against run time."""
+        from raceway.points.precision_picture import draw
+
+        return draw(self.to_dict())
+
+    def report(self) -> Iterator[Part]:
+        """A line for each setting, and what they come to in words."""
+        rows = self.table()
+        yield Words(self.title, "bold")
+        # A column of blanks would cost the settings their room.
+        yield [{name: row[name] for name in rows[0] if any(other[name] for other in rows)} for row in rows]
+        yield Words("* on the front; ~ known to the reference's bound only", "dim")
+        yield from self.words
+
+    def failure(self) -> RacewayError | None:
+        """Rows that could not be kept, a reference that is no better than they are, or no row that converged."""
+        if self.fault is not None:
+            return self.fault
+        rows = self.judged
+        errors = [row for row in rows if row["error"] is not None]
+        if self.named_reference and errors and all(row["at_bound"] for row in errors):
+            message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+            return SceneError.at("reference", None, message)
+        if self.converged:
+            return None
+        reasons = [row["reason"] for row in rows if row["reason"]]
+        why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
+        return ConvergenceError(f"no setting converged{why}")
 
 
 def _time(row: Row) -> str:
@@ -451,7 +481,9 @@ def measure_settings(
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, given)
         done += 1
-    return Precision(design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault)
+    return Precision(
+        design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault, bool(given)
+    )
 
 
 def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, Any], registry: Registry) -> Tables:
@@ -461,7 +493,7 @@ def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, 
     if given and first is not None:
         found = setting_at(first.tables, "reference", given, registry)
         if found.scene is None:
-            raise SceneError.at("--reference", None, found.reason)
+            raise SceneError.at("reference", None, found.reason)
     return given
 
 
@@ -557,5 +589,5 @@ def precision(
     if found.fault is not None:
         warnings.warn(str(found.fault), stacklevel=3)
     if folder is not None:
-        found.write(folder, pictures=False)
+        found.save(folder)
     return found

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
-import attrs
 import numpy as np
 
-from raceway.framework.options import between, option
+from raceway.out.picture import new_figure
 from raceway.out.quantities import P0, PEAK_BALL_LOAD, K
-from raceway.plugins.pictures import new_figure, save_figure
-from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -74,39 +69,6 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 _GREY = "#555f6b"
 #: Errors below are drawn here: a logarithm has no zero.
 _LEAST = 1e-16
-
-
-@attrs.frozen
-class PrecisionReport:
-    """precision.json, precision.md and precision.png."""
-
-    name: ClassVar[str] = "precision"
-
-    picture: bool = option(True, help="whether to draw precision.png")
-    dots_per_inch: int = option(100, help="resolution of the PNG file, 12.8 inch wide", rule=between(30, 1200))
-
-    def write(self, result: Tables, folder: Path) -> list[Path]:
-        """Write the files.
-
-        Parameters
-        ----------
-        result : the tables of ``raceway precision --json``
-        folder : path, made when it is missing
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the folder cannot be written.
-        """
-        folder = Path(folder)
-        text = json.dumps(result, indent=1, allow_nan=False) + "\n"
-        files = [
-            write_whole(text.encode(), folder / "precision.json"),
-            write_whole(page(result, self.picture).encode(), folder / "precision.md"),
-        ]
-        if self.picture:
-            files.append(save_figure(draw(result), folder / "precision.png", self.dots_per_inch))
-        return files
 
 
 def page(result: Tables, picture: bool = False) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -16,19 +16,29 @@ from raceway.bodies.model import build_model
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door, member
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, number
+from raceway.out.answer import Answer, Part
+from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import DIFFERENTIABLE
+from raceway.out.quantities import DIFFERENTIABLE, read_in
+from raceway.out.table import sections
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradient, Gradients, definitions, derivatives, described, values
-from raceway.pipeline.result import without_nan, write_json
+from raceway.pipeline.gradient import (
+    Gradient,
+    Gradients,
+    definitions,
+    derivatives,
+    described,
+    first_order_band,
+    tolerance_rows,
+    values,
+)
 from raceway.pipeline.simulate import OnProgress
 from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan
-from raceway.plugins.pictures import new_figure
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import as_scene
-from raceway.storage.files import write_whole
+from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -62,7 +72,7 @@ class Sensitivity:
 
 
 @attrs.frozen(eq=False, repr=False)
-class Sensitivities(Shown):
+class Sensitivities(Answer):
     """How much each number of a scene changes the answer; largest relative influence on the first quantity first.
 
     Attributes
@@ -71,6 +81,7 @@ class Sensitivities(Shown):
     without_effect : keys that change nothing;  refused : (key, why it has no derivative)
     run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these
     warnings : what to know of the answer itself
+    tolerances : the band over the scene's tolerances to first order, as result.json has it; None without tolerances
 
     Examples
     --------
@@ -79,6 +90,8 @@ class Sensitivities(Shown):
     >>> found.rows[0].key.path, len(found.rows[0].gradient.statics.displacement)
     ('bearing.conformity_inner', 5)
     """
+
+    stem: ClassVar[str] = "sensitivities"
 
     title: str
     values: dict[str, float]
@@ -90,6 +103,7 @@ class Sensitivities(Shown):
     gradients_s: float
     models: int
     warnings: tuple[str, ...] = ()
+    tolerances: Tables | None = None
 
     def __getitem__(self, path: str) -> Sensitivity:
         rows = {row.key.path: row for row in self.rows}
@@ -119,13 +133,14 @@ class Sensitivities(Shown):
                     "without_effect": [key.path for key in self.without_effect],
                     "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
                     "warnings": list(self.warnings),
+                    "tolerances": self.tolerances,
                     "cost": {"run_s": self.run_s, "gradients_s": self.gradients_s, "models": self.models},
                 }
             )
         )
 
-    def to_csv(self) -> str:
-        """A line a key: value, unit, relative influences, derivatives."""
+    def texts(self, pictures: bool) -> dict[str, str]:
+        """sensitivities.csv, a line a key: value, unit, relative influences, derivatives."""
         out, names = io.StringIO(), list(self.values)
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow(["key", "value", "unit", *(f"{n}_%_per_%" for n in names), *(f"d_{n}" for n in names), "remark"])
@@ -133,34 +148,54 @@ class Sensitivities(Shown):
             shares = [row.influence.get(name, "") for name in names]
             slopes = [row.derivatives[name] for name in names]
             writer.writerow([row.key.path, row.key.value, row.key.unit, *shares, *slopes, row.remark])
-        return out.getvalue()
+        return {"csv": out.getvalue()}
 
-    def save(self, folder: Path) -> list[Path]:
-        """Write sensitivities.json and sensitivities.csv.
+    def draw(self) -> Figure | None:
+        """Bars of relative influence."""
+        return _bars(self.to_dict()) if self.rows else None
 
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
-        table = write_json(self.to_dict(), folder / "sensitivities.json")
-        return [table, write_whole(self.to_csv().encode(), folder / "sensitivities.csv")]
+    def report(self) -> Iterator[Part]:
+        """Keys in the order of their influence; below, what has none, what has no derivative, and the cost."""
+        for name, value in self.values.items():
+            number, unit = read_in(value, DIFFERENTIABLE[name].unit)
+            yield f"{name.replace('_', ' ')} {number:.5g} {unit}: {self.definitions[name]}"
+        yield [
+            {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
+            | {f"{name.replace('_', ' ')} [% per %]": _percent(row.influence.get(name)) for name in self.values}
+            for row in self.rows
+            if row.influence
+        ]
+        if self.tolerances is not None:
+            yield sections(tolerance_rows(self.tolerances))
+        yield from (f"warning: {text}" for text in self.warnings)
+        yield f"cost: {self.gradients_s:.2g} s beside {self.run_s:.2g} s of the run, {self.models} models built"
+        if zero := [row.key.path for row in self.rows if not row.influence]:
+            yield f"0, so without a share; derivatives in the files: {', '.join(zero)}"
+        yield from _by_reason("", [(row.key, row.remark) for row in self.rows if row.remark])
+        if self.without_effect:
+            yield f"without effect: {', '.join(key.path for key in self.without_effect)}"
+        yield from _by_reason("no derivative by ", self.refused)
 
-    def picture(self, folder: Path) -> list[Path]:
-        """Draw sensitivities.png: bars of relative influence.
 
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the folder cannot be written.
-        """
-        from raceway.plugins.pictures import save_figure
+def _by_reason(head: str, keys: Iterable[tuple[Key, str]]) -> Iterator[str]:
+    """Keys of which the same is to be said, in one sentence."""
+    reasons: dict[str, list[str]] = {}
+    for key, why in keys:
+        reasons.setdefault(why, []).append(key.path)
+    return (f"{head}{', '.join(paths)}: {why}" for why, paths in reasons.items())
 
-        return [save_figure(draw(self.to_dict()), folder / "sensitivities.png", 100)]
+
+def _percent(share: float | None) -> str:
+    return "" if share is None else "0" if abs(share) < _SHOWN else f"{share:+.3g}"
 
 
 def sensitivities_of(
-    model: Model, equilibrium: Equilibrium, keys: list[Key], run_s: float = 0.0, on_progress: OnProgress | None = None
+    model: Model,
+    equilibrium: Equilibrium,
+    keys: list[Key],
+    run_s: float = 0.0,
+    on_progress: OnProgress | None = None,
+    tolerances: Iterable[str] | Mapping[str, str] = (),
 ) -> Sensitivities:
     """Of an equilibrium, and of the steady orbit about it, to keys.
 
@@ -195,8 +230,9 @@ def sensitivities_of(
     warning = "" if gradients.orbit is None else gradients.orbit.warning
     warnings = (warning,) if warning else ()
     words = definitions(model, equilibrium)
+    band = first_order_band(model, equilibrium, tolerances)
     return Sensitivities(
-        model.scene.title, now, words, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings
+        model.scene.title, now, words, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings, band
     )
 
 
@@ -223,12 +259,14 @@ def _table(row: Sensitivity) -> Tables:
     return table
 
 
+#: Influences below this part are shown as 0, files have them.
+_SHOWN = 1e-6
 _MORE, _LESS = "#0b5fa5", "#c8501e"
 #: Keys at most, and influence over the largest one below which none is drawn.
 _MOST, _LEAST = 14, 1e-3
 
 
-def draw(content: ReadTables) -> Figure:
+def _bars(content: ReadTables) -> Figure:
     """Bars of relative influence, per cent a quantity grows when a key grows by one per cent."""
     names = list(content["quantities"])
     keys = [
@@ -262,7 +300,12 @@ def _largest(key: ReadTables, names: list[str]) -> float:
 
 @door
 def sensitivities(
-    scene: Any, keys: Iterable[str] = (), *, progress: ShowProgress = None, plugins: Iterable[str | Path] = ()
+    scene: Any,
+    keys: Iterable[str] = (),
+    *,
+    tolerances: Mapping[str, str] | Iterable[str] = (),
+    progress: ShowProgress = None,
+    plugins: Iterable[str | Path] = (),
 ) -> Sensitivities:
     """Derivatives of displacement, stiffness and ball loads, and of Z, K and C of the steady orbit, by numbers of a scene.
 
@@ -270,6 +313,7 @@ def sensitivities(
     ----------
     scene : Scene, path, TOML text or dict of tables
     keys : paths such as "load.axial"; none: every continuous key of the scene
+    tolerances : key -> text, as ``raceway.band`` takes them, for the band to first order; none: the scene's table [tolerances]
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
     plugins : files of one-off plug-ins that the scene uses
 
@@ -303,7 +347,7 @@ def sensitivities(
         begun = working_processor_time()
         model = build_model(read, make_plan(read))
         equilibrium = solve_equilibrium(model)
-        found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told)
+        found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told, tolerances)
     if keys and found.refused:
         raise SceneError([Mistake(key.path, key.value, why) for key, why in found.refused])
     return found

@@ -314,9 +314,8 @@ def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
     return []
 
 
-def free_angle(scene: Scene, row: int) -> float:
-    """Free contact angle of a row that turns and is warm [rad]; 0 where nothing is left of its clearance."""
-    b, grown = scene.bearing.of_rows[row], grooves(scene, row)
+def free_angle(b: Bearing, grown: Grooves) -> float:
+    """Free contact angle of a row whose grooves have grown [rad]; 0 where nothing is left of its clearance."""
     distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
     along = (distance * cos(b.contact_angle) + grown.radial) / (distance + grown.inner + grown.outer)
     return acos(min(max(along, -1.0), 1.0))

@@ -141,11 +141,16 @@ def tolerances_of(scene: Scene, given: Iterable[str] | Mapping[str, str]) -> tup
     return tuple(found.values())
 
 
+def stated_tolerances(scene: Scene) -> dict[str, str]:
+    """The scene's own table: key -> text; empty without one."""
+    return dict(leaves(scene.source.get("tolerances", {})))
+
+
 def check_tolerances(scene: Scene) -> list[Mistake]:
     """Mistakes of the scene's own table; an absent one has none."""
     try:
         if "tolerances" in scene.source:
-            tolerances_of(scene, dict(leaves(scene.source["tolerances"])))
+            tolerances_of(scene, stated_tolerances(scene))
     except SceneError as why:
         return [
             attrs.evolve(one, path=f"tolerances.{one.path}".replace("tolerances.tolerances", "tolerances"))

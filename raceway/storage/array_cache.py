@@ -274,7 +274,7 @@ def _trim(newest: Path) -> None:
 def _warn_unwritable(place: str, why: str) -> None:
     warnings.warn(
         f"what was computed of the bodies cannot be kept in {place} ({why}); the next run computes it again. Set "
-        "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway cache --clear.",
+        "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway dev cache --clear.",
         RuntimeWarning,
         stacklevel=4,
     )

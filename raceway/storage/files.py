@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import resource
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from raceway.errors import RacewayError
 
@@ -141,3 +144,27 @@ def why_unreadable(why: OSError | ValueError) -> str:
     if isinstance(why, UnicodeDecodeError):
         return "it is not UTF-8 text"
     return getattr(why, "strerror", None) or str(why)
+
+
+def without_nan(value: Any) -> Any:
+    """The same tree with null for numbers that are not finite, and plain Python types."""
+    if isinstance(value, dict):
+        return {str(k): without_nan(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_nan(v) for v in value]
+    if hasattr(value, "item"):  # a scalar of numpy
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def write_json(content: object, path: Path) -> Path:
+    """Write JSON so that a reader sees the old file or the whole new one.
+
+    Raises
+    ------
+    RacewayError
+        Folder or disk that cannot be written.
+    """
+    return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)

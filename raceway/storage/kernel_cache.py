@@ -1,4 +1,4 @@
-"""Folder of the compiled kernels, without importing the compiler: for ``raceway.core.jit`` and ``raceway cache``.
+"""Folder of the compiled kernels, without importing the compiler: for ``raceway.core.jit`` and ``raceway dev cache``.
 
 Compiled kernels are pickles, and reading one can execute anything: a folder that someone else may write is refused.
 """
@@ -50,7 +50,7 @@ def refusal(folder: Path) -> str | None:
         if found.st_uid not in (os.geteuid(), 0):
             return f"`{place}` belongs to another user (number {found.st_uid})"
         if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-            return f"others may write in `{place}`: close it by `chmod -R go-w {place}`, after `raceway cache --clear`"
+            return f"others may write in `{place}`: close it by `chmod -R go-w {place}`, after `raceway dev cache --clear`"
         if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
             return None
     return None

@@ -14,7 +14,7 @@ Subclass a suite in a test file, and pytest collects its checks::
     class TestMyLaw(ContactLawSuite):
         plugin = MyLaw()
 
-or run all checks at once with ``check(entry)``, as ``raceway check-plugin [KIND:]NAME`` does.
+or run all checks at once with ``check(entry)``, as ``raceway dev check-plugin [KIND:]NAME`` does.
 """
 
 from __future__ import annotations

@@ -24,13 +24,14 @@ from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
 from raceway.out.quantities import K
-from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
+from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import Decisions, decide_balls, decide_motion, decide_tilts
+from raceway.planning.resolve import resolve
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.testing.integrator import FromPython, has_both
 from raceway.testing.scenes import b7206c, settled
@@ -219,15 +220,16 @@ class BodiesSuite(Suite):
     )
     def test_plan(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
+        problem = resolve(scene)
         with _nothing_built():
-            traits, limit, parts = bodies.traits(scene), bodies.stable_step(scene), Decisions()
+            traits, limit, parts = bodies.traits(scene), bodies.stable_step(problem), Decisions()
             require(isinstance(traits, Traits), f"traits() returns {type(traits).__name__}, not Traits")
             require(all(type(trait) is bool for trait in attrs.astuple(traits)), f"{traits} holds more than True and False")
             require(limit is None or 0.0 < limit < np.inf, f"stable_step() = {limit!r} is neither None nor a time [s]")
-            balls = decide_balls(scene, parts)
-            motion = decide_motion(scene, parts, decide_tilts(scene, parts), balls.friction)
+            balls = decide_balls(problem, parts)
+            motion = decide_motion(problem, parts, decide_tilts(problem, parts), balls.friction)
             decide: Callable[..., object] = bodies.decide
-            require(decide(scene, parts) is None, "decide() returns something: parts are kept or left out")
+            require(decide(problem, parts) is None, "decide() returns something: parts are kept or left out")
             for part in (*parts.kept, *parts.left_out):
                 good = all(isinstance(word, str) and word for word in (part.part, part.why))
                 require(good, f"{part} needs a name and a reason in words")
@@ -236,16 +238,16 @@ class BodiesSuite(Suite):
             require(not twice, f"{', '.join(twice)} is decided twice")
             for path, why in bodies.unused(scene):
                 require(is_key(scene, path) and why, f"unused() names `{path}`, which is no key, or gives no reason")
-            cost = bodies.cost(scene, balls, motion, parts)
+            cost = bodies.cost(problem, balls, motion, parts)
         require(isinstance(cost, Cost), f"cost() returns {type(cost).__name__}, not Cost")
         require(0.0 < cost.seconds < np.inf, f"cost().seconds = {cost.seconds} is no time")
         require(0.0 <= cost.once <= cost.seconds, f"cost().once = {cost.once} s is no part of {cost.seconds} s")
         require(cost.unknowns is None or cost.unknowns > 0, f"cost().unknowns = {cost.unknowns}")
 
-    @duty("build(scene, plan): a Bearing with a system and a first guess (5,)")
+    @duty("build(problem, plan): a Bearing with a system and a first guess (5,)")
     def test_build(self, bodies: BodiesKind) -> None:
         scene = scene_of(bodies)
-        bearing = bodies.build(scene, make_plan(scene))
+        bearing = bodies.build(resolve(scene), make_plan(scene))
         kind = type(bearing).__name__
         require(isinstance(bearing, Bearing), f"build() returns {kind}, not a raceway.bodies.model.Bearing")
         check_shape("`guess`", bearing.guess, (5,))

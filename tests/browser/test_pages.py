@@ -10,7 +10,7 @@ import pytest
 
 import raceway as rw
 from raceway.out.page import Page
-from raceway.plugins.pictures import new_figure
+from raceway.out.picture import new_figure
 from validation.browser.chromium import WIDTHS, Browser
 from validation.browser.pages import PAGES
 from validation.command_line import MINIMAL

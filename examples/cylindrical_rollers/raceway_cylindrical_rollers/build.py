@@ -22,7 +22,7 @@ from raceway_cylindrical_rollers.kind import STRIBECK
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
     from raceway.planning.plan import Plan
-    from raceway.scene.scene import Scene
+    from raceway.planning.resolve import Problem
 
 
 @attrs.frozen(eq=False)
@@ -86,50 +86,50 @@ class RollerBearing(Bearing):
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Not known."""
-        return None, f"law '{model.scene.contact.kind}' was found by experiment: what it is off by is not estimated"
+        return None, f"law '{model.problem.contact.kind}' was found by experiment: what it is off by is not estimated"
 
 
-def build(scene: Scene, plan: Plan, length: float, ring_mass: float) -> RollerBearing:
+def build(problem: Problem, plan: Plan, length: float, ring_mass: float) -> RollerBearing:
     """The bearing of a scene.
 
     Parameters
     ----------
     length : of the line contacts [m];  ring_mass : of the inner ring [kg]
     """
-    b, found = scene.bearing, make_basis(scene)
+    b, found = problem.bearing, make_basis(problem)
     # Clearance makes no contact angle here.
     basis = attrs.evolve(found, geometry=attrs.evolve(found.geometry, contact_angle=0.0))
     inner, outer = 0.5 * (b.pitch_diameter - b.ball_diameter), 0.5 * (b.pitch_diameter + b.ball_diameter)
     radii = 1.0 / (2.0 / b.ball_diameter + 1.0 / inner), 1.0 / (2.0 / b.ball_diameter - 1.0 / outer)
-    clearance, force = b.radial_clearance or 0.0, np.array(scene.load.radial)
+    clearance, force = b.radial_clearance or 0.0, np.array(problem.load.radial)
     most = max(STRIBECK * float(np.hypot(*force)) / b.ball_count, 1.0)
-    params = _law_params(scene, basis, length, radii, most)
-    state = np.zeros((2 * b.ball_count, scene.contact.law.state_size))
-    linear = linear_parts(scene, plan)
-    linear["mass"][:3, :3] = (scene.rotor.mass + ring_mass) * np.eye(3)
+    params = _law_params(problem, basis, length, radii, most)
+    state = np.zeros((2 * b.ball_count, problem.contact.law.state_size))
+    linear = linear_parts(problem, plan)
+    linear["mass"][:3, :3] = (problem.rotor.mass + ring_mass) * np.eye(3)
     system = System(
         kernel=rollers,
         base_kernel=rollers,
-        law=plugin_kernel(scene.contact.law, "contact law", LAW, "LAW"),
+        law=plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         law_params=params,
         law_state=state,
-        scalars=_scalars(scene, basis, clearance),
-        table=_table(scene, plan, basis, length),
+        scalars=_scalars(problem, basis, clearance),
+        table=_table(problem, plan, basis, length),
         **linear,
-        **excitation(scene),
-        spin=changing_speed(scene),
+        **excitation(problem),
+        spin=changing_speed(problem),
     )
-    probe_law(scene.contact.law, system.law, params, state)
-    if scene.excitation is not None:
-        probe_excitation(scene.excitation, system.force, system.force_params)
+    probe_law(problem.contact.law, system.law, params, state)
+    if problem.excitation is not None:
+        probe_excitation(problem.excitation, system.force, system.force_params)
     guess = np.zeros(5)
     guess[1:3] = (0.5 * clearance + 1e-3 * b.ball_diameter) * force / max(float(np.hypot(*force)), 1e-300)
     return RollerBearing(basis, system, guess, length, radii, clearance)
 
 
-def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, float], load: float) -> np.ndarray:
+def _law_params(problem: Problem, basis: Basis, length: float, radii: tuple[float, float], load: float) -> np.ndarray:
     """(2 Z, k): a line contact has no curvature along the roller, and no Hertz factor of an ellipse."""
-    z = scene.bearing.ball_count
+    z = problem.bearing.ball_count
     both = np.repeat(radii, z)
     pairs = ContactPairs(
         curvature_a=np.zeros(2 * z),
@@ -139,24 +139,24 @@ def _law_params(scene: Scene, basis: Basis, length: float, radii: tuple[float, f
         reference_load=np.full(2 * z, load),
         length=np.full(2 * z, length),
     )
-    return law_params(scene.contact.law, pairs)
+    return law_params(problem.contact.law, pairs)
 
 
-def _scalars(scene: Scene, basis: Basis, clearance: float) -> np.ndarray:
+def _scalars(problem: Problem, basis: Basis, clearance: float) -> np.ndarray:
     out = np.zeros(ring.SCALARS)
-    out[ring.REST_RADIAL] = scene.kinematics.radial_expansion - 0.5 * clearance
+    out[ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * clearance
     out[ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
-    out[ring.DAMPING] = scene.contact.dashpot
-    if scene.kinematics.orbiting:
-        out[ring.CAGE] = basis.geometry.cage_speed(scene.spin_speed)
+    out[ring.DAMPING] = problem.contact.dashpot
+    if problem.kinematics.orbiting:
+        out[ring.CAGE] = basis.geometry.cage_speed(problem.spin_speed)
     return out
 
 
-def _table(scene: Scene, plan: Plan, basis: Basis, length: float) -> np.ndarray:
+def _table(problem: Problem, plan: Plan, basis: Basis, length: float) -> np.ndarray:
     geometry, azimuth = basis.geometry, basis.azimuth
     table = np.zeros((len(azimuth), ring.COLUMNS))
     table[:, ring.COSINE], table[:, ring.SINE], table[:, ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0
     if plan.centrifugal:
-        mass = scene.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
-        table[:, ring.CENTRIFUGAL] = mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(scene.spin_speed) ** 2
+        mass = problem.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
+        table[:, ring.CENTRIFUGAL] = mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(problem.spin_speed) ** 2
     return table

@@ -12,9 +12,11 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.planning.cost import START_S, Times, compiled_motion
 
 if TYPE_CHECKING:
-    from raceway.bodies.model import Bearing
+    from raceway.bodies.model import Bearing as BuiltBearing
+    from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import Plan
-    from raceway.planning.resolve import Balls, Decisions, Motion
+    from raceway.planning.resolve import Problem
+    from raceway.scene.bearing import Bearing
     from raceway.scene.scene import Scene
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
@@ -93,24 +95,25 @@ class CylindricalRollers:
         """Compiled contact resultants."""
         return Traits()
 
-    def stable_step(self, scene: Scene) -> float:
+    def stable_step(self, problem: Problem) -> float:
         """Of the ring on half its rollers under Stribeck's load [s]."""
         from raceway_cylindrical_rollers.law import STEEL
 
-        count, length = scene.bearing.ball_count, self.roller_length
-        load = float(abs(complex(*scene.load.radial))) + (0.0 if scene.excitation is None else scene.excitation.amplitude_n)
+        count, length = problem.bearing.ball_count, self.roller_length
+        load = float(abs(complex(*problem.load.radial))) + (
+            0.0 if problem.excitation is None else problem.excitation.amplitude_n
+        )
         approach = 2.0 * STEEL * (STRIBECK * load / count) ** 0.9 / length**0.8
         stiffness = 0.5 * count * 10.0 / 9.0 * (STRIBECK * load / count) / approach if load > 0.0 else 1.0
-        return 2.0 / sqrt(stiffness / max(scene.rotor.mass + self.ring_mass(scene), 1e-9))
+        return 2.0 / sqrt(stiffness / max(problem.rotor.mass + self.ring_mass(problem.bearing), 1e-9))
 
-    def ring_mass(self, scene: Scene) -> float:
+    def ring_mass(self, b: Bearing) -> float:
         """Of the inner ring, a hollow cylinder [kg]; 0 where bore or width are not known."""
-        b = scene.bearing
         if b.bore is None or b.width is None:
             return 0.0
         return 0.25 * pi * ((b.pitch_diameter - b.ball_diameter) ** 2 - b.bore**2) * b.width * b.rings.density
 
-    def decide(self, scene: Scene, parts: Decisions) -> None:
+    def decide(self, problem: Problem, parts: Decisions) -> None:
         """No part of a body that deforms."""
         parts.leave_out("elastic rings and rollers", "bodies.kind is cylindrical_rollers: only line contacts deform")
 
@@ -119,12 +122,12 @@ class CylindricalRollers:
         keys = ("bearing.shoulder_height", "bearing.tilt_arm", "load.moment")
         return [(key, "cylindrical rollers have no grooves, and the ring does not tilt") for key in keys]
 
-    def cost(self, scene: Scene, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's."""
-        return Cost(START_S + compiled_motion(scene, balls, motion, _TIMES))
+        return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
-    def build(self, scene: Scene, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: Plan) -> BuiltBearing:
         """See ``raceway_cylindrical_rollers.build``."""
         from raceway_cylindrical_rollers.build import build
 
-        return build(scene, plan, self.roller_length, self.ring_mass(scene))
+        return build(problem, plan, self.roller_length, self.ring_mass(problem.bearing))

@@ -561,7 +561,7 @@ def cached_compliance(
 
     Parameters
     ----------
-    label : in `raceway cache`, for instance "inner ring of B7206C, 4 nodes per semi-axis"
+    label : in `raceway dev cache`, for instance "inner ring of B7206C, 4 nodes per semi-axis"
     """
     inputs = {
         "points": profile.points,

@@ -20,7 +20,6 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.progress import RemainingTime
 from raceway.out.quantities import C, K, Z
-from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import tables_at
@@ -29,7 +28,7 @@ from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
-from raceway.storage.files import write_whole
+from raceway.storage.files import without_nan, write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import CLAIMED, excitation_of, friction_of
 from raceway.studies.article.study import failure

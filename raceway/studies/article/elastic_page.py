@@ -15,7 +15,7 @@ from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.elastic import RACES
 from raceway.studies.article.figures import Panel, Picture, finish
-from raceway.studies.article.page import show_picture, write_tables
+from raceway.studies.article.page import percent, show_picture, shown, write_tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from raceway.studies.article.elastic import ElasticArticle
 
 #: The article's largest deviation of a peak pressure from exact Hertz, section 3.2.
-ARTICLE_DEVIATION = 0.0242
+_ARTICLE_DEVIATION = 0.0242
 #: Kind of bodies -> colour and marker.
 _LOOKS = {"elastic": ("#c8501e", "o"), "condensed": ("#0b5fa5", "s"), "rigid": ("#5b6570", "^")}
 _NAMES = {"ball_loads": "a ball load, over the largest", "x": "x", "y": "y", "kyy": "kyy", "k": "K", "abs_z": "|Z|"}
@@ -105,13 +105,13 @@ def _pressures_panel(race: str, rows: list[Tables]) -> Panel:
             axes.bar(x, most, 0.3, color=_LOOKS[row["bodies"]][0], label=_new(axes, row))
             axes.plot([x, x], [most, largest], color="#20262c", linewidth=1.2, marker="_")
         for sign in (1.0, -1.0):
-            axes.axhline(sign * 100.0 * ARTICLE_DEVIATION, color="#20262c", linewidth=0.9, linestyle="--",
+            axes.axhline(sign * 100.0 * _ARTICLE_DEVIATION, color="#20262c", linewidth=0.9, linestyle="--",
                          label="the article's largest, 2.42 %" if sign > 0.0 else None)  # fmt: skip
         finish(axes, f"{race} race", "", "deviation [%]", 3)
         axes.set_xticks(range(len(cases)), [case.replace(" + ", "\n+ ").replace(" axial", "\naxial", 1) for case in cases])
         axes.axhline(0.0, color="#20262c", linewidth=0.6)
 
-    numbers = "; ".join(f"{row['case']}, {row['bodies']} {per_cent(row['from_hertz'][race]['most_loaded'])}" for row in rows)
+    numbers = "; ".join(f"{row['case']}, {row['bodies']} {percent(row['from_hertz'][race]['most_loaded'])}" for row in rows)
     words = f"Deviation of the nodal peak pressure on the {race} race from Hertz's at the same ball load, most loaded ball: {numbers}."
     return Panel(draw, words, f"{race} race; whiskers: the largest deviation of any loaded ball")
 
@@ -165,23 +165,48 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     footer += "All numbers: article-elastic.json and article-elastic.csv beside this page."
     out = Page("The article’s own model: elastic rings and balls", content["title"], footer)
     drawn = {picture.name: picture for picture in pictures}
-    static, moving = ([row for row in content["rows"] if row["phase"] == phase] for phase in ("static", "motion"))
+    static, moving = (_of_phase(content, phase) for phase in ("static", "motion"))
     _opening(out, content)
-    _pressures(out, static)
-    _show(out, drawn, "article-elastic-pressures")
-    _at_rest(out, static, content["reference"])
-    _show(out, drawn, "article-elastic-ball-loads")
+    out.section("Peak pressures")
+    out.text(
+        "Largest nodal pressure, force over the area around a node, over Hertz’s at the load that the same ball carries, less 1: of the "
+        "most loaded ball, and the largest of any ball that carries more than 5 % of it. Rigid bodies have no points: theirs is Hertz’s."
+    )
+    caption = "Peak pressures against exact Hertz at the most loaded ball; last column: of all loaded balls"
+    out.rows(_pressure_rows(static), caption)
+    show_picture(out, drawn, "article-elastic-pressures")
+    out.section("Bodies against each other, at rest")
+    out.rows(_rows_at_rest(static, content), _AT_REST.format(**content))
+    show_picture(out, drawn, "article-elastic-ball-loads")
     _motion(out, moving, content)
-    _show(out, drawn, "article-elastic-stiffness")
+    show_picture(out, drawn, "article-elastic-stiffness")
     _stresses(out, static, section)
-    _cost(out, content["rows"])
-    _differences(out, content)
+    out.section("Cost")
+    out.rows([_cost_row(row) for row in content["rows"]], "Every run; elements of condensed bodies are none of the run")
+    words = (
+        "Runs go one at a time. What elastic bodies are factored into is stored on disk: later load cases and runs read it."
+    )
+    out.text(words, kind="note")
+    out.section("What differs between the bodies")
+    out.listing(content["what_differs"])
+    warnings = [
+        {"run": _case(row), "bodies": row["bodies"], "warning": words}
+        for row in content["rows"]
+        for words in row.get("warnings") or []
+    ]
+    out.rows(warnings, "Warnings of the runs")
     return out
 
 
-def _show(out: Page, drawn: dict[str, Picture], name: str) -> None:
-    if name in drawn:
-        show_picture(out, drawn[name])
+#: Captions of tables that page and screen have.
+_AT_REST = (
+    "Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest"
+)
+_IN_MOTION = "Identified at the operating point; K, C, |Z| without unit: differences from {reference} bodies; transient: part of |Z| by which turns differ"
+
+
+def _of_phase(content: ReadTables, phase: str) -> list[Tables]:
+    return [row for row in content["rows"] if row["phase"] == phase]
 
 
 def _opening(out: Page, content: ReadTables) -> None:
@@ -206,8 +231,8 @@ def _in_short(content: ReadTables) -> list[str]:
     largest = [table["largest"] for table in hertz if table]
     if largest:
         points.append(
-            f"Peak pressures of elastic bodies differ from Hertz at the same ball load by at most {per_cent(max(largest, key=abs))} "
-            f"(the article’s own largest: {100.0 * ARTICLE_DEVIATION:.2f} %)."
+            f"Peak pressures of elastic bodies differ from Hertz at the same ball load by at most {percent(max(largest, key=abs))} "
+            f"(the article’s own largest: {100.0 * _ARTICLE_DEVIATION:.2f} %)."
         )
     for phase, names, words in (
         ("static", ("ball_loads", "x", "y", "kyy"), "at rest (ball loads, x, y, kyy)"),
@@ -217,7 +242,7 @@ def _in_short(content: ReadTables) -> list[str]:
         parts = [(name, table[name]) for table in compared if table for name in names if table[name] is not None]
         if parts:
             name, value = max(parts, key=lambda part: abs(part[1]))
-            points.append(f"Elastic from {reference} bodies {words}: at most {per_cent(value)}, in {_NAMES[name]}.")
+            points.append(f"Elastic from {reference} bodies {words}: at most {percent(value)}, in {_NAMES[name]}.")
     balance = [row["energy_balance"] for row in elastic if row["phase"] == "motion" and row["energy_balance"] is not None]
     if balance:
         points.append(
@@ -230,25 +255,25 @@ def _in_short(content: ReadTables) -> list[str]:
     return points
 
 
-def _pressures(out: Page, rows: list[Tables]) -> None:
-    out.section("Peak pressures")
-    out.text(
-        "Largest nodal pressure, force over the area around a node, over Hertz’s at the load that the same ball carries, less 1: of the "
-        "most loaded ball, and the largest of any ball that carries more than 5 % of it. Rigid bodies have no points: theirs is Hertz’s."
-    )
+def _pressure_rows(rows: list[Tables]) -> list[Tables]:
+    """A row for each race whose contacts have points."""
     lines = []
     for row in rows:
-        for race in RACES:
-            table = (row.get("from_hertz") or {}).get(race)
+        for race, table in (row.get("from_hertz") or {}).items():
             if table is not None:
-                within = abs(table["largest"]) <= ARTICLE_DEVIATION
-                largest = Cell(
-                    per_cent(table["largest"]), "good" if within else "bad", "" if within else "beyond the article’s 2.42 %"
-                )
-                lines.append([_case(row), row["bodies"], race, f"{table['load_n']:.1f}", f"{1e-6 * table['peak_pressure_pa']:.1f}",
-                              f"{1e-6 * table['hertz_peak_pressure_pa']:.1f}", per_cent(table["most_loaded"]), largest])  # fmt: skip
-    columns = ["load", "bodies", "race", "ball load N", "peak MPa", "Hertz MPa", "off Hertz", "most off, any ball"]
-    out.table(columns, lines, "Peak pressures against exact Hertz at the most loaded ball; last column: of all loaded balls")
+                within = abs(table["largest"]) <= _ARTICLE_DEVIATION
+                tone, more = ("good", "") if within else ("bad", "beyond the article’s 2.42 %")
+                lines.append({
+                    "load": _case(row),
+                    "bodies": row["bodies"],
+                    "race": race,
+                    "ball load N": f"{table['load_n']:.1f}",
+                    "peak MPa": f"{1e-6 * table['peak_pressure_pa']:.1f}",
+                    "Hertz MPa": f"{1e-6 * table['hertz_peak_pressure_pa']:.1f}",
+                    "off Hertz": percent(table["most_loaded"]),
+                    "most off, any ball": Cell(percent(table["largest"]), tone, more),
+                })  # fmt: skip
+    return lines
 
 
 def _case(row: ReadTables) -> str:
@@ -256,17 +281,18 @@ def _case(row: ReadTables) -> str:
     return str(row["case"]).replace(" N ", "\u00a0N\u00a0")
 
 
-def _at_rest(out: Page, rows: list[Tables], reference: str) -> None:
-    out.section("Bodies against each other, at rest")
+def _rows_at_rest(rows: list[Tables], content: ReadTables) -> list[Tables]:
     lines = []
     for row in rows:
         if row["status"] == "completed":
-            displacement, differences = row["displacement"], row[f"from_{reference}"] or {}
-            x, y = (f"{1e6 * displacement[name]:.4f}".replace("-0.0000", "0.0000") for name in ("x", "y"))
-            lines.append([_case(row), row["bodies"], x, y, f"{1e-6 * row['kyy_n_per_m']:.2f}",
-                          *(per_cent(differences.get(name)) for name in ("ball_loads", "x", "y", "kyy"))])  # fmt: skip
-    columns = ["load", "bodies", "x µm", "y µm", "kyy N/µm", "ball loads", "x", "y", "kyy"]
-    out.table(columns, lines, f"Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest")  # fmt: skip
+            differences = row[f"from_{content['reference']}"] or {}
+            x, y = (f"{1e6 * row['displacement'][name]:.4f}".replace("-0.0000", "0.0000") for name in ("x", "y"))
+            lines.append({
+                "load": _case(row), "bodies": row["bodies"], "x µm": x, "y µm": y, "kyy N/µm": f"{1e-6 * row['kyy_n_per_m']:.2f}",
+                "ball loads": percent(differences.get("ball_loads")),
+                **{name: percent(differences.get(name)) for name in ("x", "y", "kyy")},
+            })  # fmt: skip
+    return lines
 
 
 def _motion(out: Page, rows: list[Tables], content: ReadTables) -> None:
@@ -284,15 +310,23 @@ def _motion(out: Page, rows: list[Tables], content: ReadTables) -> None:
             "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Take `--turns 2`.",
             kind="note",
         )
+    out.rows(_rows_in_motion(rows, content), _IN_MOTION.format(**content))
+
+
+def _rows_in_motion(rows: list[Tables], content: ReadTables) -> list[Tables]:
     lines = []
     for row in rows:
         if row["status"] == "completed":
             z, differences = row["identified"], row[f"from_{content['reference']}"] or {}
-            lines.append([_case(row), row["bodies"], f"{1e-6 * z['k']:.3f}", f"{z['c']:.0f}", f"{1e-6 * z['abs_z']:.3f}",
-                          *(per_cent(differences.get(name)) for name in ("k", "c", "wc", "abs_z")),
-                          _shown(row["energy_balance"], ".1e"), _shown(row["error"]["transient"], ".1e"), row["stability"]["status"]])  # fmt: skip
-    columns = ["force", "bodies", "K N/µm", "C N s/m", "|Z| N/µm", "K", "C", "wC over |Z|", "|Z|", "energy balance", "transient", "stability"]  # fmt: skip
-    out.table(columns, lines, f"Identified at the operating point; K, C, |Z| without unit: differences from {content['reference']} bodies; transient: part of |Z| by which turns differ")  # fmt: skip
+            lines.append({
+                "force": _case(row), "bodies": row["bodies"],
+                "K N/µm": f"{1e-6 * z['k']:.3f}", "C N s/m": f"{z['c']:.0f}", "|Z| N/µm": f"{1e-6 * z['abs_z']:.3f}",
+                "K": percent(differences.get("k")), "C": percent(differences.get("c")),
+                "wC over |Z|": percent(differences.get("wc")), "|Z|": percent(differences.get("abs_z")),
+                "energy balance": shown(row["energy_balance"], ".1e"), "transient": shown(row["error"]["transient"], ".1e"),
+                "stability": row["stability"]["status"],
+            })  # fmt: skip
+    return lines
 
 
 def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
@@ -307,11 +341,14 @@ def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
             shear, depth, off, deeper = "not resolved", "", "", ""
             if side["resolved"]:
                 shear, depth = f"{1e-6 * side['largest_shear_pa']:.1f}", f"{1e6 * side['depth_m']:.1f}"
-                off, deeper = (per_cent(side[name]) for name in ("shear_deviation", "depth_deviation"))
-            lines.append([_case(row), side["race"], side["body"], shear, f"{1e-6 * side['hertz_largest_shear_pa']:.1f}", off,
-                          depth, f"{1e6 * side['hertz_depth_m']:.1f}", deeper, f"{side['cells_to_hertz_depth']:.1f}"])  # fmt: skip
-    columns = ["load", "race", "body", "shear MPa", "Hertz MPa", "off", "depth µm", "Hertz µm", "off", "elements down to it"]
-    out.table(columns, lines, "Elastic bodies: largest shear stress and its depth")
+                off, deeper = (percent(side[name]) for name in ("shear_deviation", "depth_deviation"))
+            lines.append({
+                "load": _case(row), "race": side["race"], "body": side["body"],
+                "shear MPa": shear, "Hertz MPa": f"{1e-6 * side['hertz_largest_shear_pa']:.1f}", "shear off": off,
+                "depth µm": depth, "Hertz µm": f"{1e6 * side['hertz_depth_m']:.1f}", "depth off": deeper,
+                "elements down to it": f"{side['cells_to_hertz_depth']:.1f}",
+            })  # fmt: skip
+    out.rows(lines, "Elastic bodies: largest shear stress and its depth")
     if section is not None:
         alternative = (
             "Sections through ball and races at the most loaded contact of each race under the heaviest load: von Mises stress, largest shear "
@@ -324,40 +361,27 @@ def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
     out.text(f"No section is drawn: {why}.", kind="note")
 
 
-def _cost(out: Page, rows: list[Tables]) -> None:
-    out.section("Cost")
-    lines = []
-    for row in rows:
-        cost = row["cost"]
-        state = Cell("completed", "good") if row["status"] == "completed" else Cell(row["status"], "failed", row["reason"])
-        lines.append([_case(row), row["bodies"], _shown(cost["elements"]), *(f"{cost[name]:.1f}" for name in ("cpu_s", "compile_s", "wall_s")),
-                      gib(cost), _shown(cost["steps"]), _shown(cost["newton_iterations"]), state])  # fmt: skip
-    columns = ["run", "bodies", "elements", "CPU s", "and compiling s", "wall s", "peak GiB", "steps", "iterations", ""]
-    out.table(columns, lines, "Every run; elements of condensed bodies are none of the run")
-    words = (
-        "Runs go one at a time. What elastic bodies are factored into is stored on disk: later load cases and runs read it."
-    )
-    out.text(words, kind="note")
-
-
-def _differences(out: Page, content: ReadTables) -> None:
-    out.section("What differs between the bodies")
-    out.listing(content["what_differs"])
-    warnings = [[_case(row), row["bodies"], words] for row in content["rows"] for words in row.get("warnings") or []]
-    if warnings:
-        out.table(["run", "bodies", "warning"], warnings, "Warnings of the runs")
+def _cost_row(row: ReadTables) -> Tables:
+    cost, state = row["cost"], Cell("completed", "good")
+    if row["status"] != "completed":
+        state = Cell(row["status"], "failed", row["reason"])
+    memory = cost["peak_memory_bytes"]
+    return {
+        "run": _case(row), "bodies": row["bodies"], "elements": shown(cost["elements"]),
+        "CPU s": f"{cost['cpu_s']:.1f}", "and compiling s": f"{cost['compile_s']:.1f}", "wall s": f"{cost['wall_s']:.1f}",
+        "peak GiB": shown(None if memory is None else memory / 2**30, ".2f"),
+        "steps": shown(cost["steps"]), "iterations": shown(cost["newton_iterations"]), "": state,
+    }  # fmt: skip
 
 
 def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """Pressures, differences from condensed bodies, balance of energy and cost of every run.
+    """What the numbers say, both tables of differences from condensed bodies, failures and cost.
 
     Parameters
     ----------
     content : what ``--json`` prints;  files : what was written
     """
-    rows, cost, turns = content["rows"], content["cost"], content["turns"]
-    static = [_static_cells(row) for row in rows if row["phase"] == "static"]
-    moving = [_motion_cells(row) for row in rows if row["phase"] == "motion"]
+    rows, cost = content["rows"], content["cost"]
     lines = [
         f"{row['phase']} {row['case']}, {row['bodies']} bodies: {row['status']}: {row['reason']}"
         for row in rows
@@ -368,63 +392,10 @@ def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
     end += f"; {cost['reused']} rows taken from earlier" if cost["reused"] else ""
     return Group(
         Words(content["title"], "bold"),
-        rows_table(static, f"at rest: nodal peak pressure of the most loaded ball from Hertz's; Q (ball loads), x, y, kyy from {content['reference']} bodies"),
-        rows_table(moving, f"{content['speed_rpm']:g} r/min, {turns} turn{'s' if turns > 1 else ''} of {content['steps_per_turn']} steps; K, |Z| and w C over |Z| from {content['reference']} bodies"),
+        *map(Words, _in_short(content)),
+        rows_table(_rows_at_rest(_of_phase(content, "static"), content), _AT_REST.format(**content)),
+        rows_table(_rows_in_motion(_of_phase(content, "motion"), content), _IN_MOTION.format(**content)),
         *(Words(line, "magenta") for line in lines),
         Words(end, "dim"),
         *written(files),
-    )  # fmt: skip
-
-
-def _static_cells(row: ReadTables) -> Tables:
-    hertz, differences = row.get("from_hertz") or {}, row.get("from_condensed") or {}
-    return {
-        "load N": f"{row['axial_n']:g}" + (f" + {row['radial_n']:g}" if row["radial_n"] else ""),
-        "bodies": row["bodies"],
-        "p in %": _percent((hertz.get("inner") or {}).get("most_loaded")),
-        "p out %": _percent((hertz.get("outer") or {}).get("most_loaded")),
-        "Q %": _percent(differences.get("ball_loads")),
-        **{f"{name} %": _percent(differences.get(name)) for name in ("x", "y", "kyy")},
-        **_cost_cells(row),
-    }
-
-
-def _motion_cells(row: ReadTables) -> Tables:
-    z, differences = row.get("identified") or {}, row.get("from_condensed") or {}
-    balance = row.get("energy_balance")
-    return {
-        "force": row["case"].split()[0],
-        "bodies": row["bodies"],
-        "K N/µm": f"{1e-6 * z['k']:.2f}" if z else "-",
-        "C N s/m": f"{z['c']:.0f}" if z else "-",
-        "|Z| N/µm": f"{1e-6 * z['abs_z']:.2f}" if z else "-",
-        "K %": _percent(differences.get("k")),
-        "wC %": _percent(differences.get("wc")),
-        "|Z| %": _percent(differences.get("abs_z")),
-        "energy": "-" if balance is None else f"{balance:.1e}",
-        **_cost_cells(row),
-    }
-
-
-def _cost_cells(row: ReadTables) -> Tables:
-    return {"CPU s": f"{row['cost']['cpu_s']:.1f}", "GiB": gib(row["cost"])}
-
-
-def per_cent(part: float | None) -> str:
-    """A relative difference; a dash where there is none."""
-    return "-" if part is None else f"{_percent(part)} %"
-
-
-def _percent(part: float | None) -> str:
-    """Without the sign, which the head has."""
-    return "-" if part is None else f"{100.0 * part:+.2f}"
-
-
-def gib(cost: ReadTables) -> str:
-    """Memory at the peak of a row [GiB]."""
-    peak = cost["peak_memory_bytes"]
-    return "-" if peak is None else f"{peak / 2**30:.2f}"
-
-
-def _shown(value: float | None, form: str = "") -> str:
-    return "–" if value is None else f"{value:{form}}"
+    )

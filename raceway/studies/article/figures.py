@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import Status
-from raceway.plugins.pictures import new_figure
+from raceway.out.picture import new_figure
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import (
     AMPLITUDES,

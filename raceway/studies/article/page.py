@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,11 +16,10 @@ from rich.table import Table
 from rich.text import Text
 
 from raceway.out.page import Cell, Page
+from raceway.out.picture import save_figure
 from raceway.out.table import written
 from raceway.out.wrapping import Words
-from raceway.pipeline.result import write_json
-from raceway.plugins.pictures import save_figure
-from raceway.storage.files import write_whole
+from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, TILT_WORDS, Setting
 from raceway.studies.article.figures import Picture, drawings, named
@@ -61,7 +60,7 @@ def write_tables(
     """JSON of a study, a CSV file of each table and a PNG file of each picture."""
     files = [write_json(content, folder / f"{name}.json")]
     files += [_write_csv(rows, folder / f"{title}.csv") for title, rows in tables.items()]
-    return files + [save_figure(one.figure(), folder / f"{one.name}.png", _DOTS_PER_INCH) for one in pictures]
+    return files + [save_figure(picture.figure(), folder / f"{picture.name}.png", _DOTS_PER_INCH) for picture in pictures]
 
 
 def _write_csv(rows: Sequence[ReadTables], path: Path) -> Path:
@@ -129,7 +128,7 @@ def _opening(out: Page, content: ReadTables, load: float) -> None:
         kind="lead",
     )
     first = next(iter(content["causes"][f"{load:g}"].values()))
-    changes = ", ".join(f"{_percent(first[tilt])} ({words})" for tilt, words in TILT_WORDS.items())
+    changes = ", ".join(f"{percent(first[tilt])} ({words})" for tilt, words in TILT_WORDS.items())
     points = [
         _friction_in_short(content),
         f"Under the rotating force m e w² at {load:g} N, without friction, K changes from the lowest to the highest speed by {changes}.",
@@ -153,7 +152,7 @@ def _friction_in_short(content: ReadTables) -> str:
     if not rows:
         return f"No run with the article's friction of {content['friction']:g} came to an end: every verdict is without it."
     most = max(rows, key=lambda row: abs(row["standing"] - row["none"]))
-    changes = ", ".join(f"{_percent(most[kind])} {words}" for kind, words in FRICTION_WORDS.items())
+    changes = ", ".join(f"{percent(most[kind])} {words}" for kind, words in FRICTION_WORDS.items())
     return (
         f"Friction, {content['friction']:g} in the article, comes first: where it does most ({TILT_WORDS[most['tilt']]}, "
         f"{most['axial_n']:g} N, rotating force m e w²) K changes from the lowest to the highest speed by {changes}."
@@ -178,16 +177,16 @@ def _friction(out: Page, content: ReadTables, pictures: dict[str, Picture]) -> N
         "and the last third counts) at every other speed and axial load, with rigid bodies and ball inertia.",
     )
     rows = [
-        [f"{TILT_WORDS[row['tilt']]}, {row['axial_n']:g} N", *(_percent(row[kind]) for kind in FRICTION_WORDS)]
+        [f"{TILT_WORDS[row['tilt']]}, {row['axial_n']:g} N", *(percent(row[kind]) for kind in FRICTION_WORDS)]
         for row in content["friction_trends"]
     ]
     caption = "Change of K from the lowest to the highest speed, k*(1) − 1, rotating force m e w²"
     out.table(["", *FRICTION_WORDS.values()], rows, caption)
-    show_picture(out, pictures["friction"])
+    show_picture(out, pictures, "friction")
 
 
 def _swaps(out: Page, content: ReadTables, load: float) -> None:
-    rows = [[name, *map(_percent, changes.values())] for name, changes in content["causes"][f"{load:g}"].items()]
+    rows = [[name, *map(percent, changes.values())] for name, changes in content["causes"][f"{load:g}"].items()]
     caption = f"Change of K from the lowest to the highest speed, k*(1) − 1, at {load:g} N"
     out.table(["one choice swapped at a time", *TILT_WORDS.values()], rows, caption)
 
@@ -195,9 +194,10 @@ def _swaps(out: Page, content: ReadTables, load: float) -> None:
 def _verdicts(out: Page, content: ReadTables) -> None:
     out.section("Verdicts")
     badges = [Cell(verdict["kind"], _KINDS[verdict["kind"]][0], verdict["region"]) for verdict in content["verdicts"]]
-    rows = [[one["number"], one["claim"], badge] for one, badge in zip(content["verdicts"], badges, strict=True)]
+    judged = list(zip(content["verdicts"], badges, strict=True))
+    rows = [[verdict["number"], verdict["claim"], badge] for verdict, badge in judged]
     out.table(["", "claim", "verdict"], rows, "The article’s claims; how each was decided stands below")
-    for verdict, badge in zip(content["verdicts"], badges, strict=True):
+    for verdict, badge in judged:
         parts = [("Rule", verdict["rule"]), ("Computed", verdict["computed"])]
         if verdict["failed"]:
             parts.append(("Failed", f"runs failed or have no stable motion: {verdict['failed']}"))
@@ -245,21 +245,22 @@ def _figures(out: Page, content: ReadTables, pictures: dict[str, Picture], load:
         for heading, names in _FIGURES.items():
             out.section(heading if kind == bodies[0] else f"{heading}, {kind} bodies")
             for name in names:
-                show_picture(out, pictures[named(name, bodies, kind)])
+                show_picture(out, pictures, named(name, bodies, kind))
     out.section("What causes the trend")
     out.text("One choice is swapped at a time; everything else stays.")
     for axial in dict.fromkeys((loads[0], load, loads[-1])):
         _swaps(out, content, axial)
-    show_picture(out, pictures["tilt-stiffness"])
+    show_picture(out, pictures, "tilt-stiffness")
     if "bodies" in pictures:
         out.section("Rigid and condensed bodies")
-        show_picture(out, pictures["bodies"])
+        show_picture(out, pictures, "bodies")
 
 
-def show_picture(out: Page, picture: Picture) -> None:
-    """A picture's panels, each by itself."""
-    out.heading(picture.title)
-    out.figures([(panel.figure(), panel.alternative, panel.caption) for panel in picture.panels])
+def show_picture(out: Page, pictures: Mapping[str, Picture], name: str) -> None:
+    """A picture's panels, each by itself, if it was drawn."""
+    if name in pictures:
+        out.heading(pictures[name].title)
+        out.figures([(panel.figure(), panel.alternative, panel.caption) for panel in pictures[name].panels])
 
 
 def _static(out: Page, content: ReadTables) -> None:
@@ -270,8 +271,8 @@ def _static(out: Page, content: ReadTables) -> None:
         "that span its range. The bearing is the article’s, whatever scene the study is given."
     )
     rows = [
-        [row["quantity"], *(_shown(row[name], "{:.5g}") for name in ("reference", "computed")),
-         *(_shown(row[name], "{:.2f} %", 100.0) for name in ("error", "tolerance")), _outcome(row["ok"], row["note"])]
+        [row["quantity"], *(shown(row[name], ".5g") for name in ("reference", "computed")),
+         *(shown(row[name], ".2%") for name in ("error", "tolerance")), _outcome(row["ok"], row["note"])]
         for row in content["static"]
     ]  # fmt: skip
     out.table(["quantity", "exact Hertz", "computed", "deviation", "at most", ""], rows)
@@ -292,8 +293,8 @@ def _trends(out: Page, content: ReadTables) -> None:
         computed = trend["computed"] or (None,) * len(trend["expected"])
         printed = [f"{first:.4g}", *(f"{ratio:.3f}" for ratio in ratios)]
         rows.append([f"tilt {trend['tilt']}, {trend['load']:g} N, {balls}", "expected", *printed, "", ""])
-        off, outcome = _shown(trend["off_in_last_digits"], "{:.2g}"), _outcome(trend["holds"], trend["why"])
-        rows.append(["", "computed", *(_shown(value, "{:.5g}") for value in computed), off, outcome])
+        off, outcome = shown(trend["off_in_last_digits"], ".2g"), _outcome(trend["holds"], trend["why"])
+        rows.append(["", "computed", *(shown(value, ".5g") for value in computed), off, outcome])
     out.table(columns, rows)
 
 
@@ -338,8 +339,9 @@ def _outcome(holds: bool, why: str) -> Cell:
     return Cell("holds", "good") if holds else Cell("does not hold", "bad")
 
 
-def _shown(value: float | None, form: str, scale: float = 1.0) -> str:
-    return "–" if value is None else form.format(scale * value)
+def shown(value: float | None, form: str = "") -> str:
+    """A number; a dash where there is none."""
+    return "–" if value is None else f"{value:{form}}"
 
 
 def _round(value: float) -> str:
@@ -347,5 +349,6 @@ def _round(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u202f")
 
 
-def _percent(change: float | str) -> str:
-    return change if isinstance(change, str) else f"{100.0 * change:+.2f}\u202f%".replace("-", "−")
+def percent(change: float | str | None) -> str:
+    """A relative change with its sign; words instead of it as they are, a dash where there is none."""
+    return f"{100.0 * change:+.2f}\u202f%".replace("-", "−") if isinstance(change, float) else change or "–"

@@ -22,7 +22,6 @@ import numpy as np
 from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import K
-from raceway.pipeline.result import without_nan
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
@@ -30,6 +29,7 @@ from raceway.points.engine import Item, local, processor_time, without_mesh, wor
 from raceway.points.store import RowStore, program_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
+from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.claims import verdicts
 from raceway.studies.article.design import (

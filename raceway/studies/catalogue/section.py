@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.errors import MeshError, SceneError
-from raceway.plugins.pictures import new_figure, save_figure
+from raceway.out.picture import new_figure, save_figure
 from raceway.scene.bearing import Bearing
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number, number_within
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import read_in
-from raceway.pipeline.result import without_nan, write_json
 from raceway.scene.inputs import SceneSource, as_scene
+from raceway.storage.files import without_nan, write_json
 from raceway.storage.tables import Tables
 from raceway.studies.fit.column_headers import quantity_of
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
@@ -182,7 +182,7 @@ class Fitted(Shown):
         RacewayError
             matplotlib is missing, or the folder cannot be written.
         """
-        from raceway.plugins.pictures import save_figure
+        from raceway.out.picture import save_figure
         from raceway.studies.fit.picture import draw
 
         return save_figure(draw(self.to_dict()), folder / "fit.png", 110)

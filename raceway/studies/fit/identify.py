@@ -15,14 +15,13 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, number
+from raceway.out.picture import given_axes, save_figure
 from raceway.out.progress import ShowProgress, telling
-from raceway.pipeline.result import without_nan, write_json
 from raceway.plugins.labelled import labelled_dataset
-from raceway.plugins.pictures import given_axes, save_figure
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.tables import Rig
-from raceway.storage.files import writable
+from raceway.storage.files import without_nan, writable, write_json
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fit import interval
@@ -349,7 +348,7 @@ def identify(
     >>> angle = 2.0 * np.pi * 200.0 * (time := np.arange(0.0, 0.1, 5e-5))
     >>> orbit = {"time_s": time, "y_um": 15.0 * np.cos(angle), "z_um": 15.0 * np.sin(angle), "speed_rpm": 12000.0 + 0.0 * time}
     >>> rig = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "integrator": {"kind": "quasi_static"}}
-    >>> rig["rig"] = {}  # a shaft of 426 mm with a disc, see ``raceway schema``
+    >>> rig["rig"] = {}  # a shaft of 426 mm with a disc, see ``raceway dev schema``
     >>> bearing = rw.identify(orbit, rig)
     >>> round(1e-6 * bearing.equivalent_stiffness)  # K [N/um]
     84

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from raceway.out.picture import new_figure
 from raceway.out.quantities import read_in
-from raceway.plugins.pictures import new_figure
 from raceway.storage.tables import ReadTables
 from raceway.studies.fit.identify import Identified
 

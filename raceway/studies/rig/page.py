@@ -29,13 +29,11 @@ from raceway.cli.frame import (
 )
 from raceway.framework.registry import registry_with
 from raceway.out.page import Page
-from raceway.out.quantities import K_ERROR, K
+from raceway.out.picture import new_figure, save_figure
 from raceway.out.table import rows_table, written
 from raceway.out.wrapping import Words
-from raceway.pipeline.result import write_json
-from raceway.plugins.pictures import new_figure, save_figure
 from raceway.scene.reading import rig_of
-from raceway.storage.files import writable
+from raceway.storage.files import writable, write_json
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.picture import figures
 
@@ -93,12 +91,12 @@ def rig(
         content, files = result.to_dict(), list[str]()
         failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or result.fault
         if pictures and failed is None:
-            failed = attempt(lambda: write_page(result, folder), files)
+            failed = attempt(lambda: _write_page(result, folder), files)
         if signals and failed is None:
             records = list[str]()
             failed = attempt(lambda: result.write_signals(folder), records)
             files += [f"{len(records)} records, signals-*.csv and slow-roll-*.csv"] if records else []
-    show(content, as_json, failed, lambda: rig_screen(content, files))
+    show(content, as_json, failed, lambda: _rig_screen(content, files))
     return 1 if result.failed else 0
 
 
@@ -160,22 +158,15 @@ def causes(study: RigStudy) -> Figure:
 _SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
 
 
-def rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """A row for each speed and load: the true bearing, the article's procedure, the beam inverted."""
+def _rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
+    """A row for each speed and load: the true bearing, the beam inverted, the article's procedure."""
     worst, rows = content["worst"], []
     for row in content["rows"]:
-        true, identified = row["true"], row["identified"]
         ratios = {reading["correction"]: reading["over_true"] for reading in row["printed"]}
-        rows.append({
-            "r/min": f"{row['speed_rpm']:.0f}",
-            "axial N": f"{row['axial_n']:.0f}",
-            "x µm": f"{1e6 * true['deflection_m']:.2f}",
-            "sensor µm": f"{1e6 * true['sensor_m']:.2f}",
-            f"{K.symbol} {K.read_unit}": f"{K.read(true[K.name]):.2f}",
-            **{words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()},
-            "found %": f"{100 * identified['error']:+.3f}",
-            "+- %": f"{100 * identified['relative_uncertainty']:.2f}",
-        })  # fmt: skip
+        cells = {
+            name: cell for name, cell in _point_row(row).items() if name not in ("force N", "over m e w²/2", "sensor µm")
+        }
+        rows.append(cells | {words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()})
     causes = [
         {"cause": cause["kind"], "what": cause["what"], "error %": f"{100 * cause['error']:+.3g}"}
         for cause in content["worst_by_cause"]
@@ -186,7 +177,7 @@ def rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
         Words(f"first critical speed {speeds}", "dim"),
         rows_table(rows),
         Words(
-            "x: the bearing's own motion; printed, derived: K by such a correction over the true K; found: by the inverted beam"
+            "bearing: its own motion; identified: by the inverted beam, ± at 95 %; printed, derived: K by such a correction over the true K"
         ),
         Words(
             f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
@@ -201,7 +192,7 @@ def _failed(point: ReadTables) -> str:
     return f"{point['speed_rpm']:.0f} r/min, {point['axial_n']:.0f} N: {point['reason']}"
 
 
-def write_page(study: RigStudy, folder: Path) -> list[Path]:
+def _write_page(study: RigStudy, folder: Path) -> list[Path]:
     """rig.html and its figures as PNG.
 
     Raises
@@ -243,8 +234,9 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         f"{1e6 * signals.run_out:g} µm of run-out, less what a slow roll shows.",
         kind="lead",
     )
-    columns = ["point", "force [N]", "over m e w²/2", "bearing [µm]", "sensor [µm]", "true K [N/µm]", "identified", "uncertainty", "off [%]"]  # fmt: skip
-    out.table(columns, map(_truth, rows), "The tested bearing in the rig, and K as it is identified; uncertainty at 95 %")
+    out.rows(
+        list(map(_point_row, rows)), "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
+    )
     alternative = "K over speed for each axial load, true and by each procedure"
     out.figures([(drawn["procedures"], alternative, "K by each procedure")])
     for point in study.failed:
@@ -286,13 +278,20 @@ def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str
     out.table(["cause", *map(_name, rows)], lines, "Error of K [%] by one cause at a time")
 
 
-def _name(row: Tables) -> str:
+def _name(row: ReadTables) -> str:
     return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
 
 
-def _truth(row: Tables) -> list[str]:
-    true = row["true"]
-    values = [true["force_n"], true["force_over_half_unbalance"], 1e6 * true["deflection_m"], 1e6 * true["sensor_m"]]
-    k = [true[K.name], K.of(row["identified"]), K_ERROR.of(row["identified"])]
-    cells = [f"{value:.4g}" for value in values] + [f"{1e-6 * value:.3f}" for value in k]
-    return [_name(row), *cells, f"{100 * row['identified']['error']:.3f}"]
+def _point_row(row: ReadTables) -> Tables:
+    true, identified = row["true"], row["identified"]["identification"]
+    return {
+        "point": _name(row),
+        "force N": f"{true['force_n']:.4g}",
+        "over m e w²/2": f"{true['force_over_half_unbalance']:.4g}",
+        "bearing µm": f"{1e6 * true['deflection_m']:.4g}",
+        "sensor µm": f"{1e6 * true['sensor_m']:.4g}",
+        "true K N/µm": f"{1e-6 * true['equivalent_stiffness']:.3f}",
+        "identified": f"{1e-6 * identified['equivalent_stiffness']:.3f}",
+        "±": f"{1e-6 * identified['equivalent_stiffness_error']:.3f}",
+        "off %": f"{100 * row['identified']['error']:.3f}",
+    }

@@ -12,11 +12,11 @@ import attrs
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
 from raceway.framework.registry import Registry
 from raceway.out.quantities import K_ERROR, C, K
-from raceway.pipeline.result import without_nan
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Rig
+from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.studies.fit.identify import Identified, identify_recording
 from raceway.studies.fit.shaft_angle import rotation_of

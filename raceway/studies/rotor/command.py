@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.cli.console import warn
-from raceway.cli.frame import PATH, attempt, common, show
+from raceway.cli.frame import PATH, at_option, attempt, common, show
 from raceway.errors import SceneError
-from raceway.points.commands import at_option, store_argument
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help="Write a sweep's coefficients for a rotor program.")
-@store_argument
+@click.argument("store", type=PATH)
 @click.option("--ross", type=PATH, metavar="FILE", help="A .toml or .json that ross.BearingElement.load reads.")
 @click.option("--nastran", type=PATH, metavar="FILE", help="Bulk data: CBUSH, PBUSH, PBUSHT, TABLED1.")
 @click.option("--ansys", type=PATH, metavar="FILE", help="APDL commands: COMBI214 with tables over OMEGS.")

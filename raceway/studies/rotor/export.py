@@ -16,11 +16,10 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
+from raceway.out.picture import given_axes
 from raceway.plugins.labelled import labelled_dataset
-from raceway.plugins.pictures import given_axes
 from raceway.points.axes import numbers_at
-from raceway.points.commands import head
-from raceway.points.plot import parse_at, select
+from raceway.points.plot import head, parse_at, select
 from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.scene.inputs import tidy

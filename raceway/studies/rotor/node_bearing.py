@@ -141,7 +141,7 @@ class NodeBearing:
         q[shared] += displacement[shared]
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
         for _ in range(_MOST):
-            contacts = evaluate_following(model.scene, system, q, equilibrium.ball)
+            contacts = evaluate_following(model.problem, system, q, equilibrium.ball)
             residual, tangent = contacts.force + system.stiffness @ q - system.load, contacts.stiffness + system.stiffness
             if not inside or np.abs((residual / size)[inside]).max() <= _TOLERANCE * np.abs(contacts.contact_force).max():
                 break

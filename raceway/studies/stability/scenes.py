@@ -23,7 +23,7 @@ from raceway.core.time.schemes import integrate
 from raceway.elastic.ring import at_rest
 from raceway.errors import RacewayError, SceneError
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.cost import series_factor
+from raceway.planning.resolve import resolve, series_factor
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import COARSE, STATIC, transient
 from raceway.studies.stability.study import FAILED, Limit, Measured, Rows, short
@@ -159,7 +159,7 @@ def _too_stiff(rows: Rows, bench: Bench) -> bool:
         if _TOO_STIFF not in str(error):
             raise
         rigid = bench.changed({"bodies.kind": "rigid"}).model()
-        allowed = stiffer_than_hertz(rigid, make_basis(rigid.scene).ball_load)
+        allowed = stiffer_than_hertz(rigid, make_basis(rigid.problem).ball_load)
         why = "the law's own slope at the ball's load, or five times it, is above Hertz's; elastic bodies leave that no room"
         row = rows.refused(_TOO_STIFF, why, partial(_raise, error))
         if not allowed:
@@ -175,9 +175,9 @@ def _raise(error: RacewayError) -> None:
 def hertz_factor(rows: Rows, bench: Bench) -> None:
     """Hertz' contacts of a bearing, which laws are calibrated by, against a closed form."""
     scene = bench.scene
-    basis = make_basis(scene)
+    basis = make_basis(resolve(scene))
     softness = float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0))
-    near, words = series_factor(scene) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
+    near, words = series_factor(scene.bearing) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
     why = "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)"
     rows.check(words, softness, why, Limit.equal(near, 0.05))
 

@@ -196,7 +196,7 @@ def _at_load(model: Model, load: float, angle: float) -> tuple[np.ndarray | None
     if not renews(law):
         return None, np.zeros(2 * z)
     angles = np.full(z, angle)
-    pairs = running_pairs(model.scene, model.basis, np.full(2 * z, load), (angles, angles))
+    pairs = running_pairs(model.problem, model.basis, np.full(2 * z, load), (angles, angles))
     return law_params(law, pairs), reach_of(law, pairs)
 
 

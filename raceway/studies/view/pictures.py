@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from raceway.errors import RacewayError, extra
-from raceway.plugins.pictures import new_figure
+from raceway.out.picture import new_figure
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
 from raceway.studies.view.bodies import INNER, OUTER, Bearing, Part, State

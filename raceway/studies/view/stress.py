@@ -14,8 +14,8 @@ from raceway.bodies.elastic_stress import BelowContact, below_contacts
 from raceway.core.contact.hertz import axis_shear, axis_stresses
 from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
 from raceway.elastic.stress import cells_near
+from raceway.out.picture import figure_png, new_figure
 from raceway.pipeline.equilibrium import pressures
-from raceway.plugins.pictures import figure_png, new_figure
 from raceway.studies.view.pictures import INK, Grid, Plotter, look_from, pyvista_of, quietly, rendered
 
 if TYPE_CHECKING:

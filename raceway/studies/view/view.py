@@ -18,13 +18,14 @@ from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, Shown, largest_facts, race_words
+from raceway.out.picture import figure_png, given_axes
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K, X
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
-from raceway.plugins.pictures import figure_png, given_axes, picture
+from raceway.plugins.pictures import picture
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.scene.inputs import as_scene
 from raceway.storage.files import writable, write_whole

@@ -1,0 +1,255 @@
+"""A command from a public function: arguments, options and help come from its signature and its docstring.
+
+A front takes plain values and returns an ``Answer``, which is saved, shown and drawn the same way for all.  Names of arguments have one meaning:
+``scene`` is a file that --set changes, ``kept`` the file of finished rows in the folder of --out, ``progress`` a bar, ``plugins`` files.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import attrs
+import click
+
+from raceway.cli.console import warn
+from raceway.cli.frame import (
+    PATH,
+    RESULTS,
+    attempt,
+    changed_tables,
+    common,
+    has_matplotlib,
+    load,
+    out_option,
+    plugin_files,
+    set_keys,
+    show,
+    show_progress,
+    slug,
+    tell_faults,
+)
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import Registry, registry_with
+from raceway.out.answer import Answer, Interrupted
+from raceway.storage.files import writable
+
+Value = Any
+#: Types of options by annotation; of others, texts.
+_TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": PATH}
+#: Arguments that no option stands for.
+_SHARED = ("scene", "changes", "plugins", "progress", "kept", "out", "registry")
+
+
+class Option(NamedTuple):
+    """What a command line says otherwise than the signature.
+
+    Attributes
+    ----------
+    flag : without the dashes
+    metavar : of the value;  help, default : instead of the docstring's and the signature's
+    choices : values that are taken;  positional : an argument
+    """
+
+    flag: str = ""
+    metavar: str | None = None
+    help: str = ""
+    choices: tuple[str, ...] = ()
+    default: object = None
+    positional: bool = False
+
+
+@attrs.frozen
+class Command:
+    """A line of the table of commands.
+
+    Attributes
+    ----------
+    front : "module:function"
+    summary : for the list of commands;  example : command lines
+    options : name of an argument -> what the command line says otherwise;  None: the command line does not have it
+    folder : what follows the scene's title in the name of the default folder; None: nothing is written without --out
+    unchecked : the scene is not read before the front has changed it
+    """
+
+    name: str
+    front: str
+    summary: str
+    example: str
+    options: Mapping[str, Option | None] = attrs.field(factory=dict)
+    folder: str | None = ""
+    unchecked: bool = False
+    pictures: bool = True
+
+    def click(self) -> click.Command:
+        """The command, with the module of its front imported."""
+        module, _, name = self.front.partition(":")
+        front = getattr(import_module(module), name)
+        signature, words = inspect.signature(front), _parameters(front)
+        params = [
+            p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
+        ]
+
+        def call(**values: Value) -> int:
+            return _perform(self, front, values)
+
+        help_text = f"{_summary(front)}\n\n\b\nExample:\n" + "\n".join(f"  {line}" for line in self.example.splitlines())
+        command: Callable[..., Value] = common(call)
+        if "plugins" in signature.parameters:
+            command = plugin_files(command)
+        if self.pictures:
+            command = click.option("--pictures/--no-pictures", default=True, help="Draw the picture as PNG (default).")(
+                command
+            )
+        if self.pictures or self.folder is not None:
+            default = f"{RESULTS}/TITLE{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
+            command = out_option("nothing is written" if self.folder is None else default)(command)
+        for parameter in reversed(params):
+            command = self._option(parameter, words.get(parameter.name, ""))(command)
+        if "scene" in signature.parameters:
+            required = signature.parameters["scene"].default is inspect.Parameter.empty
+            command = set_keys(click.argument("scene", type=PATH, required=required)(command))
+        for parameter in reversed(params):
+            if self._about(parameter).positional:
+                command = _argument(parameter)(command)
+        return click.command(self.name, short_help=self.summary, help=help_text)(command)
+
+    def _about(self, parameter: inspect.Parameter) -> Option:
+        return self.options.get(parameter.name) or Option()
+
+    def _option(self, parameter: inspect.Parameter, words: str) -> Callable[[Value], Value]:
+        about, kind = self._about(parameter), str(parameter.annotation)
+        default = parameter.default if about.default is None else about.default
+        if about.positional:
+            return lambda command: command
+        flags = (f"--{about.flag or parameter.name.replace('_', '-')}", parameter.name)
+        text = about.help or _option_help(words)
+        if kind == "bool":
+            return click.option(*flags, is_flag=True, help=text)
+        if "Iterable[" in kind:
+            return click.option(
+                *flags, multiple=True, metavar=about.metavar, help=f"{text.removesuffix('.')}; repeat for more."
+            )
+        empty = default is inspect.Parameter.empty
+        return click.option(
+            *flags,
+            type=click.Choice(about.choices) if about.choices else _TYPES.get(kind.removesuffix(" | None"), str),
+            metavar=about.metavar,
+            required=empty,
+            default=None if empty else default,
+            show_default=not empty and default is not None,
+            help=text,
+        )
+
+
+def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
+    required = parameter.default is inspect.Parameter.empty
+    kind = PATH if "Path" in str(parameter.annotation) else None
+    return click.argument(parameter.name, type=kind, required=required, default=None if required else parameter.default)
+
+
+def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
+    """Read the scene, call the front, write and show its answer."""
+    arguments = dict(values)
+    as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
+    out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())
+    registry, known, title = registry_with(plugins), inspect.signature(front).parameters, ""
+    changed_by_front = "changes" in known and known["scene"].default is None
+    if arguments.get("scene") is not None and not changed_by_front:
+        arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
+    elif changes and not changed_by_front:
+        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    folder = (
+        out
+        if out is not None or about.folder is None
+        else RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
+    )
+    if folder is not None:
+        writable(folder)
+        pictures = pictures and has_matplotlib()
+    tell_faults(registry)
+    rows = None if folder is None or "kept" not in known else folder / f"{about.name}-rows.jsonl"
+    shared = {"plugins": plugins, "kept": rows, "registry": registry}
+    arguments |= {name: value for name, value in shared.items() if name in known}
+    stopped = None
+    with _resumable(rows):
+        with show_progress() as progress:
+            if "progress" in known:
+                arguments["progress"] = progress
+            try:
+                first = (
+                    [arguments.pop(name) for name in list(known)[: list(known).index("changes")]] if changed_by_front else []
+                )
+                answer: Answer = front(*first, *(changes if changed_by_front else ()), **arguments)
+            except SceneError as error:
+                raise _by_flags(about, error) or error from None
+            except Interrupted as stop:
+                if stop.partial is None:
+                    raise
+                answer, stopped = stop.partial, stop  # what is finished is written and shown first
+        content, files = answer.to_dict(), list[str]()
+        failed = None if folder is None else attempt(lambda: answer.save(folder, pictures and stopped is None), files)
+        show(content, as_json, failed or _by_flags(about, answer.failure()), lambda: answer.screen(files))
+        if stopped is not None:
+            raise stopped
+    return 0 if answer.passed else 1
+
+
+def _scene(about: Command, path: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Value, str]:
+    """The scene, or its tables where the front changes them before they make one; its title."""
+    if not about.unchecked:
+        scene = load(path, changes, registry)
+        return scene, scene.title
+    tables, mistakes = changed_tables(path, changes, registry)
+    if mistakes:
+        raise SceneError(mistakes)
+    return tables, str(tables["title"])
+
+
+@contextmanager
+def _resumable(rows: Path | None) -> Iterator[None]:
+    """Say where a study goes on that is stopped meanwhile, if anything was finished."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if rows is not None and rows.is_file():
+            warn(f"what is finished is in {rows}; the same command goes on from there", label="")
+        raise
+
+
+def _by_flags(about: Command, error: RacewayError | None) -> RacewayError | None:
+    """Mistakes in arguments of the front under the names that the command line has for them."""
+    if not isinstance(error, SceneError):
+        return error
+    flags = {name: f"--{option.flag or name}" for name, option in about.options.items() if option and not option.positional}
+    return SceneError([attrs.evolve(m, path=flags.get(str(m.path), m.path)) for m in error.mistakes])
+
+
+def _sections(front: Callable[..., Value]) -> tuple[str, str]:
+    """What stands before the parameters, and these, of a docstring in numpydoc's form."""
+    before, _, after = (inspect.getdoc(front) or "").partition("\nParameters\n----------\n")
+    return before, re.split(r"\n\n\w+\n-+\n", after)[0]
+
+
+def _summary(front: Callable[..., Value]) -> str:
+    before, _ = _sections(front)
+    return before.split("\n\nReturns\n", 1)[0].replace("``", "").strip()
+
+
+def _parameters(front: Callable[..., Value]) -> dict[str, str]:
+    """Argument -> its words; several arguments of one line are parted by ``;  ``."""
+    lines = re.sub(r"\n\s+", " ", _sections(front)[1])
+    entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
+    parted = (entry.partition(" : ") for entry in entries)
+    return {name.strip(): words.strip() for names, _, words in parted for name in names.split(",")}
+
+
+def _option_help(words: str) -> str:
+    """A sentence for an option: "n; None: the usual" becomes "N [the usual]."."""
+    text = re.sub(r"; (?:None|none): (.+)$", r" [\1]", words.replace("``", ""))
+    return f"{text[:1].upper()}{text[1:]}." if text else ""

@@ -1,0 +1,147 @@
+"""The table of commands, by what they are for.  A front's module is imported when its command is asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import attrs
+import click
+
+from raceway.cli.command import Command, Option
+
+
+@attrs.frozen
+class Later:
+    """A command that computes no answer: the click command at "module:name"."""
+
+    name: str
+    place: str
+    summary: str
+
+    def click(self) -> click.Command:
+        module, _, name = self.place.partition(":")
+        command: click.Command = getattr(import_module(module), name)
+        return command
+
+
+_VARY = Option(
+    metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count of a key, all combinations of which are run."
+)
+
+ANSWERS = (
+    Later("run", "raceway.cli.run:run", "Compute one scene."),
+    Later("plan", "raceway.cli.run:plan", "Is a scene right, what would be built, and what not."),
+    Command(
+        "compare",
+        "raceway.points.compare:compare",
+        "One scene, some keys varied, everything else the same.",
+        "raceway compare examples/b7206.toml --set integrator.kind=periodic \\\n"
+        "    --vary excitation.kind=unidirectional,bidirectional \\\n"
+        "    --vary excitation.speed_rpm=10980:15000:5",
+        {"vary": _VARY},
+        folder="-compare",
+        unchecked=True,
+    ),
+    Later("sweep", "raceway.cli.sweep:sweep", "One scene at thousands of points, kept in a store; parallel, resumable."),
+    Command(
+        "follow",
+        "raceway.points.follow:follow",
+        "K as a curve over speed or any continuous key: folds, stability, special points.",
+        "raceway follow examples/b7206.toml --over excitation.speed_rpm=500:30000\n"
+        "raceway follow examples/b7206.toml --over load.axial=2000:100 \\\n"
+        "    --set supports.tilt=free",
+        {
+            "over": Option(metavar="A.B=FIRST:LAST", help="Continuous key that the steady orbit is followed over."),
+            "aim": Option(metavar="PART"),
+            "turns": Option(metavar="N"),
+        },
+        folder="-follow",
+        unchecked=True,
+    ),
+    Command(
+        "band",
+        "raceway.points.band:uncertainty",
+        "How much tolerances and numbers of a scene change the answer.",
+        "raceway band examples/b7206.toml --by bearing.contact_angle_deg\n"
+        'raceway band examples/minimal.toml --tolerance load.axial="±10 %" \\\n'
+        '    --tolerance bearing.contact_angle_deg="±1 deg" --samples 512',
+        {
+            "tolerances": Option(
+                "tolerance",
+                "A.B=TEXT",
+                "'±10 %', '±1 deg', '+2 µm -1 µm', class=P4, balls=G5 [the scene's tolerances]",
+            ),
+            "keys": Option("by", "A.B", "Derivatives by this key only [every number of the scene]"),
+            "samples": Option(metavar="N"),
+            "processes": Option(default=2),
+        },
+        folder="-band",
+    ),
+    Later(
+        "fit", "raceway.studies.fit.command:fit", "Numbers of a scene, or K and C of a rig's bearing, from measured data."
+    ),
+    Later(
+        "catalogue", "raceway.studies.catalogue.command:catalogue", "List, search and draw the bearings of the catalogue."
+    ),
+    Later(
+        "infer",
+        "raceway.studies.catalogue.infer_command:infer",
+        "Balls and grooves of a bearing from what its maker prints.",
+    ),
+    Later("view", "raceway.studies.view.command:view", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
+    Later("mesh", "raceway.studies.view.mesh:mesh", "Mesh the bodies of a scene: counts, quality, files."),
+    Later("export", "raceway.studies.rotor.command:export", "Write a sweep's coefficients for a rotor program."),
+)
+TRUST = (
+    Command(
+        "precision",
+        "raceway.points.precision:precision",
+        "Error against run time: which setting is good enough.",
+        "raceway precision examples/b7206.toml \\\n"
+        "    --vary integrator.kind=newmark,central_difference \\\n"
+        "    --vary integrator.steps_per_turn=45,90,180,360",
+        {
+            "vary": Option(metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design"),
+            "reference": Option(metavar="A.B=C", help="Key of the reference; found by itself without"),
+            "limit_s": Option("limit", "SECONDS", "Leave out what is predicted to take longer."),
+        },
+        folder="-precision",
+        unchecked=True,
+    ),
+    Later("stability", "raceway.studies.stability.command:stability", "Stiff and extreme cases: what must hold, holds."),
+    Later("verify", "raceway.studies.verify.command:verify", "Compute the reference cases."),
+)
+DEVELOPERS = (
+    Later("new-plugin", "raceway.cli.plugins:new_plugin", "Write a package for a new plug-in."),
+    Later("check-plugin", "raceway.cli.plugins:check_plugin", "Does a plug-in keep its contract?"),
+    Command(
+        "law",
+        "raceway.points.law:law",
+        "What a contact law does: force, stiffness, damping, energy a cycle.",
+        "raceway dev law hertz --set contact.damping=300\n"
+        "raceway dev law penalty --out raceway-out/penalty\n"
+        "raceway dev law film --set contact.viscosity=0.03 \\\n"
+        "    --set kinematics.spin_speed_rpm=10000",
+        {
+            "name": Option(positional=True),
+            "race": Option(choices=("inner", "outer")),
+            "ball": Option(metavar="NUMBER"),
+            "amplitude": Option(metavar="PART"),
+            "frequency": Option(metavar="HZ"),
+        },
+        folder=None,
+    ),
+    Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
+    Later("cache", "raceway.cli.cache:cache", "See or clear what is kept between runs."),
+    Later("plugins", "raceway.cli.plugins:plugins", "List what is installed, with options."),
+    Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
+)
+#: Heading in --help -> its commands.
+SECTIONS = {
+    "Answers": ANSWERS,
+    "Trust": TRUST,
+    "Studies": (Later("study", "raceway.studies.command:study", "Whole studies that end in a page, and others' studies."),),
+    "Developers": (Later("dev", "raceway.cli.main:dev", "Plug-ins: templates, conformance, laws, schema, caches."),),
+}
+#: Another name of a command -> the command.
+ALIASES = {"check": "plan", "identify": "fit", "sensitivities": "band"}

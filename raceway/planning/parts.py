@@ -1,0 +1,165 @@
+"""Parts that a scene needs, each kept or left out with its reason: coordinates, balls, bodies, motion, output."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from math import pi
+
+import attrs
+
+from raceway.planning.resolve import Problem, recorded_per_turn
+
+
+@attrs.frozen
+class Part:
+    """One part, and why it is kept or left out."""
+
+    part: str
+    why: str
+
+
+class Decisions:
+    """The parts of one scene, as they are decided.
+
+    Parameters
+    ----------
+    force : parts that are kept although the scene does not need them
+    """
+
+    def __init__(self, force: Collection[str] = ()) -> None:
+        self.force = force
+        self.kept: list[Part] = []
+        self.left_out: list[Part] = []
+
+    def decide(self, needed: bool, part: str, why: str, why_not: str) -> bool:
+        """Keep a part or leave it out; whether it is kept."""
+        stays = needed or part in self.force
+        (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not))
+        return stays
+
+    def keeps(self, name: str) -> bool:
+        """Whether a part was kept, by its name."""
+        return any(part.part == name for part in self.kept)
+
+    def keep(self, part: str, why: str) -> None:
+        """A part that no scene of this kind can do without."""
+        self.kept.append(Part(part, why))
+
+    def leave_out(self, part: str, why: str) -> None:
+        """A part that no scene of this kind has."""
+        self.left_out.append(Part(part, why))
+
+
+#: Name of what repeats itself, for ``make_plan``'s ``force``.
+OTHER_TURNS = "other turns"
+
+
+@attrs.frozen
+class Balls:
+    """Requirements of the balls.
+
+    Attributes
+    ----------
+    kind : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
+    centrifugal, gyroscopic, friction : whether they have these loads
+    """
+
+    kind: str
+    centrifugal: bool
+    gyroscopic: bool
+    friction: bool
+
+
+@attrs.frozen
+class Motion:
+    """Motion that is integrated: none, where ``recorded`` is False."""
+
+    recorded: bool
+    turns: int
+    steps_per_turn: int
+
+
+def _off(problem: Problem, key: str, value: str) -> str:
+    """A key as the reason of what is left out, and whether nobody asked for that."""
+    return f"{key} is {value}{'' if problem.scene.says(key) else ', by default'}"
+
+
+def decide_tilts(problem: Problem, parts: Decisions) -> bool:
+    """Whether the ring tilts."""
+    why_not = _off(problem, "supports.tilt", "locked")
+    return parts.decide(problem.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", why_not)
+
+
+def decide_balls(problem: Problem, parts: Decisions) -> Balls:
+    """Forces on the balls."""
+    inertia = problem.kinematics.ball_inertia and problem.spin_speed > 0.0
+    why_not = "kinematics.ball_inertia is false" if problem.spin_speed > 0.0 else "nothing turns: no spin speed"
+    inertia = parts.decide(
+        inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
+    )
+    if problem.spin_speed > 0.0 and problem.sweeps:
+        rpm = problem.spin_speed * 30.0 / pi
+        why = f"balls, ring and rotor follow the speed of excitation '{problem.excitation.name}'"
+        why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
+        parts.decide(problem.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
+    rates = problem.excitation is not None and (problem.integrator.method.inertial or not problem.recorded)
+    damped = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
+    why_not = "nothing moves, or no rates: a series of equilibria" if damped else _off(problem, "contact.damping", "0")
+    why = "contact.damping is set" if problem.contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
+    parts.decide(damped and rates, "contact damping", why, why_not)
+    rubbing = problem.contact.friction > 0.0
+    why_not = _off(problem, "contact.friction", "0")
+    if rubbing and not problem.recorded and problem.traits.every_node:
+        rubbing = False
+        why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
+    friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
+    wanted = problem.kinematics.gyroscopic != "none"
+    still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
+    why_not = still if wanted else _off(problem, "kinematics.gyroscopic", "none")
+    moments = parts.decide(wanted and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not)
+    grows, part, key = problem.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
+    why_not = still if grows else _off(problem, key, "false")
+    parts.decide(grows and problem.spin_speed > 0.0, part, f"{key} is true", why_not)
+    why_not = _off(problem, "kinematics.orbiting", "false")
+    parts.decide(problem.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
+    rows = f"bearing.arrangement is {problem.bearing.arrangement if not problem.bearing.row else problem.bearing.signs}"
+    parts.decide(len(problem.bearing.rows) > 1, "further rows of balls", rows, rows)
+    kind = "tangential" if friction or moments else "inertial" if inertia else "weightless"
+    return Balls(kind, inertia, moments, friction)
+
+
+def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: bool) -> Motion:
+    """Coordinates that move, and the turns that are integrated."""
+    dynamic, integrator, identifier = problem.excitation is not None, problem.integrator, problem.identifier
+    spins = problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
+    part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
+    parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
+    unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
+    part, why = f"time integration ({integrator.kind})", "the identifier needs recorded motion"
+    recorded = parts.decide(problem.recorded, part, why, unused)
+    if not recorded:
+        return Motion(False, 0, 0)
+    turns = problem.turns
+    # Only what turns alike every turn needs one turn; a window over several turns needs them.
+    repeats = problem.contact.law.state_size == 0 and not friction and not problem.kinematics.orbiting
+    repeats = repeats and problem.excitation.period_s is not None and "phase" not in identifier.method.needs
+    steady = integrator.method.steady
+    once = (steady or not integrator.method.inertial) and repeats and turns > 1
+    if once and OTHER_TURNS not in parts.force:
+        what = "the steady motion" if steady else "a series of equilibria without memory"
+        parts.leave_out(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn")
+        turns = 1
+    why = "friction: the answer depends on how the motion began, the error is how far"
+    why_not = "contact.friction is 0" if not friction else "the transient of this scene is not estimated"
+    parts.decide(problem.depends_on_start, "run from another start", why, why_not)
+    return Motion(True, turns, problem.steps_per_turn)
+
+
+def decide_output(problem: Problem, parts: Decisions, motion: Motion) -> None:
+    """What of the answer is not made."""
+    every = motion.steps_per_turn
+    samples = recorded_per_turn(every, motion.turns, problem.integrator.method.inertial) if motion.recorded else 0
+    why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
+    part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
+    parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
+    parts.leave_out("pictures", "drawn by --pictures only")
