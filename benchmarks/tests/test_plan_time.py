@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from raceway import load_scene
-from raceway.planning import machine
+from raceway.planning import cost
 from raceway.planning.plan import make_plan
 from validation.command_line import ARTICLE
 from validation.plan_time import LEAST, MOST, SCENE, SCENES
@@ -39,8 +39,8 @@ def test_every_step_costs():
 
 
 def test_the_time_is_the_work_at_the_machine_s_own_speed(monkeypatch):
-    machine.slowness.cache_clear()
-    monkeypatch.setattr(machine, "_seconds", lambda: 3.0 * machine._REFERENCE_S)
+    cost.slowness.cache_clear()
+    monkeypatch.setattr(cost, "_seconds", lambda: 3.0 * cost._REFERENCE_S)
     plan = make_plan(load_scene(ARTICLE))
-    machine.slowness.cache_clear()
+    cost.slowness.cache_clear()
     assert plan.predicted_wall_s == pytest.approx(3.0 * plan.predicted_work_s)

@@ -5,6 +5,7 @@ hookspecs   hooks that a plug-in may implement
 doors       arguments of public functions, read by their names
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
+rules       keys that cannot stand or do nothing, when and why, as data
 duties      duties as the program calls them: faults are put to the plug-in, what is left out has its default
 sources     entry points and one-off files
 probe       compiled kernel of a plug-in by its declared signature, and trial calls of it before a run

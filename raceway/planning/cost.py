@@ -1,12 +1,14 @@
 """Predicted time of a run of compiled rings, from measured times of its parts.
 
-Constants are seconds of processor time of the reference machine of ``raceway.planning.machine``, with all that a run does
+Constants are seconds of processor time of the reference machine of ``slowness``, with all that a run does
 for its error beside its answer: tests/evidence/test_cost.py holds whole runs against them.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
+from functools import cache
 
 import attrs
 
@@ -69,3 +71,29 @@ def _orbit(problem: Problem) -> float:
     searched = problem.supports.tilt != "locked" and problem.excitation.sense == 0
     searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
     return _SEARCH_S if searched else _ORBIT_S
+
+
+#: Iterations of the piece of work, and its processor time on the machine that ``wall_time``'s constants belong to [s].
+_ITERATIONS, _REFERENCE_S = 4000, 2.0e-4
+#: Repeats: the least of many short ones finds the moments in which other programs leave the core alone.
+REPEATS = 20
+
+
+@cache
+def slowness() -> float:
+    """Processor time of this machine over that of the machine on which the plan's constants were measured; takes 5 ms."""
+    return timed()
+
+
+def timed(repeats: int = REPEATS) -> float:
+    """``slowness`` as it is now."""
+    return min(_seconds() for _ in range(repeats)) / _REFERENCE_S
+
+
+def _seconds() -> float:
+    """Of the logistic map in floating-point numbers of Python: scalar work like that of the compiled loops."""
+    begun, x, total = time.process_time(), 0.5, 0.0
+    for _ in range(_ITERATIONS):
+        x = 3.7 * x * (1.0 - x)
+        total += x
+    return time.process_time() - begun

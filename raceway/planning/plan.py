@@ -14,7 +14,7 @@ import attrs
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
 from raceway.framework.shown import Fact, Shown, number
-from raceway.planning.machine import slowness
+from raceway.planning.cost import slowness
 from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.resolve import Problem, refuse_memory, resolve
 from raceway.planning.rules import foreseen, implausible, refuse_what_cannot_run

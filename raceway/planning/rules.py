@@ -1,8 +1,8 @@
-"""Combinations that cannot run, each with the reason and the remedy: all at once, before anything is built."""
+"""Combinations that cannot run, each with the reason and the remedy, and values that are possible and unlikely."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cache
 from math import inf
 
@@ -11,179 +11,245 @@ import attrs
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.duties import has_phase, renews, speed_rpm
+from raceway.framework.rules import Rule, mistakes
 from raceway.planning.resolve import Problem, recorded_per_turn
 from raceway.scene.growth import growth_faults, loose_rings
 
-#: Called as ``refuse(bad, path, value, why)``.
-_Refuse = Callable[[bool, str, object, str], None]
+
+def _slow_key(p: Problem) -> str:
+    """The key by which bodies have no compiled forces."""
+    by_bodies = p.traits.every_node or p.contact.discretisation == "resultant"
+    return "bodies.kind" if by_bodies else "contact.discretisation"
+
+
+def _slow(p: Problem) -> str:
+    """The same with its value."""
+    key = _slow_key(p)
+    return f"{key} = '{p.bodies.name if key == 'bodies.kind' else p.contact.discretisation}'"
+
+
+def _has_law(p: Problem) -> bool:
+    """Whether the law can stand for the contacts."""
+    return p.contact.discretisation in p.contact.law.discretisations
+
+
+def _changing(p: Problem) -> bool:
+    """Whether the force runs through speeds without repeating."""
+    return p.excitation.period_s is None and p.sweeps
+
+
+def _runs_speeds(p: Problem) -> bool:
+    """Whether motions at several speeds are asked for of a force that has one."""
+    return p.several_speeds and speed_rpm(p.excitation) is not None and not _changing(p)
+
+
+def _unsteady_speed(p: Problem) -> float | None:
+    """The first of several speeds [r/min] at which the force does not repeat every turn."""
+    speeds = p.identifier.method.speeds_rpm if _runs_speeds(p) else ()
+    return next((rpm for rpm in speeds if attrs.evolve(p.excitation, speed_rpm=float(rpm)).period_s is None), None)
+
+
+def _samples(p: Problem) -> int:
+    return recorded_per_turn(p.steps_per_turn, p.turns)
+
+
+def _unknowns(p: Problem) -> int:
+    """Of a fit of harmonics, mean and drift to a turn; 0 where none is fitted."""
+    harmonics = getattr(p.identifier.method, "harmonics", None)
+    return 0 if harmonics is None or not p.recorded else 2 * harmonics + 2
+
+
+def _steady(p: Problem) -> bool:
+    """Whether the steady motion itself is solved for."""
+    return p.recorded and p.integrator.method.steady
+
+
+def _inertial(p: Problem) -> bool:
+    return p.recorded and p.integrator.method.inertial
+
+
+def _tilts(p: Problem) -> bool:
+    return p.supports.tilt != "locked"
+
+
+def _turning_force_alone(p: Problem) -> bool:
+    """Whether nothing but the force tells one direction from another."""
+    return p.excitation.sense != 0 and not any(p.load.radial) and not (any(p.load.moment) and _tilts(p))
+
+
+_DAMPS = (
+    "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, "
+    "or contact.damping in N s/m"
+)
+_ROWS = "the rows of this set are different bearings"
+
+#: What no bodies, or no other part, can compute, before the growth of grooves is looked at.
+_CONTACTS: tuple[Rule[Problem], ...] = (
+    Rule(
+        "contact.discretisation", lambda p: not _has_law(p),
+        lambda p: f"law '{p.contact.kind}' supports {' or '.join(repr(d) for d in sorted(p.contact.law.discretisations))}",
+    ),
+    Rule(
+        "contact.kind", lambda p: renews(p.contact.law) and p.spin_speed == 0.0,
+        "needs the speed at which its contacts run, and nothing turns: give excitation.speed_rpm or kinematics.spin_speed_rpm, or "
+        "take kind = 'hertz', the dry law",
+    ),
+    Rule(
+        "contact.kind", lambda p: renews(p.contact.law) and _has_law(p) and not p.traits.renews,
+        "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'",
+    ),
+    Rule("contact.damping", lambda p: p.contact.in_a_band and not p.traits.damps, _DAMPS),
+    Rule("contact.time_constant", lambda p: p.contact.time_constant is not None and not p.traits.damps, _DAMPS),
+    Rule("contact.loss_factor", lambda p: p.contact.loss_factor is not None and not p.traits.damps, _DAMPS),
+    Rule(
+        "contact.loss_factor",
+        lambda p: p.contact.loss_factor is not None and p.excitation is not None and p.excitation.period_s is None,
+        "belongs to one frequency, and the excitation has none: give contact.time_constant",
+    ),
+    Rule("kinematics.ring_growth", lambda p: p.kinematics.ring_growth and p.bearing.bore is None, "needs the bearing's `bore`"),
+    Rule(
+        "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.kinematics.ball_inertia,
+        "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true",
+    ),
+    Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs a spin speed: nothing turns"),
+    *(
+        Rule(
+            key, lambda p, key=key: p.spin_changes and not p.traits.compiled and _slow_key(p) == key,  # type: ignore[misc]
+            lambda p: f"has no terms that follow the changing speed of '{p.excitation.name}', which contact resultants on rigid or "
+            "condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm",
+        )
+        for key in ("bodies.kind", "contact.discretisation")
+    ),
+    Rule(
+        "kinematics.ball_growth", lambda p: p.kinematics.ball_growth and p.spin_changes,
+        "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm",
+    ),
+)  # fmt: skip
+
+_MOTION: tuple[Rule[Problem], ...] = (
+    Rule(
+        "kinematics.orbiting", lambda p: not p.bearing.equal_rows and p.kinematics.orbiting,
+        f"{_ROWS}, whose balls travel at different speeds: set it false",
+    ),
+    Rule(
+        "kinematics.gyroscopic", lambda p: not p.bearing.equal_rows and p.kinematics.gyroscopic != "none",
+        f"{_ROWS}: moments are computed for balls of one kind only. Set it 'none'",
+    ),
+    Rule(
+        "contact.friction", lambda p: not p.bearing.equal_rows and p.contact.friction > 0.0,
+        f"{_ROWS}: friction is computed for balls of one kind only. Set it 0",
+    ),
+    Rule(
+        "excitation.kind", lambda p: not p.bearing.equal_rows and p.spin_changes,
+        f"{_ROWS}: a speed that changes is followed by balls of one kind only. Give one with kinematics.spin_speed_rpm",
+    ),
+    Rule(
+        "excitation", lambda p: p.excitation is not None and p.excitation.amplitude_n == 0.0,
+        "its force is zero: leave the table out for a static scene",
+    ),
+    Rule(
+        "identifier.kind", lambda p: p.excitation is not None and "period" in p.identifier.method.needs and _changing(p),
+        lambda p: f"needs one frequency, but excitation '{p.excitation.name}' changes its speed: use 'order_tracking'",
+    ),
+    Rule(
+        "identifier.harmonics", lambda p: _unknowns(p) and _samples(p) < _unknowns(p),
+        lambda p: f"{p.identifier.method.harmonics} harmonics, mean and drift are {_unknowns(p)} unknowns, but {_samples(p)} samples "
+        f"a turn are recorded: take at most {max((_samples(p) - 2) // 2, 1)} harmonics, or steps_per_turn = {_unknowns(p)} or more",
+    ),
+    Rule(
+        "identifier.kind",
+        lambda p: p.excitation is not None and "phase" in p.identifier.method.needs and not has_phase(p.excitation),
+        lambda p: f"needs the phase of the excitation, which '{p.excitation.name}' does not tell: use 'sine_fit'",
+    ),
+    Rule(
+        "identifier.kind", lambda p: p.several_speeds and not _runs_speeds(p),
+        lambda p: f"runs several speeds, but excitation '{p.excitation.name}' has no key `speed_rpm` or changes its speed",
+    ),
+    Rule(
+        "identifier.kind", lambda p: _unsteady_speed(p) is not None,
+        lambda p: f"runs several speeds, but excitation '{p.excitation.name}' does not repeat every turn at "
+        f"{_unsteady_speed(p):g} r/min",
+    ),
+    Rule(
+        "integrator.kind", lambda p: p.recorded and missing_driver(p.integrator.method.scheme, p.traits.compiled),
+        lambda p: f"has no driver `{missing_driver(p.integrator.method.scheme, p.traits.compiled)}`, which {_slow(p)} needs: its "
+        "forces are not compiled. Use 'newmark' or 'quasi_static', or contact resultants on rigid or condensed bodies",
+    ),
+    Rule(
+        "integrator.kind", lambda p: _steady(p) and p.excitation.period_s is None,
+        lambda p: f"needs a force that repeats every turn, which excitation '{p.excitation.name}' does not: use 'newmark'",
+    ),
+    Rule(
+        "integrator.kind", lambda p: _steady(p) and p.contact.friction > 0.0,
+        "contact.friction: where a contact sticks depends on how the motion began, there is no single one: use 'newmark'",
+    ),
+    Rule(
+        "integrator.kind", lambda p: _steady(p) and p.contact.law.state_size > 0,
+        lambda p: f"contact law '{p.contact.kind}' has a memory: its motion cannot be solved for by itself: use 'newmark'",
+    ),
+    Rule(
+        "integrator.kind", lambda p: _steady(p) and p.kinematics.orbiting and not _turning_force_alone(p),
+        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
+        "force turns and no radial load acts: use 'newmark'",
+    ),
+    Rule(
+        "rotor.mass", lambda p: _inertial(p) and p.inertia.mass <= 0.0,
+        "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own",
+    ),
+    Rule(
+        "rotor.transverse_inertia", lambda p: _inertial(p) and _tilts(p) and p.inertia.transverse <= 0.0,
+        "free tilts need an inertia: set it, or give bearing.bore and bearing.width",
+    ),
+)  # fmt: skip
 
 
 def refuse_what_cannot_run(problem: Problem) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
-    faults: list[Mistake] = []
-
-    def refuse(bad: bool, path: str, value: object, why: str) -> None:
-        if bad:
-            faults.append(Mistake(path, value, why))
-
-    kinematics, contact, method = problem.kinematics, problem.contact, problem.integrator.method
-    faults += problem.scene.body_kind.faults()
-    law = contact.law
-    if contact.discretisation not in law.discretisations:
-        choice = " or ".join(f"'{d}'" for d in sorted(law.discretisations))
-        faults.append(Mistake("contact.discretisation", contact.discretisation, f"law '{contact.kind}' supports {choice}"))
-    _refuse_renewed(problem, refuse)
-    _refuse_time_constant(problem, refuse)
-    need_bore = "needs the bearing's `bore`"
-    refuse(kinematics.ring_growth and problem.bearing.bore is None, "kinematics.ring_growth", True, need_bore)
-    alone = kinematics.gyroscopic != "none" and not kinematics.ball_inertia
-    why = "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true"
-    refuse(alone, "kinematics.gyroscopic", kinematics.gyroscopic, why)
-    refuse(
-        kinematics.orbiting and problem.spin_speed == 0.0, "kinematics.orbiting", True, "needs a spin speed: nothing turns"
-    )
-    compiled = problem.traits.compiled
-    why = (
-        f"has no terms that follow the changing speed of '{getattr(problem.excitation, 'name', None)}', which contact resultants on "
-        "rigid or condensed bodies have; use those, or give one speed to balls, ring and rotor with kinematics.spin_speed_rpm"
-    )
-    refuse(problem.spin_changes and not compiled, *_slow(problem), why)
-    why = "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm"
-    refuse(kinematics.ball_growth and problem.spin_changes, "kinematics.ball_growth", True, why)
-    faults += growth_faults(problem.scene)
-    _refuse_different_rows(problem, refuse)
-    if problem.excitation is not None and problem.excitation.amplitude_n == 0.0:
-        faults.append(Mistake("excitation", None, "its force is zero: leave the table out for a static problem"))
-    if problem.excitation is not None:
-        _refuse_identifier(problem, refuse)
-        if "record" in problem.identifier.method.needs:
-            _refuse_driver(problem, refuse)
-        if method.steady and "record" in problem.identifier.method.needs:
-            _refuse_steady(problem, refuse)
-    if problem.recorded and method.inertial:
-        if problem.inertia.mass <= 0.0:
-            why = "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own"
-            faults.append(Mistake("rotor.mass", problem.rotor.mass, why))
-        if problem.supports.tilt != "locked" and problem.inertia.transverse <= 0.0:
-            why = "free tilts need an inertia: set it, or give bearing.bore and bearing.width"
-            faults.append(Mistake("rotor.transverse_inertia", problem.rotor.transverse_inertia, why))
+    faults = [
+        *problem.scene.body_kind.faults(),
+        *mistakes(_CONTACTS, problem),
+        *growth_faults(problem.scene),
+        *mistakes(_MOTION, problem),
+    ]
     if faults:
         raise SceneError(faults)
 
 
-def _refuse_renewed(problem: Problem, refuse: _Refuse) -> None:
-    """Laws that follow the running speed, where nothing turns or bodies do not renew them."""
-    contact = problem.contact
-    if not renews(contact.law):
-        return
-    why = (
-        "needs the speed at which its contacts run, and nothing turns: give excitation.speed_rpm or kinematics.spin_speed_rpm, or take "
-        "kind = 'hertz', the dry law"
-    )
-    refuse(problem.spin_speed == 0.0, "contact.kind", contact.kind, why)
-    if contact.discretisation in contact.law.discretisations:
-        why = "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'"
-        refuse(not problem.traits.renews, "contact.kind", contact.kind, why)
+#: How far the estimate of the highest frequency may be off.
+_ROUGH = 2.0
 
 
-def _refuse_time_constant(problem: Problem, refuse: _Refuse) -> None:
-    """Damping in proportion to the stiffness, where bodies have none."""
-    contact = problem.contact
-    ways = {"damping": contact.damping if contact.in_a_band else None, "time_constant": contact.time_constant}
-    ways["loss_factor"] = contact.loss_factor
-    why = "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, or contact.damping in N s/m"
-    for key, value in ways.items():
-        refuse(value is not None and not problem.traits.damps, f"contact.{key}", value, why)
-    changing = problem.excitation is not None and problem.excitation.period_s is None
-    why = "belongs to one frequency, and the excitation has none: give contact.time_constant"
-    refuse(contact.loss_factor is not None and changing, "contact.loss_factor", contact.loss_factor, why)
+def _unloaded(p: Problem) -> bool:
+    load = p.load.axial or any(p.load.radial) or (any(p.load.moment) and _tilts(p)) or p.bearing.preloaded
+    return p.supports.axial != "displacement" and not load
 
 
-def _refuse_different_rows(problem: Problem, refuse: _Refuse) -> None:
-    """What holds one number for the balls of all rows."""
-    if problem.bearing.equal_rows:
-        return
-    kinematics, rows = problem.kinematics, "the rows of this set are different bearings"
-    why = f"{rows}, whose balls travel at different speeds: set it false"
-    refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
-    why = f"{rows}: moments are computed for balls of one kind only. Set it 'none'"
-    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
-    why = f"{rows}: friction is computed for balls of one kind only. Set it 0"
-    refuse(problem.contact.friction > 0.0, "contact.friction", problem.contact.friction, why)
-    why = f"{rows}: a speed that changes is followed by balls of one kind only. Give one with kinematics.spin_speed_rpm"
-    refuse(problem.spin_changes, "excitation.kind", getattr(problem.excitation, "name", None), why)
+def _least_steps(p: Problem) -> int:
+    """Steps a turn that an explicit method needs where their number is given; 0 where nothing is known of it."""
+    fixed = p.recorded and not p.integrator.method.implicit and isinstance(p.integrator.steps_per_turn, int)
+    stable = p.stable_step if fixed and not p.traits.every_node else None
+    return 0 if stable is None else int(p.period / stable)
 
 
-def _slow(problem: Problem) -> tuple[str, str]:
-    """The key, and its value, by which bodies have no compiled forces."""
-    if problem.traits.every_node or problem.contact.discretisation == "resultant":
-        return "bodies.kind", problem.bodies.name
-    return "contact.discretisation", problem.contact.discretisation
+#: Failures of a run that closed formulas foresee.
+_FORESEEN: tuple[Rule[Problem], ...] = (
+    Rule("load.axial", _unloaded, "nothing loads the bearing: there is no stiffness to find"),
+    Rule(
+        "identifier.window_turns",
+        lambda p: p.recorded and (getattr(p.identifier.method, "window_turns", None) or 0) > p.turns,
+        lambda p: f"is longer than the record of {p.turns} turns: shorten it, or integrate more turns",
+    ),
+    Rule(
+        "integrator.steps_per_turn", lambda p: (least := _least_steps(p)) and p.steps_per_turn * _ROUGH < least,
+        lambda p: f"is far above the stable step of an explicit method: some {_least_steps(p)} steps a turn are needed, 'auto' "
+        "takes enough",
+    ),
+)  # fmt: skip
 
 
-def _refuse_driver(problem: Problem, refuse: _Refuse) -> None:
-    """A method without the driver that the bodies ask for."""
-    missing = missing_driver(problem.integrator.method.scheme, problem.traits.compiled)
-    key, value = _slow(problem)
-    why = (
-        f"has no driver `{missing}`, which {key} = '{value}' needs: its forces are not compiled. Use 'newmark' or "
-        "'quasi_static', or contact resultants on rigid or condensed bodies"
-    )
-    refuse(bool(missing), "integrator.kind", problem.integrator.kind, why)
-
-
-def _refuse_identifier(problem: Problem, refuse: _Refuse) -> None:
-    """Requirements of the identifier on the excitation."""
-    needs, kind = problem.identifier.method.needs, problem.identifier.kind
-    name, excitation = problem.excitation.name, problem.excitation
-    changing = excitation.period_s is None and problem.sweeps
-    why = f"needs one frequency, but excitation '{name}' changes its speed: use 'order_tracking'"
-    refuse("period" in needs and changing, "identifier.kind", kind, why)
-    why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
-    fitted = getattr(problem.identifier.method, "harmonics", None)
-    if fitted is not None and "record" in needs:
-        samples = recorded_per_turn(problem.steps_per_turn, problem.turns)
-        least = 2 * fitted + 2
-        why = (
-            f"{fitted} harmonics, mean and drift are {least} unknowns, but {samples} samples a turn are recorded: take at most "
-            f"{max((samples - 2) // 2, 1)} harmonics, or steps_per_turn = {least} or more"
-        )
-        refuse(samples < least, "identifier.harmonics", fitted, why)
-    why = f"needs the phase of the excitation, which '{name}' does not tell: use 'sine_fit'"
-    refuse("phase" in needs and not has_phase(excitation), "identifier.kind", kind, why)
-    why = f"runs several speeds, but excitation '{name}' has no key `speed_rpm` or changes its speed"
-    several = "speeds" in needs
-    unable = changing or speed_rpm(excitation) is None
-    refuse(several and unable, "identifier.kind", kind, why)
-    if several and not unable:
-        for rpm in problem.identifier.method.speeds_rpm:
-            why = f"runs several speeds, but excitation '{name}' does not repeat every turn at {rpm:g} r/min"
-            bad = attrs.evolve(excitation, speed_rpm=float(rpm)).period_s is None
-            refuse(bad, "identifier.kind", kind, why)
-            if bad:
-                break
-
-
-def _refuse_steady(problem: Problem, refuse: _Refuse) -> None:
-    """Scenes without a motion that repeats itself every turn and depends on the force alone."""
-    kind, excitation = problem.integrator.kind, problem.excitation
-    other = "use 'newmark'"
-    why = f"needs a force that repeats every turn, which excitation '{excitation.name}' does not: {other}"
-    refuse(excitation.period_s is None, "integrator.kind", kind, why)
-    why = f"contact.friction: where a contact sticks depends on how the motion began, there is no single one: {other}"
-    refuse(problem.contact.friction > 0.0, "integrator.kind", kind, why)
-    why = f"contact law '{problem.contact.kind}' has a memory: its motion cannot be solved for by itself: {other}"
-    refuse(problem.contact.law.state_size > 0, "integrator.kind", kind, why)
-    alone = (
-        excitation.sense != 0
-        and not any(problem.load.radial)
-        and not (any(problem.load.moment) and problem.supports.tilt != "locked")
-    )
-    why = (
-        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
-        f"force turns and no radial load acts: {other}"
-    )
-    refuse(problem.kinematics.orbiting and not alone, "integrator.kind", kind, why)
+def foreseen(problem: Problem) -> list[Mistake]:
+    """Failures of a run that closed formulas foresee: for ``raceway check``."""
+    return mistakes(_FORESEEN, problem)
 
 
 #: By unit or key the largest plausible size, and what is right: bearings of 2 m exist; rotors on ball bearings weigh tons at most.
@@ -194,22 +260,20 @@ _MOST = {
 }
 #: Below this a Young's modulus [Pa] is reported: cages of soft plastics exist.
 _YOUNG = 1e9
-#: How far the estimate of the highest frequency may be off.
-_ROUGH = 2.0
 _TABLES = ("bearing", "rotor", "contact", "kinematics", "mesh", "supports", "mounting")
 
 
 def implausible(problem: Problem) -> tuple[str, ...]:
     """A sentence for each value that is likely to be in another unit, and for each ring that is loose."""
-    found = loose_rings(problem.scene)
+    warnings = loose_rings(problem.scene)
     for table in _TABLES:
         for path, unit, value in _numbers(getattr(problem, table), table):
             most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))
             if abs(value) > most:
-                found.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
+                warnings.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
             if unit == "Pa" and value < _YOUNG:
-                found.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
-    return tuple(found)
+                warnings.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
+    return tuple(warnings)
 
 
 def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str | None, float]]:
@@ -229,27 +293,3 @@ def _units(cls: type) -> tuple[tuple[str, str | None], ...]:
     if not attrs.has(cls):
         return ()
     return tuple((field.name, field.metadata.get("unit")) for field in attrs.fields(cls))
-
-
-def foreseen(problem: Problem) -> list[Mistake]:
-    """Failures of a run that closed formulas foresee: for ``raceway check``."""
-    found = []
-    load, free = problem.load, problem.supports.axial != "displacement"
-    moment = any(load.moment) and problem.supports.tilt != "locked"
-    if free and not (load.axial or any(load.radial) or moment or problem.bearing.preloaded):
-        found.append(Mistake("load.axial", load.axial, "nothing loads the bearing: there is no stiffness to find"))
-    if not problem.recorded:
-        return found
-    window, turns = getattr(problem.identifier.method, "window_turns", None), problem.turns
-    if window is not None and window > turns:
-        why = f"is longer than the record of {turns} turns: shorten it, or integrate more turns"
-        found.append(Mistake("identifier.window_turns", window, why))
-    steps = problem.integrator.steps_per_turn
-    if not problem.integrator.method.implicit and isinstance(steps, int) and not problem.traits.every_node:
-        period = problem.period
-        stable = problem.stable_step
-        least = 0 if stable is None else int(period / stable)
-        if steps * _ROUGH < least:
-            why = f"is far above the stable step of an explicit method: some {least} steps a turn are needed, 'auto' takes enough"
-            found.append(Mistake("integrator.steps_per_turn", steps, why))
-    return found

@@ -10,6 +10,7 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
+from raceway.framework.rules import Rule, speaking
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
@@ -49,7 +50,7 @@ def without_inherited(base: ReadTables, changed: ReadTables, said: Collection[st
 
 
 def _idle(scene: Scene) -> list[tuple[str, str]]:
-    """Path and reason: of the plug-ins by their own word, of the core here."""
+    """Path and reason: of the plug-ins by their own word, of the core by ``_RULES``."""
     plugins = {
         "bodies": scene.bodies,
         "contact": scene.contact.law,
@@ -57,53 +58,78 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
         "identifier": scene.identifier.method,
         "excitation": scene.excitation,
     }
-    own = [(f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()]
-    return [*own, *_core(scene)]
+    said = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
+    known = {"kind", *(field.name for field in attrs.fields(type(scene.bodies)))}
+    others = [
+        (f"bodies.{key}", f"bodies.kind is '{scene.bodies.name}'")
+        for key in scene.source.get("bodies", {})
+        if key not in known
+    ]
+    by_plugins = [
+        (f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()
+    ]
+    core = [*speaking(_RULES, scene), *scene.body_kind.unused()]
+    return [*by_plugins, *((key, why) for key, why in core if key in said), *others]
 
 
-def _core(scene: Scene) -> list[tuple[str, str]]:
-    given = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
-    found: list[tuple[str, str]] = []
+def _recorded(s: Scene) -> bool:
+    return s.excitation is not None and "record" in s.identifier.method.needs
 
-    def told(idle: bool, why: str, *paths: str) -> None:
-        found.extend((path, why) for path in paths if idle and path in given)
 
-    dynamic = scene.excitation is not None
-    recorded = dynamic and "record" in scene.identifier.method.needs
-    integration = [f"integrator.{key}" for key in ("turns", "steps_per_turn", "start")]
-    told(not dynamic, "the scene has no [excitation]", *integration)
-    still = dynamic and not recorded
-    told(still, f"identifier '{scene.identifier.kind}' needs no recorded motion", *integration)
-    steady = recorded and scene.integrator.method.steady
-    told(
-        steady,
-        f"integrator '{scene.integrator.kind}' solves for the steady motion",
-        "integrator.start",
-        "excitation.ramp_turns",
-    )
-    one = steady and "phase" not in scene.identifier.method.needs and not scene.kinematics.orbiting
-    told(one, f"integrator '{scene.integrator.kind}' needs one turn", "integrator.turns")
-    slow = recorded and not scene.integrator.method.inertial
-    rotor = [f"rotor.{key}" for key in ("mass", "transverse_inertia", "polar_inertia", "damping")]
-    why = f"integrator '{scene.integrator.kind}' knows neither inertia nor rates"
-    dashpots = [f"contact.{key}" for key in ("damping", "time_constant", "loss_factor")]
-    told(slow, why, *rotor, *dashpots)
-    told(not dynamic, "the scene has no [excitation]", *dashpots)
-    locked = scene.supports.tilt == "locked"
-    told(locked and not slow, "supports.tilt is locked", "rotor.transverse_inertia", "rotor.polar_inertia")
-    told(scene.contact.friction == 0.0, "contact.friction is 0", "contact.stick_stiffness")
-    for path, why in scene.body_kind.unused():
-        told(True, why, path)
-    own = {field.name for field in attrs.fields(type(scene.bodies))}
-    others = [f"bodies.{key}" for key in scene.source.get("bodies", {}) if key != "kind" and key not in own]
-    told(True, f"bodies.kind is '{scene.bodies.name}'", *others)
-    told(len(scene.bearing.rows) == 1, "the bearing has one row", "bearing.row_distance")
-    without = "bearing.preload is 0"
-    told(not scene.bearing.preloaded, without, "bearing.preload_kind", "bearing.preload_of", "bearing.spring_travel")
-    told(scene.bearing.preload_kind == "rigid", "bearing.preload_kind is 'rigid'", "bearing.spring_travel")
-    warm, turns = scene.mounting, scene.kinematics.ring_growth
-    fitted = warm.shaft_interference or turns or (warm.shaft_material and warm.inner_temperature)
-    told(not fitted, "mounting.shaft_interference is 0", "mounting.shaft_bore", "mounting.shaft_material")
-    fitted = warm.housing_interference or (warm.housing_material and warm.outer_temperature)
-    told(not fitted, "mounting.housing_interference is 0", "mounting.housing_diameter", "mounting.housing_material")
-    return found
+def _steady(s: Scene) -> bool:
+    return _recorded(s) and s.integrator.method.steady
+
+
+def _slow(s: Scene) -> bool:
+    """Whether the motion is a series of equilibria."""
+    return _recorded(s) and not s.integrator.method.inertial
+
+
+_INTEGRATION = ("integrator.turns", "integrator.steps_per_turn", "integrator.start")
+_DASHPOTS = ("contact.damping", "contact.time_constant", "contact.loss_factor")
+_ROTOR = ("rotor.mass", "rotor.transverse_inertia", "rotor.polar_inertia", "rotor.damping")
+
+#: Keys of the core, when they change nothing, and why.
+_RULES: tuple[Rule[Scene], ...] = (
+    Rule(_INTEGRATION, lambda s: s.excitation is None, "the scene has no [excitation]"),
+    Rule(
+        _INTEGRATION, lambda s: s.excitation is not None and not _recorded(s),
+        lambda s: f"identifier '{s.identifier.kind}' needs no recorded motion",
+    ),
+    Rule(
+        ("integrator.start", "excitation.ramp_turns"), _steady,
+        lambda s: f"integrator '{s.integrator.kind}' solves for the steady motion",
+    ),
+    Rule(
+        "integrator.turns",
+        lambda s: _steady(s) and "phase" not in s.identifier.method.needs and not s.kinematics.orbiting,
+        lambda s: f"integrator '{s.integrator.kind}' needs one turn",
+    ),
+    Rule((*_ROTOR, *_DASHPOTS), _slow, lambda s: f"integrator '{s.integrator.kind}' knows neither inertia nor rates"),
+    Rule(_DASHPOTS, lambda s: s.excitation is None, "the scene has no [excitation]"),
+    Rule(
+        ("rotor.transverse_inertia", "rotor.polar_inertia"), lambda s: s.supports.tilt == "locked" and not _slow(s),
+        "supports.tilt is locked",
+    ),
+    Rule("contact.stick_stiffness", lambda s: s.contact.friction == 0.0, "contact.friction is 0"),
+    Rule("bearing.row_distance", lambda s: len(s.bearing.rows) == 1, "the bearing has one row"),
+    Rule(
+        ("bearing.preload_kind", "bearing.preload_of", "bearing.spring_travel"), lambda s: not s.bearing.preloaded,
+        "bearing.preload is 0",
+    ),
+    Rule("bearing.spring_travel", lambda s: s.bearing.preload_kind == "rigid", "bearing.preload_kind is 'rigid'"),
+    Rule(
+        ("mounting.shaft_bore", "mounting.shaft_material"),
+        lambda s: not (
+            s.mounting.shaft_interference
+            or s.kinematics.ring_growth
+            or (s.mounting.shaft_material and s.mounting.inner_temperature)
+        ),
+        "mounting.shaft_interference is 0",
+    ),
+    Rule(
+        ("mounting.housing_diameter", "mounting.housing_material"),
+        lambda s: not (s.mounting.housing_interference or (s.mounting.housing_material and s.mounting.outer_temperature)),
+        "mounting.housing_interference is 0",
+    ),
+)  # fmt: skip
