@@ -133,9 +133,9 @@ class Film:
         pair = self.viscosity_40 is not None or self.viscosity_100 is not None
         ways = sum((self.oil is not None, pair, self.viscosity is not None))
         if ways != 1:
-            said = "no viscosity is given" if ways == 0 else "the viscosity is given more than once"
+            mistake = "no viscosity is given" if ways == 0 else "the viscosity is given more than once"
             raise ValueError(
-                f"{said}: give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or "
+                f"{mistake}: give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or "
                 "`viscosity` at the running temperature"
             )
         if self.viscosity is not None:
@@ -187,8 +187,8 @@ class Film:
     @property
     def alpha(self) -> float:
         """Pressure-viscosity coefficient [1/Pa]."""
-        given = self.pressure_viscosity
-        return pressure_viscosity(self.dynamic_viscosity) if given is None else given
+        coefficient = self.pressure_viscosity
+        return pressure_viscosity(self.dynamic_viscosity) if coefficient is None else coefficient
 
     @property
     def beta(self) -> float:
@@ -218,17 +218,17 @@ class Film:
 
         speed, load = pairs.entraining_speed, pairs.load
         assert speed is not None and load is not None, "bodies that renew laws give them"
-        found = film(
+        computed = film(
             self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
             load, pairs.ellipticity,
         )  # fmt: skip
         part = self.starvation * self._reduction(pairs)
-        return attrs.evolve(found, central=part * found.central, minimum=part * found.minimum)
+        return attrs.evolve(computed, central=part * computed.central, minimum=part * computed.minimum)
 
     def _slope(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """h0 (n,) [m] and m (n,), by which the film thins as the elastic approach grows."""
-        found = self.thickness(pairs)
-        return found.central, -1.5 * found.by_load
+        thickness = self.thickness(pairs)
+        return thickness.central, -1.5 * thickness.by_load
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
         import numpy as np
@@ -254,20 +254,22 @@ class Film:
 
         from raceway.core.contact.film import REGIMES
 
-        found, reduction = self.thickness(pairs), self._reduction(pairs)
-        lambdas = found.minimum / self.roughness if self.roughness is not None else np.full_like(found.minimum, np.nan)
+        thickness, reduction = self.thickness(pairs), self._reduction(pairs)
+        lambdas = (
+            thickness.minimum / self.roughness if self.roughness is not None else np.full_like(thickness.minimum, np.nan)
+        )
         columns = {
-            "film_central_m": found.central,
-            "film_minimum_m": found.minimum,
-            "film_isothermal_m": found.central / reduction,
+            "film_central_m": thickness.central,
+            "film_minimum_m": thickness.minimum,
+            "film_isothermal_m": thickness.central / reduction,
             "film_thermal_reduction": reduction,
             "film_parameter": lambdas,
-            "film_regime": np.array(REGIMES)[found.regime],
+            "film_regime": np.array(REGIMES)[thickness.regime],
             "entraining_speed_m_per_s": np.asarray(pairs.entraining_speed),
         }
         table: Tables = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
         table |= {"inlet_heating": self.inlet_heating, "temperature_viscosity_per_k": self.beta}
-        return LawReport(columns, table, (*self._heated(pairs), *_doubts(found), *self._rough(lambdas)))
+        return LawReport(columns, table, (*self._heated(pairs), *_doubts(thickness), *self._rough(lambdas)))
 
     def _heated(self, pairs: ContactPairs) -> list[str]:
         """A sentence where the heat of the inlet decides the film, from speed and viscosity."""
@@ -290,19 +292,19 @@ class Film:
         if self.roughness is None:
             return []
         least = float(lambdas.min())
-        told = f"Lambda = h_min / roughness is {least:.2g} at the thinnest film"
+        sentence = f"Lambda = h_min / roughness is {least:.2g} at the thinnest film"
         if least < _BOUNDARY:
             return [
-                f"boundary lubrication: {told}, below {_BOUNDARY:g}: the surfaces touch, and the film of smooth surfaces is not what "
+                f"boundary lubrication: {sentence}, below {_BOUNDARY:g}: the surfaces touch, and the film of smooth surfaces is not what "
                 "carries. Take a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
             ]
-        return [f"mixed lubrication: {told}, below {_MIXED:g}: asperities carry a part"] if least < _MIXED else []
+        return [f"mixed lubrication: {sentence}, below {_MIXED:g}: asperities carry a part"] if least < _MIXED else []
 
 
-def _doubts(found: Thickness) -> list[str]:
+def _doubts(thickness: Thickness) -> list[str]:
     """A sentence where contacts are in another regime than rolling bearings' usual one."""
     from raceway.core.contact.film import REGIMES
 
-    others = sorted({REGIMES[each] for each in found.regime if each != 0})
-    words = " and ".join(others)
-    return [f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {words}"] if others else []
+    regimes = sorted({REGIMES[each] for each in thickness.regime if each != 0})
+    words = " and ".join(regimes)
+    return [f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {words}"] if regimes else []

@@ -128,8 +128,8 @@ class ContactPairs:
         from raceway.core.contact.hertz import ellipticity
 
         difference = (self.curvature_b - self.curvature_a) / (self.curvature_b + self.curvature_a)
-        values, place = np.unique(difference, return_inverse=True)
-        return np.array([ellipticity(float(one)) for one in values])[place]
+        values, position = np.unique(difference, return_inverse=True)
+        return np.array([ellipticity(float(value)) for value in values])[position]
 
 
 @attrs.frozen(eq=False)
@@ -257,7 +257,7 @@ class Format(attrs.AttrsInstance, Protocol):
     """A file format, of meshes (``HexMesh``) or of anything else.
 
     1. ``suffixes``: file endings with the dot.
-    2. ``read(path)``.  ``write(path, what)``, which a format that only reads leaves out: what is written is read back the same, sets
+    2. ``read(path)``.  ``write(path, content)``, which a format that only reads leaves out: what is written is read back the same, sets
        too, real numbers at least to ten figures.
     3. A file that is missing or malformed raises a ``RacewayError`` that names it.
     """
@@ -266,7 +266,7 @@ class Format(attrs.AttrsInstance, Protocol):
     suffixes: ClassVar[tuple[str, ...]]
 
     def read(self, path: Path) -> Any: ...
-    def write(self, path: Path, what: Any) -> None: ...
+    def write(self, path: Path, content: Any) -> None: ...
 
 
 class Report(attrs.AttrsInstance, Protocol):

@@ -44,12 +44,12 @@ def door(function: F) -> F:
     return opened  # type: ignore[return-value]
 
 
-def _reader_of(one: inspect.Parameter) -> Reader | None:
+def _reader_of(parameter: inspect.Parameter) -> Reader | None:
     """By the name; of text and of true or false by the type, as of numbers whose name says no more."""
-    kind = str(one.annotation).removesuffix(" | None")
-    if one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD):
+    kind = str(parameter.annotation).removesuffix(" | None")
+    if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
         return None
-    return _READERS.get(kind if kind in ("str", "bool") else one.name) or _READERS.get(kind)
+    return _READERS.get(kind if kind in ("str", "bool") else parameter.name) or _READERS.get(kind)
 
 
 def member(argument: str, value: Any, choices: Collection[str]) -> Any:
@@ -82,7 +82,7 @@ def _several(of: Reader) -> Reader:
 
     def read(value: Any) -> list[Any]:
         alone = isinstance(value, str | bytes | Mapping | os.PathLike) or not isinstance(value, Iterable)
-        return [of[1](one) for one in ([value] if alone else value)]
+        return [of[1](element) for element in ([value] if alone else value)]
 
     return f"{of[0]}, or a list of these", read
 

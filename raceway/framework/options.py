@@ -267,11 +267,11 @@ def unused_options(plugin: Any) -> dict[str, str]:
     PluginError
         A plug-in whose own answer is not option -> reason.
     """
-    own = getattr(plugin, "unused_options", None)
-    if own is None:
+    method = getattr(plugin, "unused_options", None)
+    if method is None:
         return {}
-    found = own()
-    known = {f.name for f in attrs.fields(type(plugin))}
-    if not isinstance(found, dict) or not all(k in known and isinstance(v, str) for k, v in found.items()):
-        raise PluginError(f"plug-in '{plugin.name}': unused_options() returned {found!r}; it must be option -> reason")
-    return found
+    reasons = method()
+    names = {f.name for f in attrs.fields(type(plugin))}
+    if not isinstance(reasons, dict) or not all(k in names and isinstance(v, str) for k, v in reasons.items()):
+        raise PluginError(f"plug-in '{plugin.name}': unused_options() returned {reasons!r}; it must be option -> reason")
+    return reasons

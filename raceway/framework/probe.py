@@ -67,8 +67,8 @@ def check_compiled(kernel: object, label: str, signature: Signature, name: str) 
     if compiled is None:
         raise PluginError(f"{label}: kernel() returns {type(kernel).__name__}, which is not compiled: {remedy}")
     if not any(has.args == signature.args and has.return_type == signature.return_type for has in compiled):
-        found = " or ".join(signature_words(has) for has in compiled) or "no signature"
-        raise PluginError(f"{label}: its kernel has {found}, the rule is {signature_words(signature)}: {remedy}")
+        signatures = " or ".join(signature_words(has) for has in compiled) or "no signature"
+        raise PluginError(f"{label}: its kernel has {signatures}, the rule is {signature_words(signature)}: {remedy}")
     _LOOKED_AT[id(kernel)] = kernel, signature
 
 
@@ -156,13 +156,13 @@ def _passed_near(law: ContactLaw, kernel: Kernel, params: np.ndarray, state: np.
 def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: float, rate: float, who: str) -> None:
     """Refuse derivatives that differences of the force contradict: with them an iteration converges, if it does, to a wrong stiffness."""
     where = f"at gap {gap:g} m, rate {rate:g} m/s"
-    force, *given, _ = _call_law(kernel, params, state, gap, rate, who, where)
-    for word, slope, step in (("d_gap", given[0], (_STEP * gap, 0.0)), ("d_rate", given[1], (0.0, _STEP * rate))):
+    force, *slopes, _ = _call_law(kernel, params, state, gap, rate, who, where)
+    for word, slope, step in (("d_gap", slopes[0], (_STEP * gap, 0.0)), ("d_rate", slopes[1], (0.0, _STEP * rate))):
         size = abs(sum(step))
         sides = []
         for sign in (1.0, -1.0):
-            there = _call_law(kernel, params, state, gap + sign * abs(step[0]), rate + sign * abs(step[1]), who, where)[0]
-            sides.append(sign * (there - force) / size)
+            beside = _call_law(kernel, params, state, gap + sign * abs(step[0]), rate + sign * abs(step[1]), who, where)[0]
+            sides.append(sign * (beside - force) / size)
         low, high = np.minimum(*sides), np.maximum(*sides)
         # Rounding of the differences: 1e-16 of the force over the step.
         slack = _SLOPE * np.maximum(np.abs(low), np.abs(high)) + 1e-12 * np.abs(force) / size
@@ -204,15 +204,15 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
     _remember(mark)
 
 
-def _mark(kernel: Kernel, *given: object) -> tuple[Hashable, ...]:
+def _mark(kernel: Kernel, *arguments: object) -> tuple[Hashable, ...]:
     """A kernel, which stays alive in it, and what it is tried with, arrays by content."""
-    return kernel, *(_content(one) for one in given)
+    return kernel, *(_content(argument) for argument in arguments)
 
 
-def _content(given: object) -> Hashable:
-    if not isinstance(given, np.ndarray):
-        return repr(given)
-    return given.dtype.str, given.shape, given.flags.c_contiguous, given.tobytes()
+def _content(argument: object) -> Hashable:
+    if not isinstance(argument, np.ndarray):
+        return repr(argument)
+    return argument.dtype.str, argument.shape, argument.flags.c_contiguous, argument.tobytes()
 
 
 def _remember(mark: tuple[Hashable, ...]) -> None:
@@ -274,12 +274,12 @@ def _check_outputs(outputs: Tables, who: str, where: str) -> None:
             raise PluginError(f"{who}: the kernel gives `{word}` = {bad:g} {where}; the contract says finite")
 
 
-def _check_array(values: Any, who: str, source: str, wanted: str, shape: tuple[int | None, ...]) -> None:
+def _check_array(values: Any, who: str, source: str, expected: str, shape: tuple[int | None, ...]) -> None:
     array = isinstance(values, np.ndarray)
-    found = f"{values.dtype} of shape {values.shape}" if array else type(values).__name__
+    shown = f"{values.dtype} of shape {values.shape}" if array else type(values).__name__
     fits = array and values.ndim == len(shape) and all(w in (None, s) for w, s in zip(shape, values.shape, strict=False))
     if not fits or values.dtype != np.float64 or not values.flags.c_contiguous:
-        raise PluginError(f"{who}: {source} returned {found}; the contract says a C-contiguous float64 array {wanted}")
+        raise PluginError(f"{who}: {source} returned {shown}; the contract says a C-contiguous float64 array {expected}")
     if not np.isfinite(values).all():
         raise PluginError(f"{who}: {source} returned values that are not finite")
 

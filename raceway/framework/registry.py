@@ -108,9 +108,9 @@ class Registry:
         module, version = import_file(path)
         if self.manager.is_registered(module):
             return [e for e in self.all() if e.source == str(path)]
-        known = len(self.faults)
+        before = len(self.faults)
         self._register(module, str(path), path.name, version)
-        faults, self.faults = self.faults[known:], self.faults[:known]
+        faults, self.faults = self.faults[before:], self.faults[:before]
         added = [e for e in self.all() if e.source == str(path)]
         hooks = (self.manager.get_hookcallers(module) or []) if self.manager.is_registered(module) else []
         if not faults and not hooks:
@@ -141,9 +141,9 @@ class Registry:
         """
         names = {id(plugin): name for name, plugin in self.manager.list_name_plugin()}
         for implementation in getattr(self.manager.hook, hook).get_hookimpls():
-            others = [p for p in self.manager.get_plugins() if p is not implementation.plugin]
+            excluded = [p for p in self.manager.get_plugins() if p is not implementation.plugin]
             try:
-                self.manager.subset_hook_caller(hook, others)(**arguments)
+                self.manager.subset_hook_caller(hook, excluded)(**arguments)
             except RacewayError:
                 raise
             except BaseException as why:  # a third party's own code
@@ -173,9 +173,9 @@ class Registry:
             return self.find(kinds[0], name)
         if kinds:
             raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
-        known = sorted({n for _, n in self.entries})
+        names = sorted({n for _, n in self.entries})
         installed = ", ".join(f"{k}:{n}" for k, n in sorted(self.entries))
-        message = f"no plug-in named '{name}'{nearest(name, known)}; installed: {installed}"
+        message = f"no plug-in named '{name}'{nearest(name, names)}; installed: {installed}"
         if self.faults:
             message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
         raise PluginError(message)
@@ -188,11 +188,11 @@ class Registry:
         PluginError
             Unknown name (with the nearest one), or a name that two plug-ins claim.
         """
-        found = self.entries.get((kind, name), [])
-        if len(found) == 1:
-            return found[0]
-        if found:
-            owners = " and ".join(f"`{e.plugin.__qualname__}` of {e.distribution}" for e in found)
+        entries = self.entries.get((kind, name), [])
+        if len(entries) == 1:
+            return entries[0]
+        if entries:
+            owners = " and ".join(f"`{e.plugin.__qualname__}` of {e.distribution}" for e in entries)
             raise PluginError(
                 f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Rename or "
                 "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
@@ -217,14 +217,14 @@ class Registry:
         endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]
         fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
         if not fitting:
-            told = ", ".join(sorted({ending for ending, _ in endings}))
-            raise PluginError(f"'{path}': no format has the ending '{Path(path).suffix.lower()}'; there are {told}")
+            suffixes = ", ".join(sorted({ending for ending, _ in endings}))
+            raise PluginError(f"'{path}': no format has the ending '{Path(path).suffix.lower()}'; there are {suffixes}")
         longest = max(len(ending) for ending, _ in fitting)
-        ending, found = next(pair for pair in fitting if len(pair[0]) == longest)
-        owners = [str(entry) for other, entry in fitting if other == ending]
+        ending, owner = next(pair for pair in fitting if len(pair[0]) == longest)
+        owners = [str(entry) for suffix, entry in fitting if suffix == ending]
         if len(owners) > 1:
             raise PluginError(f"'{path}': {' and '.join(owners)} both claim the ending '{ending}'. Remove one.")
-        return found
+        return owner
 
     def names(self, kind: str) -> list[str]:
         return sorted(name for k, name in self.entries if k == kind)
@@ -236,7 +236,7 @@ class Registry:
 
     def shadowed(self) -> list[tuple[str, str]]:
         """(kind, name) that more than one plug-in claims."""
-        return [key for key, found in sorted(self.entries.items()) if len(found) > 1]
+        return [key for key, entries in sorted(self.entries.items()) if len(entries) > 1]
 
     def _load(self, point: EntryPoint) -> None:
         distribution, version = owner(point)
@@ -264,40 +264,42 @@ class Registry:
                 raise
             if self.manager.get_plugin(label) is plugin:
                 self.manager.unregister(name=label)
-            own = isinstance(why, pluggy.PluginValidationError | ValueError)
-            told = str(why) if own else f"looking at it raises {type(why).__name__}: {why}"
-            self.faults.append(Fault(label, f"does not fit the hooks: {told}"))
+            by_contract = isinstance(why, pluggy.PluginValidationError | ValueError)
+            reason = str(why) if by_contract else f"looking at it raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, f"does not fit the hooks: {reason}"))
             return
         for kind, (hook_name, _) in KINDS.items():
-            others = [p for p in self.manager.get_plugins() if p is not plugin]
+            earlier = [p for p in self.manager.get_plugins() if p is not plugin]
             try:
                 with foreign_words():
-                    lists = self.manager.subset_hook_caller(hook_name, others)()
+                    lists = self.manager.subset_hook_caller(hook_name, earlier)()
             except BaseException as why:  # a third party's own code
                 if not is_foreign_fault(why):
                     raise
                 self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
                 continue
-            for one in lists:
-                if not isinstance(one, list | tuple):
-                    self.faults.append(Fault(label, f"`{hook_name}` returns {_shown(one)}, which is not a list of classes"))
+            for classes in lists:
+                if not isinstance(classes, list | tuple):
+                    self.faults.append(
+                        Fault(label, f"`{hook_name}` returns {_shown(classes)}, which is not a list of classes")
+                    )
                     continue
-                for found in one:
-                    self._add(kind, found, label, distribution, version, source)
+                for plugin_class in classes:
+                    self._add(kind, plugin_class, label, distribution, version, source)
 
-    def _add(self, kind: str, found: Any, label: str, distribution: str, version: str, source: str) -> None:
+    def _add(self, kind: str, plugin: Any, label: str, distribution: str, version: str, source: str) -> None:
         try:
-            faults = broken_duties(kind, found)
-            entry = Entry(kind, str(getattr(found, "name", "?")), found, distribution, version, source)
+            faults = broken_duties(kind, plugin)
+            entry = Entry(kind, str(getattr(plugin, "name", "?")), plugin, distribution, version, source)
         except BaseException as why:  # an attribute of a metaclass, or a name, that raises
             if not is_foreign_fault(why):
                 raise
-            told = f"looking at {kind.replace('_', ' ')} {_shown(found)} raises {type(why).__name__}: {why}"
-            self.faults.append(Fault(label, told))
+            reason = f"looking at {kind.replace('_', ' ')} {_shown(plugin)} raises {type(why).__name__}: {why}"
+            self.faults.append(Fault(label, reason))
             return
         if faults:
-            what = getattr(entry.plugin, "__qualname__", _shown(entry.plugin))
-            self.faults.append(Fault(label, f"{entry.kind.replace('_', ' ')} `{what}` " + ", ".join(faults)))
+            title = getattr(entry.plugin, "__qualname__", _shown(entry.plugin))
+            self.faults.append(Fault(label, f"{entry.kind.replace('_', ' ')} `{title}` " + ", ".join(faults)))
             return
         same = self.entries.setdefault((entry.kind, entry.name), [])
         if all(e.plugin is not entry.plugin for e in same):

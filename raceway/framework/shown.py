@@ -59,16 +59,16 @@ def as_text(title: str, facts: Sequence[Fact]) -> str:
 
 def as_html(title: str, facts: Sequence[Fact]) -> str:
     """A table that needs nothing else; on a narrow screen its cells become narrower, and none is cut off."""
-    first, _, rest = title.partition("\n")
-    head = f"<strong>{escape(first)}</strong>{f'<br>{escape(rest)}' if rest else ''}"
+    first, _, body = title.partition("\n")
+    head = f"<strong>{escape(first)}</strong>{f'<br>{escape(body)}' if body else ''}"
     rows = "".join(f"<tr>{_cells(*fact)}</tr>" for fact in facts)
     return f'<table style="{_TABLE}"><caption style="text-align:left;padding:4px 0">{head}</caption><tbody>{rows}</tbody></table>'
 
 
 def _cells(name: str, value: str, remark: str) -> str:
-    told = f'<td style="{_CELL};{_WHOLE}">{escape(value)}</td>' if value else ""
+    cell = f'<td style="{_CELL};{_WHOLE}">{escape(value)}</td>' if value else ""
     wide = "" if value else ' colspan="2"'
-    return f'<td style="{_CELL}">{escape(name)}</td>{told}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
+    return f'<td style="{_CELL}">{escape(name)}</td>{cell}<td style="{_CELL};{_BROKEN}"{wide}>{escape(remark)}</td>'
 
 
 def tilt_words(tilt: float | str) -> str:
@@ -81,12 +81,12 @@ def in_micro(value: float) -> str:
     return "0" if abs(value) < 1e-15 else f"{1e6 * value:.4g}"
 
 
-def largest_facts(found: ReadTables, when: str) -> list[Fact]:
+def largest_facts(equilibrium: ReadTables, when: str) -> list[Fact]:
     """Largest ball load and pressure of a table that has them, each with its race."""
-    load, pressure = (race_words(found[f"largest_{what}_race"]) for what in ("ball_load", "pressure"))
+    load, pressure = (race_words(equilibrium[f"largest_{quantity}_race"]) for quantity in ("ball_load", "pressure"))
     return [
-        ("largest ball load", number(found["largest_ball_load_n"], "N"), f"{load}, {when}"),
-        ("largest pressure", number(1e-6 * found["largest_pressure_pa"], "MPa"), f"Hertz, {pressure}"),
+        ("largest ball load", number(equilibrium["largest_ball_load_n"], "N"), f"{load}, {when}"),
+        ("largest pressure", number(1e-6 * equilibrium["largest_pressure_pa"], "MPa"), f"Hertz, {pressure}"),
     ]
 
 
@@ -114,5 +114,5 @@ def number_within(value: float, error: float, unit: str) -> str:
 
 def percents(*changes: float) -> str:
     """Both ends of relative changes in percent, or the one that there is."""
-    ends = (f"{100.0 * one:+.{'2g' if abs(one) < 0.995 else '0f'}}" for one in (min(changes), max(changes)))
+    ends = (f"{100.0 * change:+.{'2g' if abs(change) < 0.995 else '0f'}}" for change in (min(changes), max(changes)))
     return f"{' to '.join(dict.fromkeys(ends))} %"

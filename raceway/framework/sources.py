@@ -29,14 +29,16 @@ def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
     every = {name for p in points for name in _called(p)}
     exact = os.environ.get("RACEWAY_PLUGINS")
     if exact is not None:
-        wanted = _names(exact)
-        missing = sorted(wanted - every)
-        points = [p for p in points if wanted & _called(p)]
+        names = _names(exact)
+        missing = sorted(names - every)
+        points = [p for p in points if names & _called(p)]
     blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
-    known = sorted(every)
-    for name in sorted(blocked - set(known)):
-        told = f"installed: {', '.join(known)}" if known else "no plug-in is installed"
-        warnings.warn(f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, known)}; {told}", stacklevel=2)
+    labels = sorted(every)
+    for name in sorted(blocked - set(labels)):
+        installed = f"installed: {', '.join(labels)}" if labels else "no plug-in is installed"
+        warnings.warn(
+            f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, labels)}; {installed}", stacklevel=2
+        )
     return [p for p in points if not blocked & _called(p)], missing
 
 

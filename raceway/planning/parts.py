@@ -113,10 +113,12 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
         rubbing = False
         why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
-    wanted = problem.kinematics.gyroscopic != "none"
+    hypothesis = problem.kinematics.gyroscopic != "none"
     still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
-    why_not = still if wanted else _off(problem, "kinematics.gyroscopic", "none")
-    moments = parts.decide(wanted and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not)
+    why_not = still if hypothesis else _off(problem, "kinematics.gyroscopic", "none")
+    moments = parts.decide(
+        hypothesis and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not
+    )
     grows, part, key = problem.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
     why_not = still if grows else _off(problem, key, "false")
     parts.decide(grows and problem.spin_speed > 0.0, part, f"{key} is true", why_not)
@@ -146,8 +148,8 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     steady = integrator.method.steady
     once = (steady or not integrator.method.inertial) and repeats and turns > 1
     if once and OTHER_TURNS not in parts.force:
-        what = "the steady motion" if steady else "a series of equilibria without memory"
-        parts.leave_out(f"{turns - 1} of {turns} turns", f"{what} repeats itself every turn")
+        motion = "the steady motion" if steady else "a series of equilibria without memory"
+        parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats itself every turn")
         turns = 1
     why = "friction: the answer depends on how the motion began, the error is how far"
     why_not = "contact.friction is 0" if not friction else "the transient of this scene is not estimated"

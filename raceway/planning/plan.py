@@ -160,9 +160,9 @@ class ScenePlan(Shown, Plan):
         time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
         head: list[Fact] = [
             ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
-            ("kept", "", ", ".join(one.part for one in self.kept)),
+            ("kept", "", ", ".join(part.part for part in self.kept)),
         ]
-        return self.title, [*head, *(("left out", "", f"{one.part}: {one.why}") for one in self.left_out)]
+        return self.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
 
 
 @door
@@ -192,8 +192,8 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     problem = resolve(as_scene(scene, plugins=plugins))
     if mistakes := foreseen(problem):
         raise SceneError(mistakes)
-    made = _plan(problem)
-    values = {str(field.alias): getattr(made, field.name) for field in attrs.fields(Plan)}
+    decided = _plan(problem)
+    values = {str(field.alias): getattr(decided, field.name) for field in attrs.fields(Plan)}
     return ScenePlan(**values, title=problem.scene.title)
 
 
@@ -228,12 +228,15 @@ class Check(Shown):
     def _shown(self) -> tuple[str, list[Fact]]:
         count = len(self.mistakes)
         title = "no mistakes" if self.ok else f"{count} mistake{'' if count == 1 else 's'}"
-        rows = [(one.path, "" if one.value is None else repr(one.value), one.message) for one in self.mistakes]
+        rows = [
+            (mistake.path, "" if mistake.value is None else repr(mistake.value), mistake.message)
+            for mistake in self.mistakes
+        ]
         return title, [*rows, *(("warning", "", text) for text in self.warnings)]
 
     def to_dict(self) -> Tables:
         """Mistakes and warnings as plain tables."""
-        return {"errors": [attrs.asdict(one) for one in self.mistakes], "warnings": list(self.warnings)}
+        return {"errors": [attrs.asdict(mistake) for mistake in self.mistakes], "warnings": list(self.warnings)}
 
 
 @door

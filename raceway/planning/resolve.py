@@ -247,8 +247,8 @@ def stable_steps_per_turn(period: float, limit: float) -> int:
 
 def recorded_per_turn(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
     """Samples a turn that are really recorded: a divisor of the steps near ``samples_per_turn``, or all steps."""
-    wanted = samples_per_turn(turns, inertial)
-    fitting = (s for s in range(wanted, min(2 * wanted, steps_per_turn) + 1) if steps_per_turn % s == 0)
+    least = samples_per_turn(turns, inertial)
+    fitting = (s for s in range(least, min(2 * least, steps_per_turn) + 1) if steps_per_turn % s == 0)
     return next(fitting, steps_per_turn)
 
 

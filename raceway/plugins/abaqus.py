@@ -64,16 +64,16 @@ class Abaqus:
             )
         return exchange.used_only(path, content.points, cells, content.point_sets, facets)
 
-    def write(self, path: Path, what: HexMesh) -> None:
+    def write(self, path: Path, mesh: HexMesh) -> None:
         """Write a mesh; each facet set as element sets NAME_S1 to NAME_S6 and the *SURFACE made of them."""
         lines = ["*HEADING", "hexahedra written by raceway", "*NODE"]
-        numbers = [", ".join(_NUMBER % x for x in point) for point in what.points]
+        numbers = [", ".join(_NUMBER % x for x in point) for point in mesh.points]
         lines += [f"{number}, {text}" for number, text in enumerate(numbers, 1)]
         lines.append(f"*ELEMENT, TYPE={_TYPES[self.formulation]}, ELSET=EALL")
-        lines += [f"{number}, {', '.join(map(str, nodes))}" for number, nodes in enumerate((what.cells + 1).tolist(), 1)]
-        for name, nodes in what.node_sets.items():
+        lines += [f"{number}, {', '.join(map(str, nodes))}" for number, nodes in enumerate((mesh.cells + 1).tolist(), 1)]
+        for name, nodes in mesh.node_sets.items():
             lines += [f"*NSET, NSET={name}", *_entries(nodes)]
-        for name, facets in what.facet_sets.items():
+        for name, facets in mesh.facet_sets.items():
             faces = np.unique(facets[:, 1])
             for face in faces:
                 lines += [f"*ELSET, ELSET={name}_S{face + 1}", *_entries(facets[facets[:, 1] == face, 0])]

@@ -202,17 +202,17 @@ class Vtu:
                 facets[name.removeprefix(_FACETS)] = np.argwhere(bits)
         return used_only(path, content.points, cells, nodes, facets)
 
-    def write(self, path: Path, what: HexMesh) -> None:
+    def write(self, path: Path, mesh: HexMesh) -> None:
         """Write a mesh with its sets."""
         package = meshio()
         point_data, cell_data = {}, {}
-        for name, nodes in what.node_sets.items():
-            point_data[_NODES + name] = np.isin(np.arange(len(what.points)), nodes).astype(np.uint8)
-        for name, facets in what.facet_sets.items():
-            bits = np.zeros(len(what.cells), dtype=np.uint8)
+        for name, nodes in mesh.node_sets.items():
+            point_data[_NODES + name] = np.isin(np.arange(len(mesh.points)), nodes).astype(np.uint8)
+        for name, facets in mesh.facet_sets.items():
+            bits = np.zeros(len(mesh.cells), dtype=np.uint8)
             np.bitwise_or.at(bits, facets[:, 0], (1 << facets[:, 1]).astype(np.uint8))
             cell_data[_FACETS + name] = [bits]
-        content = package.Mesh(what.points, [("hexahedron", what.cells)], point_data=point_data, cell_data=cell_data)
+        content = package.Mesh(mesh.points, [("hexahedron", mesh.cells)], point_data=point_data, cell_data=cell_data)
         store(path, package.vtu.write, content)
 
     def example_content(self) -> HexMesh:

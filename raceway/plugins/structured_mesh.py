@@ -183,13 +183,13 @@ class Structured:
             band = low, high
         fine = self._fine(major)
         arc = graded(low, high, *band, fine / shape.groove, size / shape.groove, self.growth)
-        left, right = (shape.outline.shares(side, size) for side in ("left", "right"))
+        lower, right = (shape.outline.shares(side, size) for side in ("left", "right"))
         # As fine in depth as along the groove: a uniform azimuth does not follow the minor semi-axis.
         if self.azimuth_cells == "graded":
             fine = self._fine(minor)
         thickness = shape.thickness
         layers = growing(1.0, min(fine, size) / thickness, size / thickness, self.growth)
-        return left, arc, right, layers, band
+        return lower, arc, right, layers, band
 
     def _azimuths(self, bearing: Bearing, shape: RingShape) -> np.ndarray:
         """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""

@@ -177,8 +177,8 @@ class Bearing:
         signs = signs_of(self.arrangement)
         if not self.row:
             return signs
-        own = signs if self.arrangement != "single" else "+" * len(self.row)
-        return "".join(row.direction or sign for row, sign in zip(self.row, own, strict=True))
+        row_signs = signs if self.arrangement != "single" else "+" * len(self.row)
+        return "".join(row.direction or sign for row, sign in zip(self.row, row_signs, strict=True))
 
     @property
     def rows(self) -> tuple[tuple[float, float], ...]:
@@ -187,8 +187,10 @@ class Bearing:
         rows = places_of(word, self.row_distance or self.width or 0.0)
         if not self.row:
             return rows
-        places = [place if row.position is None else row.position for row, (_, place) in zip(self.row, rows, strict=True)]
-        return tuple((1.0 if sign == "+" else -1.0, place) for sign, place in zip(self.signs, places, strict=True))
+        places = [
+            position if row.position is None else row.position for row, (_, position) in zip(self.row, rows, strict=True)
+        ]
+        return tuple((1.0 if sign == "+" else -1.0, position) for sign, position in zip(self.signs, places, strict=True))
 
     @property
     def of_rows(self) -> tuple[Bearing, ...]:
@@ -200,26 +202,26 @@ class Bearing:
         """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
         if not self.row:
             return True
-        alike = {attrs.evolve(one, first_ball_azimuth_deg=0.0) for one in self.of_rows}
+        alike = {attrs.evolve(bearing, first_ball_azimuth_deg=0.0) for bearing in self.of_rows}
         return len(alike) == 1
 
     @property
     def balls_in_all(self) -> int:
         """Balls of all rows."""
-        return sum(one.ball_count for one in self.of_rows)
+        return sum(bearing.ball_count for bearing in self.of_rows)
 
     def of_row(self, row: Row | None) -> Bearing:
         """The bearing of one row of a set."""
-        given = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
-        given = {key: value for key, value in given.items() if value is not None}
-        if "contact_angle_deg" in given:
-            given["radial_clearance"] = None
-        if not {"ball_diameter", "pitch_diameter"}.isdisjoint(given):
+        geometry = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
+        geometry = {key: value for key, value in geometry.items() if value is not None}
+        if "contact_angle_deg" in geometry:
+            geometry["radial_clearance"] = None
+        if not {"ball_diameter", "pitch_diameter"}.isdisjoint(geometry):
             # Dimensions of the set's bearing belong to its balls.
             lost = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
-            given = {**dict.fromkeys(lost), **given}
+            geometry = {**dict.fromkeys(lost), **geometry}
         plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
-        return attrs.evolve(self, **{**plain, **given})
+        return attrs.evolve(self, **{**plain, **geometry})
 
     def _check_clearance(self) -> None:
         clearance, angle = self.radial_clearance, self.contact_angle_deg
@@ -234,10 +236,10 @@ class Bearing:
             return
         fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
         if abs(fitting - clearance) > 1e-3 * distance:
-            own = degrees(acos(1.0 - clearance / (2.0 * distance)))
+            computed = degrees(acos(1.0 - clearance / (2.0 * distance)))
             raise ValueError(
                 f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
-                f"clearance gives {own:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+                f"clearance gives {computed:.3f} deg, that angle {fitting:.4g} m. Give one of them"
             )
 
     @property

@@ -92,17 +92,17 @@ class Preset:
 @cache
 def catalogue() -> dict[str, Preset]:
     """All presets by name: those with a file of their own, then the series."""
-    found = dict(single_presets())
+    presets = dict(single_presets())
     for file in _tomls(files("raceway").joinpath("data/series")):
-        for one in _series(tomllib.loads(file.read_text(encoding="utf-8"))):
-            found.setdefault(one.name, one)
-    return found
+        for entry in _series(tomllib.loads(file.read_text(encoding="utf-8"))):
+            presets.setdefault(entry.name, entry)
+    return presets
 
 
 @cache
 def single_presets() -> dict[str, Preset]:
     """Presets with a file of their own; they go before those of a series."""
-    return {one.name: one for one in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
+    return {entry.name: entry for entry in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
 
 
 def _preset(name: object) -> Preset | None:
@@ -139,23 +139,23 @@ def _series(content: ReadTables) -> Iterator[Preset]:
     columns, same = content["columns"], _facts(content["constants"], "")
     for name, numbers in content["bearings"].items():
         row = dict(zip(content["order"], numbers, strict=True))
-        own = [
-            Fact(key, row[key], one["source"], bool(one.get("inferred", False)), row.get(one.get("scatter")))
-            for key, one in columns.items()
+        measured = [
+            Fact(key, row[key], column["source"], bool(column.get("inferred", False)), row.get(column.get("scatter")))
+            for key, column in columns.items()
         ]
         title = (
             f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm, "
             f"{row['contact_angle_deg']:g} deg"
         )
         printed = {key: row[key] for key in content["printed"]}
-        yield Preset(name, title, (*own, *same), **{key: content[key] for key in _INFERRED}, printed=printed)
+        yield Preset(name, title, (*measured, *same), **{key: content[key] for key in _INFERRED}, printed=printed)
 
 
 def found_by(pattern: str) -> list[Preset]:
     """Presets whose name matches a pattern of the shell (70*C), or holds the text, in any case."""
     word = pattern.lower()
-    whole = [one for one in catalogue().values() if fnmatch(one.name.lower(), word)]
-    return whole or [one for one in catalogue().values() if word in one.name.lower()]
+    matches = [entry for entry in catalogue().values() if fnmatch(entry.name.lower(), word)]
+    return matches or [entry for entry in catalogue().values() if word in entry.name.lower()]
 
 
 def preset(name: object) -> Tables:
@@ -166,63 +166,65 @@ def preset(name: object) -> Tables:
     SceneError
         Unknown name, with the nearest five.
     """
-    one = _preset(name)
-    if one is None:
+    entry = _preset(name)
+    if entry is None:
         raise SceneError.at("bearing.preset", name, no_preset(str(name)))
-    return {**one.table, "preset": name}
+    return {**entry.table, "preset": name}
 
 
 def no_preset(name: str) -> str:
     """What is said of an unknown designation."""
-    by_lower = {one.lower(): one for one in catalogue()}
+    by_lower = {word.lower(): word for word in catalogue()}
     close = difflib.get_close_matches(name.lower(), list(by_lower), n=_OFFERED, cutoff=0.0)
-    return f"no such preset; the nearest: {', '.join(by_lower[one] for one in close)} (`raceway catalogue` lists all)"
+    return f"no such preset; the nearest: {', '.join(by_lower[word] for word in close)} (`raceway catalogue` lists all)"
 
 
-def geometry_of(bearing: ReadTables, given: ReadTables) -> Tables | None:
+def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
     """What a result says of the uncertainty of presets; None without one, or where their sources state the numbers.
 
     Parameters
     ----------
     bearing : the [bearing] table with the presets' numbers, in its rows, too
-    given : the table as the user wrote it, whose own numbers are no inferred ones
+    tables : the table as the user wrote it, whose own numbers are no inferred ones
 
     Notes
     -----
     ``preset`` and ``inferred`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
     several presets the uncertainties are the largest.
     """
-    rows = given.get("row")
+    rows = tables.get("row")
     rows = rows if isinstance(rows, list | tuple) else []
-    own = {k: _inferred(row.get("preset"), row) for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row}
-    found = {k: one for k, one in own.items() if one is not None}
+    inferred = {
+        k: _inferred(row.get("preset"), row) for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row
+    }
+    by_row = {k: geometry for k, geometry in inferred.items() if geometry is not None}
     # Where all rows bring presets, nothing of the table's own is left to speak of.
-    whole = _inferred(bearing.get("preset"), given) if not rows or len(own) < len(rows) else None
-    if whole is None and not found:
+    common = _inferred(bearing.get("preset"), tables) if not rows or len(inferred) < len(rows) else None
+    if common is None and not by_row:
         return None
-    presets = [*([] if whole is None else [whole]), *found.values()]
-    axial, radial = (max(one[key] for one in presets) for key in ("stiffness_error", "radial_stiffness_error"))
+    presets = [*([] if common is None else [common]), *by_row.values()]
+    axial, radial = (max(geometry[key] for geometry in presets) for key in ("stiffness_error", "radial_stiffness_error"))
     return {
-        **(whole or {}),
-        **({"rows": [{"row": k, **one} for k, one in found.items()]} if found else {}),
+        **(common or {}),
+        **({"rows": [{"row": k, **geometry} for k, geometry in by_row.items()]} if by_row else {}),
         "stiffness_error": axial,
         "radial_stiffness_error": radial,
         "words": f"geometry inferred: stiffness known to about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially",
     }
 
 
-def _inferred(name: object, given: ReadTables) -> Tables | None:
+def _inferred(name: object, tables: ReadTables) -> Tables | None:
     """preset, inferred and uncertainties of one preset, less the keys that the user gives."""
-    one = _preset(name)
-    if one is None or one.stiffness_error is None:
+    entry = _preset(name)
+    if entry is None or entry.stiffness_error is None:
         return None
-    facts = [fact for fact in one.facts if fact.inferred and "." not in fact.key and fact.key not in given]
+    facts = [fact for fact in entry.facts if fact.inferred and "." not in fact.key and fact.key not in tables]
     if not facts:
         return None
     return {
-        "preset": one.name,
+        "preset": entry.name,
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
-        **{key: getattr(one, key) for key in _INFERRED},
+        **{key: getattr(entry, key) for key in _INFERRED},
     }
 
 
@@ -258,7 +260,7 @@ def with_material(table: Tables, path: str, preset: Tables) -> Tables:
     if name is None:
         return {**preset, **table}
     if not isinstance(name, str) or name not in materials():
-        known = ", ".join(materials())
-        raise SceneError.at(f"{path}.material", name, f"no such material{nearest(str(name), materials())}; known: {known}")
-    one = attrs.asdict(materials()[name])
-    return {**{key: one[key] for key in attrs.fields_dict(Material) if key in one}, **table}
+        names = ", ".join(materials())
+        raise SceneError.at(f"{path}.material", name, f"no such material{nearest(str(name), materials())}; known: {names}")
+    material = attrs.asdict(materials()[name])
+    return {**{key: material[key] for key in attrs.fields_dict(Material) if key in material}, **table}

@@ -31,9 +31,9 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]])
     Keys are sorted: changes in another order make the same scene, and folders are named by the title.
     """
     title = tables.get("title", name)
-    made = ", ".join(f"{key} = {told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
-    if made and isinstance(title, str) and title.strip():
-        title += (", " if "\n" in title else "\n") + made
+    changed = ", ".join(f"{key} = {told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
+    if changed and isinstance(title, str) and title.strip():
+        title += (", " if "\n" in title else "\n") + changed
     return {**tables, "title": title}
 
 
@@ -80,19 +80,19 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
 
 def value_at(tables: ReadTables, key: str) -> Any:
     """What stands at a dotted key, or None."""
-    found: Any = tables
+    value: Any = tables
     for name in key.split("."):
-        found = found.get(name) if isinstance(found, dict) else None
-    return found
+        value = value.get(name) if isinstance(value, dict) else None
+    return value
 
 
 def without(tables: ReadTables, key: str) -> Tables:
     """A copy of the tables without what stands at a dotted key; what is not there may be missing."""
-    name, _, rest = key.partition(".")
-    if not rest:
+    name, _, path = key.partition(".")
+    if not path:
         return {word: value for word, value in tables.items() if word != name}
     inner = tables.get(name)
-    return {**tables, name: without(inner, rest)} if isinstance(inner, dict) else dict(tables)
+    return {**tables, name: without(inner, path)} if isinstance(inner, dict) else dict(tables)
 
 
 #: Tables of plug-ins that are attributes of the scene themselves.
@@ -134,18 +134,18 @@ def key_of(scene: Scene, path: str) -> Key:
     SceneError
         A path that is no continuous key of this scene.
     """
-    known = {key.path: key for key in continuous_keys(scene)}
-    if path in known:
-        return known[path]
+    keys = {key.path: key for key in continuous_keys(scene)}
+    if path in keys:
+        return keys[path]
     table = path.partition(".")[0]
     if table in SETTINGS:
         raise SceneError.at(path, None, f"is a setting of a method: the answer must not depend on [{table}]")
-    found = _value(scene, path)
-    if isinstance(found, bool | str):
-        raise SceneError.at(path, found, "is no continuous key: it takes a word or a switch")
-    if isinstance(found, int):
-        raise SceneError.at(path, found, "is no continuous key: it takes whole numbers only")
-    raise SceneError.at(path, None, f"is no continuous key of this scene, which has no number there{nearest(path, known)}")
+    value = _value(scene, path)
+    if isinstance(value, bool | str):
+        raise SceneError.at(path, value, "is no continuous key: it takes a word or a switch")
+    if isinstance(value, int):
+        raise SceneError.at(path, value, "is no continuous key: it takes whole numbers only")
+    raise SceneError.at(path, None, f"is no continuous key of this scene, which has no number there{nearest(path, keys)}")
 
 
 def with_number(scene: Scene, path: str, value: float) -> Scene:
@@ -156,8 +156,8 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     ValueError
         A number that its key's or table's rule refuses.
     """
-    found: Scene = _replaced(scene, _steps(path), value)
-    return found
+    changed: Scene = _replaced(scene, _steps(path), value)
+    return changed
 
 
 def _steps(path: str) -> list[str | int]:
@@ -166,16 +166,16 @@ def _steps(path: str) -> list[str | int]:
 
 def _value(scene: Scene, path: str) -> Any:
     """What stands at a path; None where there is nothing."""
-    found: Any = scene
+    node: Any = scene
     for step in _steps(path):
         if isinstance(step, int):
-            found = found[step] if isinstance(found, tuple) and step < len(found) else None
-        elif attrs.has(type(found)):
-            inside = [getattr(found, f.name) for f in attrs.fields(type(found)) if "plugin" in f.metadata]
-            found = next((getattr(part, step) for part in (found, *inside) if hasattr(part, step)), None)
+            node = node[step] if isinstance(node, tuple) and step < len(node) else None
+        elif attrs.has(type(node)):
+            inside = [getattr(node, f.name) for f in attrs.fields(type(node)) if "plugin" in f.metadata]
+            node = next((getattr(part, step) for part in (node, *inside) if hasattr(part, step)), None)
         else:
             return None
-    return found
+    return node
 
 
 def _numbers(part: Any, before: str) -> Iterator[Key]:
@@ -193,18 +193,18 @@ def _leaves(value: Any, path: str, unit: str, words: str) -> Iterator[Key]:
         yield Key(path, value, unit, words)
     elif attrs.has(type(value)):
         yield from _numbers(value, path)
-    elif isinstance(value, tuple) and not any(isinstance(one, tuple) for one in value):
-        for k, one in enumerate(value):
-            yield from _leaves(one, f"{path}[{k}]", unit, words)
+    elif isinstance(value, tuple) and not any(isinstance(element, tuple) for element in value):
+        for k, element in enumerate(value):
+            yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
 def _replaced(part: Any, steps: list[str | int], value: float) -> Any:
     if not steps:
         return value
-    step, rest = steps[0], steps[1:]
+    step, further = steps[0], steps[1:]
     if isinstance(step, int):
-        return (*part[:step], _replaced(part[step], rest, value), *part[step + 1 :])
+        return (*part[:step], _replaced(part[step], further, value), *part[step + 1 :])
     fields = attrs.fields_dict(type(part))
     if step not in fields:  # a key of the plug-in that the table names
-        step, rest = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
-    return attrs.evolve(part, **{step: _replaced(getattr(part, step), rest, value)})
+        step, further = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
+    return attrs.evolve(part, **{step: _replaced(getattr(part, step), further, value)})

@@ -29,12 +29,12 @@ def ring_inertia(scene: Scene) -> tuple[float, float, float]:
     is cut out exactly.
     """
     total = np.zeros(3)
-    for (_, place), bearing in zip(scene.bearing.rows, scene.bearing.of_rows, strict=True):
+    for (_, position), bearing in zip(scene.bearing.rows, scene.bearing.of_rows, strict=True):
         moments = _moments(bearing, groove_depth(bearing))
         if moments is None:
             return 0.0, 0.0, 0.0
         mass, transverse, polar = (bearing.rings.density * moment for moment in moments)
-        total += mass, transverse + mass * place**2, polar
+        total += mass, transverse + mass * position**2, polar
     return float(total[0]), float(total[1]), float(total[2])
 
 
@@ -138,7 +138,7 @@ def grooves(scene: Scene, row: int = 0) -> Grooves:
     and X - s A sin(alpha) of the outer one (side s, distance A), move axially by a T_i X and a T_o (X - s A sin(alpha)).
     At one temperature for all, everything keeps its shape.
     """
-    b, (side, place), warm = scene.bearing.of_rows[row], scene.bearing.rows[row], scene.mounting
+    b, (side, position), warm = scene.bearing.of_rows[row], scene.bearing.rows[row], scene.mounting
     angle, half = b.contact_angle, 0.5 * b.ball_diameter
     to_inner, to_outer = ((f - 0.5) * b.ball_diameter for f in (b.conformity_inner, b.conformity_outer))
     by_inner = b.rings.strain("bearing.rings", warm.inner_temperature)
@@ -147,11 +147,11 @@ def grooves(scene: Scene, row: int = 0) -> Grooves:
     if scene.kinematics.ball_growth:
         ball += ball_growth(b, scene.spin_speed)
     circle = 0.5 * b.pitch_diameter + to_inner * cos(angle)
-    other = 0.5 * b.pitch_diameter - to_outer * cos(angle)
+    outer_circle = 0.5 * b.pitch_diameter - to_outer * cos(angle)
     fits = inner_fit(scene, b) - outer_fit(scene, b)
     return Grooves(
-        axial=by_outer * (to_inner + to_outer) * sin(angle) + side * (by_inner - by_outer) * place,
-        radial=radial_growth(scene, row) + fits + by_inner * circle - by_outer * other,
+        axial=by_outer * (to_inner + to_outer) * sin(angle) + side * (by_inner - by_outer) * position,
+        radial=radial_growth(scene, row) + fits + by_inner * circle - by_outer * outer_circle,
         inner=by_inner * (to_inner + half) - ball,
         outer=by_outer * (to_outer + half) - ball,
     )
@@ -225,11 +225,11 @@ def warm_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") -> fl
     """Interference of shaft or housing with its ring at their temperature, at standstill, on the diameter [m]."""
     rings, warm, inside = bearing.rings, scene.mounting, seat == "shaft"
     d, kelvin = (bearing.bore, warm.inner_temperature) if inside else (bearing.outer_diameter, warm.outer_temperature)
-    given, other = (getattr(warm, f"{seat}_{word}") for word in ("interference", "material"))
-    if other is None or d is None:
-        return float(given)
-    expands = other.strain(f"mounting.{seat}_material", kelvin) - rings.strain("bearing.rings", kelvin)
-    return float(given + (expands if inside else -expands) * d)
+    cold, material = (getattr(warm, f"{seat}_{word}") for word in ("interference", "material"))
+    if material is None or d is None:
+        return float(cold)
+    expands = material.strain(f"mounting.{seat}_material", kelvin) - rings.strain("bearing.rings", kelvin)
+    return float(cold + (expands if inside else -expands) * d)
 
 
 def running_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") -> float:
@@ -244,47 +244,47 @@ def running_interference(scene: Scene, bearing: Bearing, seat: str = "shaft") ->
     ----------
     Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
     """
-    given, rings = warm_interference(scene, bearing, seat), bearing.rings
+    at_rest, rings = warm_interference(scene, bearing, seat), bearing.rings
     if seat == "housing" or bearing.bore is None or not scene.kinematics.ring_growth:
-        return given
+        return at_rest
     a, c = 0.5 * bearing.bore, 0.5 * scene.mounting.shaft_bore
     b = 0.5 * (bearing.pitch_diameter - bearing.ball_diameter) + groove_depth(bearing)
     ring, core = (
-        one.density / (4.0 * one.young) * ((1.0 - one.poisson) * a**2 + (3.0 + one.poisson) * far**2)
-        for one, far in ((rings, b), (scene.mounting.shaft_material or rings, c))
+        body.density / (4.0 * body.young) * ((1.0 - body.poisson) * a**2 + (3.0 + body.poisson) * far**2)
+        for body, far in ((rings, b), (scene.mounting.shaft_material or rings, c))
     )
-    return float(given - 2.0 * scene.spin_speed**2 * a * (ring - core))
+    return float(at_rest - 2.0 * scene.spin_speed**2 * a * (ring - core))
 
 
 def growth_faults(scene: Scene) -> list[Mistake]:
     """Fits that lack a dimension; growth that leaves no bearing."""
-    found, warm = [], scene.mounting
+    faults, warm = [], scene.mounting
     for seat, dimension in (("shaft", "bore"), ("housing", "outer_diameter")):
         for key in (f"{seat}_interference", f"{seat}_material"):
             if getattr(warm, key) and any(getattr(b, dimension) is None for b in scene.bearing.of_rows):
                 value = getattr(warm, key) if key.endswith("interference") else None
-                found.append(Mistake(f"mounting.{key}", value, f"needs the bearing's `{dimension}`"))
+                faults.append(Mistake(f"mounting.{key}", value, f"needs the bearing's `{dimension}`"))
     shaft = scene.source.get("mounting", {}).get("shaft_material")
     if scene.kinematics.ring_growth and shaft and "density" not in shaft:
         why = "is required by kinematics.ring_growth: the shaft grows with the speed, too"
-        found.append(Mistake("mounting.shaft_material.density", None, why))
+        faults.append(Mistake("mounting.shaft_material.density", None, why))
     narrow = min((b.bore for b in scene.bearing.of_rows if b.bore is not None), default=None)
     if narrow is not None and warm.shaft_bore >= narrow:
-        found.append(
+        faults.append(
             Mistake("mounting.shaft_bore", warm.shaft_bore, f"must be smaller than the bearing's bore, {narrow:g} m")
         )
     wide = max((b.outer_diameter for b in scene.bearing.of_rows if b.outer_diameter is not None), default=None)
     if wide is not None and warm.housing_diameter is not None and warm.housing_diameter <= wide:
         rule = f"must be larger than the bearing's outer diameter, {wide:g} m"
-        found.append(Mistake("mounting.housing_diameter", warm.housing_diameter, rule))
-    if found:
-        return found
+        faults.append(Mistake("mounting.housing_diameter", warm.housing_diameter, rule))
+    if faults:
+        return faults
     try:
         for row, bearing in enumerate(scene.bearing.of_rows):
-            found = found or _row_faults(scene, row, bearing)
+            faults = faults or _row_faults(scene, row, bearing)
     except SceneError as error:  # a body that lacks its thermal expansion
         return error.mistakes
-    return found
+    return faults
 
 
 def _row_faults(scene: Scene, row: int, bearing: Bearing) -> list[Mistake]:
@@ -323,20 +323,20 @@ def free_angle(b: Bearing, grown: Grooves) -> float:
 
 def loose_rings(scene: Scene) -> list[str]:
     """A sentence for each ring that its running, warm fit does not hold."""
-    found = []
+    warnings = []
     for ring, seat, grown in (
         ("inner ring is loose on its", "shaft", "more"),
         ("outer ring is loose in its", "housing", "less"),
     ):
-        left = min(running_interference(scene, b, seat) for b in scene.bearing.of_rows)
+        least = min(running_interference(scene, b, seat) for b in scene.bearing.of_rows)
         fit = getattr(scene.mounting, f"{seat}_interference")
-        if left < -_FINEST_TOLERANCE:
-            found.append(
-                f"the {ring} {seat} by {-1e6 * left:.3g} µm, on the diameter: it has grown {1e6 * (fit - left):.3g} µm {grown}, by speed "
+        if least < -_FINEST_TOLERANCE:
+            warnings.append(
+                f"the {ring} {seat} by {-1e6 * least:.3g} µm, on the diameter: it has grown {1e6 * (fit - least):.3g} µm {grown}, by speed "
                 f"({30.0 * scene.spin_speed / pi:.6g} r/min) and temperature, and `mounting.{seat}_interference` is {1e6 * fit:g} µm. It is "
                 "computed as a free ring that stays centred"
             )
-    return found
+    return warnings
 
 
 def _cause(scene: Scene, row: int) -> str:
@@ -344,8 +344,8 @@ def _cause(scene: Scene, row: int) -> str:
     warm = {name: value for name, value in attrs.asdict(scene.mounting).items() if name.endswith("_temperature")}
     mean = sum(warm.values()) / len(warm)
     furthest = max(warm, key=lambda name: abs(warm[name] - mean))
-    others = (sum(warm.values()) - warm[furthest]) / (len(warm) - 1)
-    without = {furthest: others, "shaft_interference": 0.0, "housing_interference": 0.0}
+    mean_of_others = (sum(warm.values()) - warm[furthest]) / (len(warm) - 1)
+    without = {furthest: mean_of_others, "shaft_interference": 0.0, "housing_interference": 0.0}
 
     def room(**changed: Any) -> float:
         grown = grooves(attrs.evolve(scene, mounting=attrs.evolve(scene.mounting, **changed)), row)

@@ -62,18 +62,18 @@ class Given:
         """
         from raceway.scene.changes import parse_change
 
-        made: list[tuple[str, Any]] = []
+        key_values: list[tuple[str, Any]] = []
         for change in changes:
             if isinstance(change, str):
-                made.append(parse_change(change))
+                key_values.append(parse_change(change))
             elif isinstance(change, Mapping):
-                made += leaves(tidy(change))
+                key_values += leaves(tidy(change))
             else:
                 rule = 'must be text such as "load.axial=400", or a mapping such as {"load.axial": 400}'
                 raise SceneError.at("change", change, rule)
-        found = attrs.evolve(self, changes=(*self.changes, *made))
-        found.merged()
-        return found
+        merged = attrs.evolve(self, changes=(*self.changes, *key_values))
+        merged.merged()
+        return merged
 
     def plain(self, registry: Registry) -> Tables:
         """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder.
@@ -85,12 +85,12 @@ class Given:
         from raceway.scene.unused import without_inherited
 
         tables = numbers_only(self.merged(), registry)
-        told = [(key, None if value is None else value_at(tables, key)) for key, value in self.changes]
+        values = [(key, None if value is None else value_at(tables, key)) for key, value in self.changes]
         tables = self._placed(tables, registry)
         if self.changes:
             base = self._placed(numbers_only(self.tables, registry), registry)
             tables = without_inherited(base, tables, [key for key, _ in self.changes], registry)
-        return titled(tables, self.name, told)
+        return titled(tables, self.name, values)
 
     def scene(self, registry: Registry) -> Scene:
         """The scene, every key checked.
@@ -289,14 +289,14 @@ def _tomls_in(folder: Path) -> list[Path]:
 
 def _scenes_in(folder: Path) -> list[str]:
     """Names of the TOML files in a folder that have a bearing in them."""
-    found = []
+    scenes = []
     for path in _tomls_in(folder):
         try:
             if "bearing" in tomllib.loads(path.read_text(encoding="utf-8")):
-                found.append(path.name)
+                scenes.append(path.name)
         except (OSError, ValueError):  # no text, no TOML
             continue
-    return found
+    return scenes
 
 
 def read_toml(path: str | Path) -> Tables:
@@ -312,7 +312,7 @@ def read_toml(path: str | Path) -> Tables:
         text = _text(path)
     except FileNotFoundError:
         # By the name itself: what ends in .toml is alike to a third already.
-        stems = {one.stem: one.name for one in _tomls_in(path.parent)}
+        stems = {file.stem: file.name for file in _tomls_in(path.parent)}
         close = difflib.get_close_matches(path.stem, list(stems), n=1, cutoff=_NEAR)
         scenes = [] if close else _scenes_in(path.parent)
         hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
@@ -373,5 +373,5 @@ def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry
     >>> rw.load_scene("examples/b7206.toml", ["load.axial=0.4 kN"]).load.axial
     400.0
     """
-    given = Given(read_toml(path), Path(path).stem, Path(path).parent).changed(*changes)
-    return given.scene(registry or default_registry())
+    user_input = Given(read_toml(path), Path(path).stem, Path(path).parent).changed(*changes)
+    return user_input.scene(registry or default_registry())

@@ -54,13 +54,13 @@ def check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -
             mistakes.append(Mistake(path, specifier, 'must be a string such as ">=1.2", or "" for any version'))
             continue
         try:
-            wanted = SpecifierSet(specifier)
+            versions = SpecifierSet(specifier)
         except InvalidSpecifier:
             mistakes.append(
                 Mistake(path, specifier, 'is not a version specifier; write for instance ">=1.2" or ">=1.2, <2"')
             )
             continue
-        why = _unmet(name, specifier, wanted, installed, registry)
+        why = _unmet(name, specifier, versions, installed, registry)
         if why:
             mistakes.append(Mistake(path, specifier, why))
 
@@ -71,13 +71,13 @@ def _installed(registry: Registry) -> dict[str, tuple[str, str]]:
 
     from raceway import __version__
 
-    found: dict[str, tuple[str, str]] = {}
+    distributions: dict[str, tuple[str, str]] = {}
     for entry in registry.all():
         sources = () if entry.distribution == "raceway" else (entry.source, entry.distribution)
         for name in (entry.name, *sources):
-            found.setdefault(canonicalize_name(name), (entry.distribution, entry.version))
-    found["raceway"] = ("raceway", __version__)
-    return found
+            distributions.setdefault(canonicalize_name(name), (entry.distribution, entry.version))
+    distributions["raceway"] = ("raceway", __version__)
+    return distributions
 
 
 def _like(name: str, installed: Iterable[str]) -> str:
@@ -87,7 +87,7 @@ def _like(name: str, installed: Iterable[str]) -> str:
 
 
 def _unmet(
-    name: str, specifier: str, wanted: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
+    name: str, specifier: str, versions: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
 ) -> str:
     """Fault of one requirement, and the way out; empty when it is met."""
     from packaging.utils import canonicalize_name
@@ -109,7 +109,7 @@ def _unmet(
         return f"is required by this scene and not installed{_like(key, installed)}. Install it: {command}"
     distribution, version = installed[key]
     try:
-        met = not specifier or wanted.contains(Version(version), prereleases=True)
+        met = not specifier or versions.contains(Version(version), prereleases=True)
     except InvalidVersion:
         return f"'{distribution}' has no version that can be compared ('{version}')"
     if not met:
@@ -138,17 +138,17 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
 
 def with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
     """The table [bearing] or [mounting] with the numbers of named materials, and those of the preset below what the user says."""
-    made = dict(table)
+    resolved = dict(table)
     for part in ("rings", "balls", "shaft_material", "housing_material"):
-        own = table.get(part)
-        own = {"material": own} if isinstance(own, str) and name == "mounting" else own
-        if isinstance(own, dict):
+        body = table.get(part)
+        body = {"material": body} if isinstance(body, str) and name == "mounting" else body
+        if isinstance(body, dict):
             try:
-                made[part] = with_material(own, f"{name}.{part}", preset.get(part, {}))
+                resolved[part] = with_material(body, f"{name}.{part}", preset.get(part, {}))
             except SceneError as error:
                 mistakes += error.mistakes
-                made[part] = {**preset.get(part, {}), **own, "material": None}
-    return made
+                resolved[part] = {**preset.get(part, {}), **body, "material": None}
+    return resolved
 
 
 def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
@@ -156,27 +156,29 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
     rows = table.get("row")
     if not isinstance(rows, list | tuple):
         return table
-    found = []
+    resolved = []
     for k, row in enumerate(rows):
         name = row.get("preset") if isinstance(row, dict) else None
         if name is not None:
             try:
                 values = preset(name)
             except SceneError as error:
-                mistakes += [Mistake(f"bearing.row[{k}].preset", one.value, one.message) for one in error.mistakes]
+                mistakes += [
+                    Mistake(f"bearing.row[{k}].preset", mistake.value, mistake.message) for mistake in error.mistakes
+                ]
                 row = {key: value for key, value in row.items() if key != "preset"}
             else:
                 row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
-        found.append(row)
+        resolved.append(row)
     if (
         rows
         and "preset" not in table
         and "ball_diameter" not in table
-        and isinstance(found[0], dict)
-        and "preset" in found[0]
+        and isinstance(resolved[0], dict)
+        and "preset" in resolved[0]
     ):
-        table = {**table, "preset": found[0]["preset"]}
-    return {**table, "row": found}
+        table = {**table, "preset": resolved[0]["preset"]}
+    return {**table, "row": resolved}
 
 
 #: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
@@ -216,8 +218,8 @@ def scene_from_dict(
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    title, said = _known_tables(tables, registry, mistakes)
-    plain = numbers_only(said, registry)
+    title, checked = _known_tables(tables, registry, mistakes)
+    plain = numbers_only(checked, registry)
     if "bearing" in plain:
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
@@ -249,7 +251,7 @@ def scene_from_dict(
             structure(plain[name], cls, name, mistakes)
     if mistakes:
         raise SceneError(mistakes)
-    scene = Scene(title=title, source=plain, given=Given(said), **parts)
+    scene = Scene(title=title, source=plain, given=Given(checked), **parts)
     if faults := check_tolerances(scene):
         raise SceneError(faults)
     return scene
@@ -257,15 +259,15 @@ def scene_from_dict(
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
     """Title, and a copy of the known tables."""
-    known = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "tolerances", "requires", "title"]
+    names = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "tolerances", "requires", "title"]
     for name in tables:
-        if name not in known:
-            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, known)}; known: {', '.join(known)}"))
+        if name not in names:
+            mistakes.append(Mistake(name, None, f"unknown table{nearest(name, names)}; known: {', '.join(names)}"))
     title = tables.get("title", "untitled")
     if not isinstance(title, str) or not title.strip():
         mistakes.append(Mistake("title", title, "must be a string that is not empty"))
         title = "untitled"
-    plain = {name: copy.deepcopy(tables[name]) for name in known if name in tables}
+    plain = {name: copy.deepcopy(tables[name]) for name in names if name in tables}
     for name in list(plain):
         if name != "title" and not isinstance(plain[name], dict):
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
@@ -289,8 +291,8 @@ def _plugin_table(
         mistakes.append(Mistake(f"{name}.kind", word, f"must be a string: one of {', '.join(names)}"))
         return None
     core = TABLES.get(name)
-    own = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
-    shared = {key: value for key, value in table.items() if key in own}
+    core_keys = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
+    shared = {key: value for key, value in table.items() if key in core_keys}
     try:
         plugin = registry.find(kind, word).plugin
     except PluginError as error:
@@ -298,13 +300,13 @@ def _plugin_table(
         if core is not None:
             structure({k: v for k, v in shared.items() if k != "kind"}, core, name, mistakes)
         return None
-    options = {key: value for key, value in table.items() if key not in own and key != "kind"}
-    known = [*own, *(a.name for a in attrs.fields(plugin))]
+    options = {key: value for key, value in table.items() if key not in core_keys and key != "kind"}
+    keys = [*core_keys, *(a.name for a in attrs.fields(plugin))]
     if name in SWAPPED_TABLES:
-        others = {a.name for e in registry.all() if e.kind == kind for a in attrs.fields(e.plugin)}
-        options = {key: value for key, value in options.items() if key in known or key not in others}
-    for key in [k for k in options if k not in known]:
-        rule = f"unknown key{nearest(key, known)}; known for kind '{word}': {', '.join(k for k in known if k != 'kind')}"
+        elsewhere = {a.name for e in registry.all() if e.kind == kind for a in attrs.fields(e.plugin)}
+        options = {key: value for key, value in options.items() if key in keys or key not in elsewhere}
+    for key in [k for k in options if k not in keys]:
+        rule = f"unknown key{nearest(key, keys)}; known for kind '{word}': {', '.join(k for k in keys if k != 'kind')}"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
     method = structure(options, plugin, name, mistakes)
     if core is None:
@@ -351,7 +353,7 @@ def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
     for name, table in tables.items():
         if isinstance(table, dict):
             classes = (TABLES.get(name), STUDY_TABLES.get(name), _plugin(name, tables, registry))
-            for cls in (one for one in classes if one is not None):
+            for cls in (plugin for plugin in classes if plugin is not None):
                 result[name] = table_without_units(result[name], cls)
     return result
 

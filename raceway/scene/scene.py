@@ -178,8 +178,8 @@ class Scene(Shown):
         rows: list[Fact] = []
         for name, table in as_given(self).merged().items():
             if isinstance(table, dict):
-                said = [f"{key} = {told(value)}" for key, value in leaves(table)]
-                rows.append((name, "", ", ".join(said) or "defaults"))
+                keys = [f"{key} = {told(value)}" for key, value in leaves(table)]
+                rows.append((name, "", ", ".join(keys) or "defaults"))
         return self.title, rows
 
     def to_dict(self) -> Tables:

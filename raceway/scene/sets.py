@@ -160,9 +160,9 @@ def check_set(bearing: Bearing) -> None:
         raise ValueError(
             f"`arrangement` = '{bearing.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
         )
-    places = [place for _, place in bearing.rows]
+    places = [position for _, position in bearing.rows]
     if len(set(places)) < len(places):
-        raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{place:g}' for place in places)} m")
+        raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{position:g}' for position in places)} m")
     for k, row in enumerate(bearing.row):
         try:
             bearing.of_row(row)

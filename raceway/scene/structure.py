@@ -156,8 +156,8 @@ def table_without_units(table: Tables, cls: type) -> Tables:
         kinds = [kind for kind in (field.type, *get_args(field.type)) if isinstance(kind, type) and attrs.has(kind)]
         if isinstance(value, dict) and kinds:
             result[key] = table_without_units(value, kinds[0])
-        elif isinstance(value, list | tuple) and (one := table_of_list(field.type)) is not None:
-            result[key] = [table_without_units(each, one) if isinstance(each, dict) else each for each in value]
+        elif isinstance(value, list | tuple) and (row_class := table_of_list(field.type)) is not None:
+            result[key] = [table_without_units(each, row_class) if isinstance(each, dict) else each for each in value]
         elif isinstance(value, str | list | tuple):
             with suppress(ValueError):
                 result[key] = without_units(value, field)
@@ -171,7 +171,7 @@ def table_of_list(kind: object) -> type | None:
 
 
 def _equal_to(kind: object) -> Callable[[object], bool]:
-    return lambda other: bool(other == kind)
+    return lambda candidate: bool(candidate == kind)
 
 
 def _converter() -> cattrs.Converter:
@@ -235,25 +235,25 @@ def structure(table: object, cls: type[T], path: str, mistakes: list[Mistake]) -
 
 def _mistakes(error: BaseException, value: object, cls: Any, path: str) -> list[Mistake]:
     if isinstance(error, cattrs.errors.ClassValidationError):
-        found: list[Mistake] = []
+        mistakes: list[Mistake] = []
         noted, plain = error.group_exceptions()
         for inner, note in noted:
             here = value.get(note.name) if isinstance(value, dict) else None
             where = f"{path}.{note.name}" if path else note.name
             if isinstance(inner, KeyError):
-                found.append(Mistake(where, None, f"{_MISSING}{_describe(cls, note.name)}"))
+                mistakes.append(Mistake(where, None, f"{_MISSING}{_describe(cls, note.name)}"))
             else:
-                found += _mistakes(inner, here, note.type, where)
+                mistakes += _mistakes(inner, here, note.type, where)
         for other in plain:
-            found += _mistakes(other, value, cls, path)
-        return found
+            mistakes += _mistakes(other, value, cls, path)
+        return mistakes
     if isinstance(error, cattrs.errors.ForbiddenExtraKeysError):
-        known = [a.name for a in attrs.fields(error.cl)]
+        names = [a.name for a in attrs.fields(error.cl)]
         return [
             Mistake(
                 f"{path}.{key}" if path else key,
                 value.get(key) if isinstance(value, dict) else None,
-                f"unknown key{nearest(key, known)}; known here: {', '.join(known)}",
+                f"unknown key{nearest(key, names)}; known here: {', '.join(names)}",
             )
             for key in sorted(error.extra_fields)
         ]

@@ -301,10 +301,10 @@ class Contact:
 
     def __attrs_post_init__(self) -> None:
         ways = {"damping": self.damping, "time_constant": self.time_constant, "loss_factor": self.loss_factor}
-        given = [f"`{name}`" for name, value in ways.items() if value]
-        if len(given) > 1:
+        stated = [f"`{name}`" for name, value in ways.items() if value]
+        if len(stated) > 1:
             raise ValueError(
-                f"{' and '.join(given)} exclude each other: each is the damping of the contacts. Give one of them"
+                f"{' and '.join(stated)} exclude each other: each is the damping of the contacts. Give one of them"
             )
 
     @property

@@ -60,27 +60,27 @@ def ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, float
     if key == "balls":
         variation = 1e-6 * _BALLS[_known(key, name, [*_BALLS])]
         return {"bearing.ball_diameter": (0.5 * variation, 0.5 * variation)}
-    known = _known(key, name, [*_BORE, *_ALSO])
-    known, warm, found = _ALSO.get(known, known), scene.mounting, {}
+    column = _known(key, name, [*_BORE, *_ALSO])
+    column, warm, ranges = _ALSO.get(column, column), scene.mounting, {}
     if warm.shaft_interference > 0.0:
-        bore = _deviation(key, name, "bore", scene.bearing.bore, _EDGES, _BORE[known])
-        found["mounting.shaft_interference"] = (0.0, bore)
+        bore = _deviation(key, name, "bore", scene.bearing.bore, _EDGES, _BORE[column])
+        ranges["mounting.shaft_interference"] = (0.0, bore)
     if warm.housing_interference > 0.0:
-        outer = _deviation(key, name, "outer_diameter", scene.bearing.outer_diameter, _OUTER_EDGES, _OUTER[known])
+        outer = _deviation(key, name, "outer_diameter", scene.bearing.outer_diameter, _OUTER_EDGES, _OUTER[column])
         if outer >= warm.housing_interference:
             why = (
                 f"leaves outer rings loose: their diameter may be {1e6 * outer:.3g} µm smaller, the fit has "
                 f"{1e6 * warm.housing_interference:.3g} µm. Take a tighter one, or give tolerances of the fits by their keys"
             )
             raise SceneError.at(key, name, why)
-        found["mounting.housing_interference"] = (outer, 0.0)
-    if not found:
+        ranges["mounting.housing_interference"] = (outer, 0.0)
+    if not ranges:
         why = (
             "changes nothing here: a class limits bore and outside diameter, which act through fits, and the scene has none. Give "
             "mounting.shaft_interference or mounting.housing_interference, or leave it out"
         )
         raise SceneError.at(key, name, why)
-    return found
+    return ranges
 
 
 def _known(key: str, name: str, names: list[str]) -> str:
@@ -115,7 +115,7 @@ class Tolerance:
     high: float
 
 
-def tolerances_of(scene: Scene, given: Iterable[str] | Mapping[str, str]) -> tuple[Tolerance, ...]:
+def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tuple[Tolerance, ...]:
     """Tolerances from texts ``KEY=TEXT`` or a mapping.
 
     Raises
@@ -124,21 +124,21 @@ def tolerances_of(scene: Scene, given: Iterable[str] | Mapping[str, str]) -> tup
         No tolerance at all; a key that is not continuous or given twice; a text that is no tolerance, or empty; a range that the
         key's rule refuses.
     """
-    pairs = list(given.items()) if isinstance(given, Mapping) else [_split(text) for text in given]
+    pairs = list(texts.items()) if isinstance(texts, Mapping) else [_split(text) for text in texts]
     if not pairs:
         raise SceneError.at("tolerances", None, "none is given: a band needs one, such as load.axial='±10 %'")
-    found: dict[str, Tolerance] = {}
+    tolerances: dict[str, Tolerance] = {}
     for path, text in pairs:
         if path in NAMES:
             ranges = ranges_of(scene, path, str(text).strip())
-            some = [_checked(scene, key_of(scene, one), str(text), *ends) for one, ends in ranges.items()]
+            of_text = [_checked(scene, key_of(scene, fit), str(text), *ends) for fit, ends in ranges.items()]
         else:
-            some = [_tolerance(scene, key_of(scene, path), str(text))]
-        for one in some:
-            if one.key.path in found:
-                raise SceneError.at(one.key.path, text, "has two tolerances: give one")
-            found[one.key.path] = one
-    return tuple(found.values())
+            of_text = [_tolerance(scene, key_of(scene, path), str(text))]
+        for tolerance in of_text:
+            if tolerance.key.path in tolerances:
+                raise SceneError.at(tolerance.key.path, text, "has two tolerances: give one")
+            tolerances[tolerance.key.path] = tolerance
+    return tuple(tolerances.values())
 
 
 def stated_tolerances(scene: Scene) -> dict[str, str]:
@@ -153,17 +153,17 @@ def check_tolerances(scene: Scene) -> list[Mistake]:
             tolerances_of(scene, stated_tolerances(scene))
     except SceneError as why:
         return [
-            attrs.evolve(one, path=f"tolerances.{one.path}".replace("tolerances.tolerances", "tolerances"))
-            for one in why.mistakes
+            attrs.evolve(mistake, path=f"tolerances.{mistake.path}".replace("tolerances.tolerances", "tolerances"))
+            for mistake in why.mistakes
         ]
     return []
 
 
 def _split(text: str) -> tuple[str, str]:
-    path, sign, rest = text.partition("=")
+    path, sign, width = text.partition("=")
     if not sign or not path.strip():
         raise SceneError.at("tolerance", text, "must have the form KEY=TEXT, such as load.axial='±10 %'")
-    return path.strip(), rest
+    return path.strip(), width
 
 
 def _tolerance(scene: Scene, key: Key, text: str) -> Tolerance:

@@ -27,10 +27,10 @@ class Unit:
     factor: Fraction = Fraction(1)
     pi: int = 0
 
-    def times(self, other: Unit, power: int) -> Unit:
-        dimension = tuple(a + power * b for a, b in zip(self.dimension, other.dimension, strict=True))
+    def times(self, factor: Unit, power: int) -> Unit:
+        dimension = tuple(a + power * b for a, b in zip(self.dimension, factor.dimension, strict=True))
         m, kg, s, rad, kelvin = dimension
-        return Unit((m, kg, s, rad, kelvin), self.factor * other.factor**power, self.pi + power * other.pi)
+        return Unit((m, kg, s, rad, kelvin), self.factor * factor.factor**power, self.pi + power * factor.pi)
 
 
 _ONE = Unit((0, 0, 0, 0, 0))
@@ -89,7 +89,7 @@ def unit_of(text: str) -> Unit:
     ValueError
         A symbol that is not known, or no product of symbols.
     """
-    found, sign = _ONE, 1
+    unit, sign = _ONE, 1
     for part in re.findall(r"\*\*|[/*·\s]|[^/*·\s]+(?:\*\*[+-]?\d+)?", text.replace(" ** ", "**")):
         if part == "/":
             sign = -1
@@ -98,9 +98,9 @@ def unit_of(text: str) -> Unit:
             if match is None and part != "1":
                 raise ValueError(f"'{part}' is no unit")
             if match is not None:
-                found = found.times(_symbol(match[1]), sign * int(match[2] or 1))
+                unit = unit.times(_symbol(match[1]), sign * int(match[2] or 1))
             sign = 1
-    return found
+    return unit
 
 
 def _symbol(name: str) -> Unit:
@@ -110,8 +110,8 @@ def _symbol(name: str) -> Unit:
         return _SCALED[name]
     if name[:1] in _PREFIXES and name[1:] in _SCALED:
         return Unit(_ONE.dimension, Fraction(10) ** _PREFIXES[name[0]]).times(_SCALED[name[1:]], 1)
-    known = [*_PLAIN, *_SCALED, *(f"{p}{s}" for s in _SCALED for p in _PREFIXES)]
-    raise ValueError(f"'{name}' is no unit{nearest(name, known)}")
+    symbols = [*_PLAIN, *_SCALED, *(f"{p}{s}" for s in _SCALED for p in _PREFIXES)]
+    raise ValueError(f"'{name}' is no unit{nearest(name, symbols)}")
 
 
 def is_quantity(text: str) -> bool:
@@ -133,20 +133,22 @@ def number_in(unit: str, text: str) -> float:
         No number, an unknown unit, or one of another dimension; the sentence says what is accepted.
     """
     match = _QUANTITY.fullmatch(text)
-    wanted = f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
+    expected = (
+        f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
+    )
     if match is None:
-        raise ValueError(f"must be a number, not a string: {wanted}")
-    number, given = match.groups()
-    if not given:
-        raise ValueError(f"must be a number, not a string without a unit: {wanted}")
-    if given == unit:
+        raise ValueError(f"must be a number, not a string: {expected}")
+    number, written_unit = match.groups()
+    if not written_unit:
+        raise ValueError(f"must be a number, not a string without a unit: {expected}")
+    if written_unit == unit:
         return _rounded(Fraction(1), number)
     try:
-        source, target = unit_of(given), unit_of(unit)
+        source, target = unit_of(written_unit), unit_of(unit)
     except ValueError as why:
-        raise ValueError(f"{why}: must be {wanted}") from None
+        raise ValueError(f"{why}: must be {expected}") from None
     if source.dimension != target.dimension:
-        raise ValueError(f"'{given}' is not a unit of this key: must be {wanted}")
+        raise ValueError(f"'{written_unit}' is not a unit of this key: must be {expected}")
     ratio = source.factor / target.factor
     return _rounded(ratio, number) * math.pi ** (source.pi - target.pi)
 

@@ -21,12 +21,12 @@ def unused(scene: Scene) -> tuple[str, ...]:
     return tuple(f"`{path}` has no effect: {why}" for path, why in _idle(scene))
 
 
-def without_inherited(base: ReadTables, changed: ReadTables, said: Collection[str], registry: Registry) -> Tables:
+def without_inherited(base: ReadTables, changed: ReadTables, changed_keys: Collection[str], registry: Registry) -> Tables:
     """Changed tables without the keys of the base that lose their effect by the change: nobody said those for this scene.
 
     Parameters
     ----------
-    base : tables of a file;  changed : the same with some keys changed;  said : those keys, which stay and are told of
+    base : tables of a file;  changed : the same with some keys changed;  changed_keys : those keys, which stay and are told of
 
     Notes
     -----
@@ -35,10 +35,10 @@ def without_inherited(base: ReadTables, changed: ReadTables, said: Collection[st
     """
     result = dict(changed)
     try:
-        lost = {path for path, _ in _idle(scene_from_dict(changed, registry))} - set(said)
+        lost = {path for path, _ in _idle(scene_from_dict(changed, registry))} - set(changed_keys)
     except RacewayError:
         return result
-    lost = {path for path in lost if not any(path.startswith(f"{key}.") for key in said)}
+    lost = {path for path in lost if not any(path.startswith(f"{key}.") for key in changed_keys)}
     if lost:
         with suppress(RacewayError):  # a base that is complete with the changes only has no mistakes of its own to tell of
             lost -= {path for path, _ in _idle(scene_from_dict(base, registry))}
@@ -58,18 +58,18 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
         "identifier": scene.identifier.method,
         "excitation": scene.excitation,
     }
-    said = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
-    known = {"kind", *(field.name for field in attrs.fields(type(scene.bodies)))}
-    others = [
+    written = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
+    options = {"kind", *(field.name for field in attrs.fields(type(scene.bodies)))}
+    foreign = [
         (f"bodies.{key}", f"bodies.kind is '{scene.bodies.name}'")
         for key in scene.source.get("bodies", {})
-        if key not in known
+        if key not in options
     ]
     by_plugins = [
         (f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()
     ]
     core = [*speaking(_RULES, scene), *scene.body_kind.unused()]
-    return [*by_plugins, *((key, why) for key, why in core if key in said), *others]
+    return [*by_plugins, *((key, why) for key, why in core if key in written), *foreign]
 
 
 def _recorded(s: Scene) -> bool:

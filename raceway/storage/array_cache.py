@@ -73,13 +73,13 @@ def kept(
         _warn_refused(fault)
         return _contiguous(make())
     path = folder() / f"{_key(kind, inputs, tuple(sources))}{_SUFFIX}"
-    found = _read(path)
-    if found is not None:
-        return found
+    stored = _read(path)
+    if stored is not None:
+        return stored
     start = time.process_time()
-    made = _contiguous(make())
-    _write(path, kind, what, made, time.process_time() - start)
-    return made
+    computed = _contiguous(make())
+    _write(path, kind, what, computed, time.process_time() - start)
+    return computed
 
 
 @attrs.frozen
@@ -165,8 +165,8 @@ def _source_key(sources: tuple[str, ...]) -> str:
     digest = hashlib.sha256()
     root = Path(__file__).resolve().parents[1]
     for name in sorted(sources):
-        place = root / name
-        for path in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
+        file = root / name
+        for path in sorted(file.rglob("*.py")) if file.is_dir() else [file]:
             digest.update(path.relative_to(root).as_posix().encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -244,15 +244,15 @@ def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], s
     _trim(path)
 
 
-def _refuse_full_disk(place: Path, size: int) -> None:
-    free = shutil.disk_usage(place).free
+def _refuse_full_disk(folder: Path, size: int) -> None:
+    free = shutil.disk_usage(folder).free
     if free < (1.0 + _ROOM) * size:
         raise OSError(errno.ENOSPC, f"{size / 2**30:.2g} GiB to write, {free / 2**30:.2g} GiB free on the disk")
 
 
 def _trim(newest: Path) -> None:
     """Remove the least recently used entries above the limit, and what killed processes left; the newest entry stays."""
-    found = []
+    entries = []
     for scratch in newest.parent.glob(".*"):
         with suppress(OSError):
             if time.time() - scratch.stat().st_mtime > _ABANDONED:
@@ -260,9 +260,9 @@ def _trim(newest: Path) -> None:
     for path in _files():
         with suppress(OSError):
             status = path.stat()
-            found.append((path == newest, status.st_mtime, status.st_size, path))
-    total = sum(size for _, _, size, _ in found)
-    for fresh, _, size, path in sorted(found, key=lambda f: f[:2]):
+            entries.append((path == newest, status.st_mtime, status.st_size, path))
+    total = sum(size for _, _, size, _ in entries)
+    for fresh, _, size, path in sorted(entries, key=lambda f: f[:2]):
         if total <= LIMIT or fresh:
             break
         with suppress(OSError):
@@ -271,9 +271,9 @@ def _trim(newest: Path) -> None:
 
 
 @cache
-def _warn_unwritable(place: str, why: str) -> None:
+def _warn_unwritable(folder: str, why: str) -> None:
     warnings.warn(
-        f"what was computed of the bodies cannot be kept in {place} ({why}); the next run computes it again. Set "
+        f"what was computed of the bodies cannot be kept in {folder} ({why}); the next run computes it again. Set "
         "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway dev cache --clear.",
         RuntimeWarning,
         stacklevel=4,

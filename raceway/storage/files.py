@@ -57,15 +57,15 @@ def write_whole(content: bytes, path: Path) -> Path:
 
 def writable(folder: Path) -> Path:
     """Refuse a folder that cannot be written before anything is computed; make nothing yet."""
-    place = folder
-    while not os.path.exists(place) and place != place.parent:
-        place = place.parent
-    if not place.is_dir():
+    parent = folder
+    while not os.path.exists(parent) and parent != parent.parent:
+        parent = parent.parent
+    if not parent.is_dir():
         raise RacewayError(
-            f"`{folder}` cannot be the folder of the results: `{place}` is a file. Choose another with --out."
+            f"`{folder}` cannot be the folder of the results: `{parent}` is a file. Choose another with --out."
         )
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise RacewayError(f"`{folder}` cannot be written: no permission in `{place}`. Choose another folder with --out.")
+    if not os.access(parent, os.W_OK | os.X_OK):
+        raise RacewayError(f"`{folder}` cannot be written: no permission in `{parent}`. Choose another folder with --out.")
     if not os.path.exists(folder):
         # A folder that cannot be made is refused now; an empty one is taken away again.
         try:

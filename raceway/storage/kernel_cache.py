@@ -23,8 +23,8 @@ import attrs
 
 def cache_root() -> Path:
     """The user's cache folder of this package (``RACEWAY_CACHE_DIR`` overrides it)."""
-    if chosen := os.environ.get("RACEWAY_CACHE_DIR"):
-        return Path(chosen)
+    if path := os.environ.get("RACEWAY_CACHE_DIR"):
+        return Path(path)
     from platformdirs import user_cache_path
 
     return user_cache_path("raceway", appauthor=False)
@@ -39,19 +39,19 @@ def refusal(folder: Path) -> str | None:
     nobody else may write there.  Below a folder that is closed to others, their rights do not matter.
     """
     root = cache_root()
-    inside = [place for place in (*reversed(folder.parents), folder) if place == root or root in place.parents]
-    for place in inside:
+    inside = [parent for parent in (*reversed(folder.parents), folder) if parent == root or root in parent.parents]
+    for parent in inside:
         try:
-            found = place.stat()
+            status = parent.stat()
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as why:
-            return f"`{place}` cannot be looked at ({why.strerror or why})"
-        if found.st_uid not in (os.geteuid(), 0):
-            return f"`{place}` belongs to another user (number {found.st_uid})"
-        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-            return f"others may write in `{place}`: close it by `chmod -R go-w {place}`, after `raceway dev cache --clear`"
-        if not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
+            return f"`{parent}` cannot be looked at ({why.strerror or why})"
+        if status.st_uid not in (os.geteuid(), 0):
+            return f"`{parent}` belongs to another user (number {status.st_uid})"
+        if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+            return f"others may write in `{parent}`: close it by `chmod -R go-w {parent}`, after `raceway dev cache --clear`"
+        if not status.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
             return None
     return None
 
@@ -66,9 +66,9 @@ def make(folder: Path) -> None:
     """
     root = cache_root()
     root.parent.mkdir(parents=True, exist_ok=True)
-    for place in (*reversed(folder.parents), folder):
-        if place == root or root in place.parents:
-            place.mkdir(mode=0o700, exist_ok=True)
+    for parent in (*reversed(folder.parents), folder):
+        if parent == root or root in parent.parents:
+            parent.mkdir(mode=0o700, exist_ok=True)
 
 
 @cache
@@ -108,15 +108,15 @@ def kernel_folders() -> list[KernelFolder]:
         A cache folder that cannot be listed.
     """
     root = cache_root() / "kernels"
-    found = []
+    folders = []
     for folder in root.iterdir() if root.is_dir() else ():
         if folder.is_dir():
             files = [f for f in folder.rglob("*") if f.is_file()]
             # numba writes one index (.nbi) for each function and one data file (.nbc) for each of its signatures.
             kernels = sum(f.suffix == ".nbc" for f in files)
             size = sum(f.stat().st_size for f in files)
-            found.append(KernelFolder(folder.name, kernels, size, folder.name == source_key()))
-    return sorted(found, key=lambda f: (not f.current, f.name))
+            folders.append(KernelFolder(folder.name, kernels, size, folder.name == source_key()))
+    return sorted(folders, key=lambda f: (not f.current, f.name))
 
 
 def clear() -> None:

@@ -46,8 +46,8 @@ class NumberTable:
 
         steps = np.diff(time)
         usual = float(np.median(steps))
-        for place in np.flatnonzero((steps <= 0.0) | (steps > _GAP * usual))[:1]:
-            line, before, after = self.lines[place + 1], time[place], time[place + 1]
+        for row in np.flatnonzero((steps <= 0.0) | (steps > _GAP * usual))[:1]:
+            line, before, after = self.lines[row + 1], time[row], time[row + 1]
             if after <= before:
                 raise ValueError(f"{self.word} {line}: time must grow, {after:g} s follows {before:g} s")
             gap = f"a gap of {after - before:.3g} s where samples are usually {usual:.3g} s apart"
@@ -163,12 +163,12 @@ def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
     """Rows below line ``line`` and the numbers of their lines, part by part."""
     import numpy as np
 
-    while found := stream.readlines(_PART):
-        numbers = np.arange(line + 1, line + 1 + len(found))
-        line += len(found)
-        filled = [text for text in found if text.strip()]
-        if len(filled) < len(found):
-            numbers = numbers[[bool(text.strip()) for text in found]]
+    while lines := stream.readlines(_PART):
+        numbers = np.arange(line + 1, line + 1 + len(lines))
+        line += len(lines)
+        filled = [text for text in lines if text.strip()]
+        if len(filled) < len(lines):
+            numbers = numbers[[bool(text.strip()) for text in lines]]
         if filled:
             yield filled, numbers
 

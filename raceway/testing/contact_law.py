@@ -151,10 +151,10 @@ class ContactLawSuite(Suite):
     @duty("attributes: discretisations, state_size, dissipative, options")
     def test_declaration(self, law: ContactLaw) -> None:
         check_class("contact_law", law)
-        known = {"resultant", "nodal"}
+        kinds = {"resultant", "nodal"}
         declared = law.discretisations
         require(isinstance(declared, frozenset) and declared, "`discretisations` must be a frozenset that is not empty")
-        require(declared <= known, f"`discretisations` = {sorted(declared)}: only {sorted(known)} exist")
+        require(declared <= kinds, f"`discretisations` = {sorted(declared)}: only {sorted(kinds)} exist")
         require(type(law.state_size) is int and law.state_size >= 0, f"`state_size` = {law.state_size!r} must be 0 or more")
         require(type(law.dissipative) is bool, f"`dissipative` = {law.dissipative!r} must be True or False")
 
@@ -376,7 +376,7 @@ class ContactLawSuite(Suite):
                 options[field.name] = value * scale_of(field.metadata.get("unit", ""), length, force, time)
         try:
             instance: Any = law  # a contract is no attrs class to mypy
-            other = attrs.evolve(instance, **options)
+            scaled_law = attrs.evolve(instance, **options)
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = _pairs_of(law, 64)
@@ -384,12 +384,12 @@ class ContactLawSuite(Suite):
         scaled = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
         gap, rate = self._random(7, (20, 64), 0.3)
         forces, _ = _along(drive(law, 64, pairs=pairs), gap, rate, 1e-5)
-        others, _ = _along(drive(other, 64, pairs=scaled), gap * length, rate * length / time, 1e-5 * time)
+        scaled_forces, _ = _along(drive(scaled_law, 64, pairs=scaled), gap * length, rate * length / time, 1e-5 * time)
         area = 1.0 if "resultant" in law.discretisations else length**2
-        off = np.abs(others * area / force - forces).max() / forces.max()
+        off = np.abs(scaled_forces * area / force - forces).max() / forces.max()
         words = "in other units: a dimensional number hides in"
         require(off < 1e-9, f"forces differ by {off:.2g} {words} build() or the kernel")
-        reach, other_reach = reach_of(law, pairs), reach_of(other, scaled) / length
+        reach, other_reach = reach_of(law, pairs), reach_of(scaled_law, scaled) / length
         off = np.abs(other_reach - reach).max() / max(reach.max(), 1e-300)
         require(off < 1e-9, f"reach() differs by {off:.2g} {words} it")
         return ""

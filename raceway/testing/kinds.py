@@ -69,13 +69,13 @@ class FormatSuite(Suite):
         lambda form: "" if hasattr(form, "write") else "reads only",
     )
     def test_round_trip(self, form: Format) -> None:
-        what = self._content(form)
+        content = self._content(form)
         with tempfile.TemporaryDirectory() as folder:
             for suffix in form.suffixes:
                 path = Path(folder) / f"content{suffix}"
-                form.write(path, what)
+                form.write(path, content)
                 require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `{path.name}`")
-                equal = same(form.read(path), what, TEN_FIGURES)
+                equal = same(form.read(path), content, TEN_FIGURES)
                 require(equal, f"`{path.name}` is read back different from what was written")
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
