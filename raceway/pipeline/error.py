@@ -25,7 +25,6 @@ Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rul
 from __future__ import annotations
 
 from math import ceil, pi
-from typing import Any
 
 import attrs
 import numpy as np
@@ -75,12 +74,12 @@ class Part:
     shift: complex | None = None
 
 
-def no_error(how: Note) -> dict[str, Any]:
+def no_error(how: Note) -> Tables:
     """The table without numbers, and one reason."""
     return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
 
 
-def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> dict[str, Any]:
+def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> Tables:
     """The table with the errors of mesh and contacts, which the equilibrium has; of all else ``how``."""
     table = no_error(how)
     table["mesh"], table["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
@@ -90,7 +89,7 @@ def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> dict[str, 
     return table
 
 
-def error_table(run: Identified) -> dict[str, Any]:
+def error_table(run: Identified) -> Tables:
     """The table ``error``."""
     model = run.model
     table = body_errors(model, run.equilibrium, Estimate.NO_MOTION())
@@ -113,7 +112,7 @@ def error_table(run: Identified) -> dict[str, Any]:
     return table
 
 
-def unresolved(error: dict[str, Any]) -> list[str]:
+def unresolved(error: Tables) -> list[str]:
     """The total and the parts that are as large as what they are the error of: nothing identified says anything then.
 
     Notes
@@ -123,7 +122,7 @@ def unresolved(error: dict[str, Any]) -> list[str]:
     return [name for name in _NAMES if (error[name] or 0.0) >= 1.0]
 
 
-def error_warnings(error: dict[str, Any], identified: bool) -> list[str]:
+def error_warnings(error: Tables, identified: bool) -> list[str]:
     """What stands before a number: it is smaller than its error, its error is not known, its law is another one."""
     names, warnings, contact = unresolved(error), list[str](), error["contact"] or 0.0
     if names:

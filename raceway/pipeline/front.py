@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry
@@ -12,7 +12,7 @@ from raceway.out.progress import telling
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import PATIENCE
 from raceway.pipeline.run import run as compute
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @door
 def run(
-    scene: Any,
+    scene: SceneSource,
     *,
     progress: ShowProgress = None,
     patience: float = PATIENCE,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import ceil, pi
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -22,6 +22,9 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.core.periodic.search import Recorded
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]
@@ -55,7 +58,7 @@ class Start:
 
     kind: str
     orbit: Orbit | None = None
-    orbits: tuple[dict[str, Any], ...] = ()
+    orbits: tuple[Tables, ...] = ()
     settled: bool = True
     warnings: tuple[str, ...] = ()
 
@@ -330,7 +333,7 @@ def steady_record(
     return _steady(model, equilibrium, near, on_progress)
 
 
-def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnProgress | None) -> Record | None:
+def _steady(model: Model, equilibrium: Equilibrium, near: Recorded | None, on_progress: OnProgress | None) -> Record | None:
     from raceway.core.periodic.steady import steady
 
     if model.excitation.period_s is None:
@@ -345,7 +348,7 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Any, on_progress: OnPr
         return None
 
 
-def last_turn(record: Record, period: float) -> Any:
+def last_turn(record: Record, period: float) -> Recorded | None:
     """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
     from raceway.core.periodic.search import Recorded
 

@@ -14,7 +14,6 @@ Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), sections 4.1 and 4.2.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
@@ -150,7 +149,7 @@ def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_p
 
 
 def _integrated(
-    system: Ring, start: Callable[[Any], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
+    system: Ring, start: Callable[[Ring], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
 ) -> Attractor:  # fmt: skip
     """The motion from a start, by its last turns."""
     on_steps = None if on_progress is None else (lambda step, total: on_progress("beside unstable orbits", step, total))

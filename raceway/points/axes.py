@@ -8,7 +8,7 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import attrs
 
@@ -25,6 +25,10 @@ from raceway.storage.tables import ReadTables, Tables
 
 MOST_POINTS = 10_000
 _FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"
+
+
+#: Axes: texts ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values.
+Vary: TypeAlias = Iterable[str] | Mapping[str, object]
 
 
 @attrs.frozen
@@ -57,9 +61,7 @@ def shown(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def parse_axes(
-    definitions: Iterable[str] | Mapping[str, Any], option: str = "--vary", most: int = MOST_POINTS
-) -> tuple[Axis, ...]:
+def parse_axes(definitions: Vary, option: str = "--vary", most: int = MOST_POINTS) -> tuple[Axis, ...]:
     """The axes of the texts of an option, or of a mapping.
 
     Parameters
@@ -122,7 +124,7 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
     return _axis(key, _range(key, items[0], most) if ranges else [parse_value(item) for item in items])
 
 
-def _axis_of(key: str, values: Any, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
+def _axis_of(key: str, values: object, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
     """One axis of a mapping.
 
     Parameters
@@ -228,7 +230,7 @@ def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tab
     return {**point, **{key: value_at(changed, key) for key in texts}}
 
 
-def axes_of(definitions: Iterable[str] | Mapping[str, Any], tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
+def axes_of(definitions: Vary, tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
     """``parse_axes`` with values in the units of the scene's keys."""
     return tuple(in_units(axis, tables, registry) for axis in parse_axes(definitions))
 
@@ -384,7 +386,7 @@ def _few(values: Sequence[object]) -> str:
     return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
 
 
-def grid(definitions: Iterable[str] | Mapping[str, Any]) -> Design:
+def grid(definitions: Vary) -> Design:
     """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
 
     Raises
@@ -395,7 +397,7 @@ def grid(definitions: Iterable[str] | Mapping[str, Any]) -> Design:
     return Design(axes=parse_axes(definitions, "--grid", _MOST_SWEEP_POINTS))
 
 
-def listed_points(points: Iterable[Mapping[str, Any]]) -> Design:
+def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
     """A list of points, each a mapping of the same keys to their values.
 
     Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -28,7 +28,7 @@ from raceway.points.engine import Item, local, work_through
 from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import RowStore, row_key
 from raceway.scene.changes import with_number
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of
@@ -352,7 +352,7 @@ def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
 
 @door
 def band(
-    scene: Any,
+    scene: SceneSource,
     tolerances: Mapping[str, str] | Iterable[str] = (),
     *,
     count: int = 512,
@@ -415,7 +415,7 @@ def band(
 
 @door
 def uncertainty(
-    scene: Any,
+    scene: SceneSource,
     tolerances: Mapping[str, str] | Iterable[str] = (),
     keys: Iterable[str] = (),
     *,

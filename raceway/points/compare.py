@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -22,12 +22,12 @@ from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.axes import Axis, axes_of, points, refuse_mistakes, shown, tables_at
+from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key, tables_key
-from raceway.scene.inputs import plain_tables
+from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
@@ -223,7 +223,7 @@ def labelled(found: Findings) -> Dataset:
 
 def compare_points(
     scene_tables: ReadTables,
-    vary: Iterable[str] | Mapping[str, Any],
+    vary: Vary,
     registry: Registry | None = None,
     on_progress: OnProgress | None = None,
     store: Path | None = None,
@@ -292,8 +292,8 @@ _ROWS, _CONTENT = "compare-rows.jsonl", "compare.json"
 
 @door
 def compare(
-    scene: Any,
-    vary: Mapping[str, Any] | Iterable[str],
+    scene: SceneSource,
+    vary: Vary,
     *,
     out: str | Path | None = None,
     kept: str | Path | None = None,

@@ -102,7 +102,7 @@ class Work:
     registry : in the process that the work was made in; others have one of their own
     """
 
-    function: Callable[[Any, Registry], Any]
+    function: Callable[[Any, Registry], Tables | list[Tables]]
     plugins: tuple[str, ...] = ()
     required: Tables | None = None
     registry: Registry | None = None
@@ -123,7 +123,7 @@ class Work:
                 _FAULTS[mark] = str(why)
         return _FAULTS[mark]
 
-    def __call__(self, tasks: list[Any]) -> Any:
+    def __call__(self, tasks: list[object]) -> list[Tables | list[Tables]] | Refused:
         with _ONE:
             fault = self.fault()
             if fault is not None:
@@ -234,7 +234,7 @@ def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generat
             close()
 
 
-def local(registry: Registry, processes: int, **options: Any) -> Executor:
+def local(registry: Registry, processes: int, **options: object) -> Executor:
     """The executor of ``--processes``: so many at a time, with these options; 0: this process."""
     if processes == 0:
         return registry.find("executor", "serial").plugin()

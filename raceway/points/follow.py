@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -24,7 +23,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
-from raceway.scene.inputs import Change, plain_tables
+from raceway.scene.inputs import Change, SceneSource, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
 ERROR, _LOST = 1e-6, 1e-3
@@ -43,7 +42,7 @@ OnProgress = Callable[[str, int, int], None]
 
 @door
 def follow(
-    scene: Any,
+    scene: SceneSource,
     over: str,
     *changes: Change,
     points: int = 1000,

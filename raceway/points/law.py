@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -31,7 +31,7 @@ from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.plan import make_plan
-from raceway.scene.inputs import Change, as_given
+from raceway.scene.inputs import Change, SceneSource, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 
@@ -243,7 +243,7 @@ class LawCurves(Answer):
 @door
 def law(
     name: str,
-    scene: Any = None,
+    scene: SceneSource | None = None,
     *changes: Change,
     race: str = "inner",
     ball: int | None = None,

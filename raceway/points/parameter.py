@@ -21,6 +21,7 @@ from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, by_address, compiled
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.contracts import Excitation
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
@@ -60,7 +61,7 @@ def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
     return Parameter(scene, key, first, last)
 
 
-def _number(key: str, value: Any, unit: str) -> float:
+def _number(key: str, value: str | float, unit: str) -> float:
     try:
         return number_in(unit, value) if isinstance(value, str) else float(value)
     except (TypeError, ValueError):
@@ -129,7 +130,7 @@ class Parameter:
         """Of the scene at a value of the key."""
         return self.scene(p).excitation
 
-    def system(self, p: float, excitation: Any = None) -> System:
+    def system(self, p: float, excitation: Excitation | None = None) -> System:
         """The compiled ring at a value of the key, whose excitation may be at hand."""
         if self.linear is None:
             return self._built(p)

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -22,7 +22,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import PRECISION
 from raceway.out.wrapping import Words
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.axes import shown
+from raceway.points.axes import Vary, shown
 from raceway.points.engine import measured_once
 from raceway.points.settings import (
     Reference,
@@ -38,7 +38,7 @@ from raceway.points.settings import (
 )
 from raceway.points.store import RowStore
 from raceway.scene.changes import parse_change
-from raceway.scene.inputs import plain_tables, tidy
+from raceway.scene.inputs import SceneSource, plain_tables, tidy
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -429,8 +429,8 @@ _LIMIT_S = 30.0
 
 def measure_settings(
     tables: ReadTables,
-    vary: Iterable[str] | Mapping[str, Any] = (),
-    reference: Iterable[str] | Mapping[str, Any] = (),
+    vary: Vary = (),
+    reference: Vary = (),
     repeats: int = REPEATS,
     limit_s: float = _LIMIT_S,
     store: Path | None = None,
@@ -486,7 +486,7 @@ def measure_settings(
     )
 
 
-def _given(settings: tuple[Setting, ...], changes: Iterable[str] | Mapping[str, Any], registry: Registry) -> Tables:
+def _given(settings: tuple[Setting, ...], changes: Vary, registry: Registry) -> Tables:
     """The reference that the user names, checked with the first setting that can run."""
     given = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
     first = next((setting for setting in settings if setting.scene is not None), None)
@@ -528,10 +528,10 @@ _ROWS = "precision-rows.jsonl"
 
 @door
 def precision(
-    scene: Any,
-    vary: Mapping[str, Any] | Iterable[str] | None = None,
+    scene: SceneSource,
+    vary: Vary | None = None,
     *,
-    reference: Mapping[str, Any] | Iterable[str] = (),
+    reference: Vary = (),
     repeats: int = REPEATS,
     limit_s: float = _LIMIT_S,
     out: str | Path | None = None,

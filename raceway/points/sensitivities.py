@@ -7,7 +7,7 @@ import io
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -300,7 +300,7 @@ def _largest(key: ReadTables, names: list[str]) -> float:
 
 @door
 def sensitivities(
-    scene: Any,
+    scene: SceneSource,
     keys: Iterable[str] = (),
     *,
     tolerances: Mapping[str, str] | Iterable[str] = (),

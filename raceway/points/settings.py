@@ -13,9 +13,9 @@ models            what changes the physics, one at a time: law, discretisation, 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -23,7 +23,7 @@ from raceway.errors import RacewayError, SceneError
 from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
-from raceway.points.axes import axes_of, points, refuse_mistakes, tables_at
+from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.engine import measured_once
 from raceway.points.store import RowStore
 from raceway.scene.reading import scene_from_dict
@@ -89,7 +89,7 @@ def _is_numerical(key: str) -> bool:
     return key.partition(".")[0] in _NUMERICAL
 
 
-def make_design(tables: ReadTables, vary: Iterable[str] | Mapping[str, Any], limit_s: float, registry: Registry) -> Design:
+def make_design(tables: ReadTables, vary: Vary, limit_s: float, registry: Registry) -> Design:
     """The settings of a study.
 
     Parameters

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 
@@ -25,7 +25,7 @@ from raceway.points.dataset import dataset, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.store import Store, exists, open_store, row_key, written
 from raceway.points.survey import Survey, survey
-from raceway.scene.inputs import plain_tables
+from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
@@ -56,14 +56,14 @@ class Chain:
 
     def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Tables]:
         before: Result | None = None
-        rows, parts = [], dict[Hashable, Any]()
+        rows, parts = [], dict[Hashable, object]()
         for number, point in points:
             row, before = self._row(number, point, registry, before, parts)
             rows.append(row)
         return rows
 
     def _row(
-        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, Any]
+        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, object]
     ) -> tuple[Tables, Result | None]:
         from raceway.pipeline.run import run
 
@@ -256,12 +256,12 @@ _FROM_ZERO = (
     "STORE --from tangent --ross bearing.toml"
 )
 #: Values of the axes by key, or a list of points.
-Axes = Mapping[str, Any] | Iterable[Mapping[str, Any]] | Design
+Axes = Mapping[str, object] | Iterable[Mapping[str, object]] | Design
 
 
 @door
 def sweep(
-    scene: Any,
+    scene: SceneSource,
     axes: Axes,
     *,
     executor: str | Executor = "serial",
@@ -324,7 +324,9 @@ def sweep(
             return dataset(found, registry_with(plugins))
 
 
-def prepared_sweep(scene: Any, axes: Axes, store: Path, resume: bool = False, plugins: Iterable[str | Path] = ()) -> Sweep:
+def prepared_sweep(
+    scene: SceneSource, axes: Axes, store: Path, resume: bool = False, plugins: Iterable[str | Path] = ()
+) -> Sweep:
     """A sweep that was looked over, nothing computed; options that a change of kind leaves out are warned of.
 
     Raises
