@@ -449,4 +449,4 @@ def test_the_command_writes_what_it_shows(tmp_path):
     assert content["free"][0]["value"] == pytest.approx(17.0, abs=1e-3) and content["series"][0]["x"] == list(LOADS)
     assert json.loads(invoke(*words, "--json", "--no-pictures").stdout)["free"] == content["free"]
     wrong = invoke("fit", table, "--free", ANGLE)
-    assert wrong.exit_code == 2 and "`scene`" in wrong.output
+    assert wrong.exit_code == 2 and "`--scene`" in wrong.output

@@ -117,7 +117,7 @@ def test_the_practice_need_not_be_said(series):
 
 def test_bearings_with_printed_balls_are_inferred_from_the_others():
     """Each is left out of the known ones: Z in 95 %, D and d_m within 1 % (the issue's limits)."""
-    found = infer_table("gmn")["summary"]
+    found = infer_table("gmn").summary
     assert found["internals_printed"] == 103
     assert found["ball_count_right"] >= 0.95
     assert found["ball_diameter_within_1_percent"] >= 0.95

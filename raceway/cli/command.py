@@ -74,6 +74,7 @@ class Command:
     summary : for the list of commands;  example : command lines
     options : name of an argument -> what the command line says otherwise;  None: the command line does not have it
     folder : what follows the scene's title in the name of the default folder; None: nothing is written without --out
+    named_by : argument with the file whose name stands for the title
     unchecked : the scene is not read before the front has changed it
     """
 
@@ -83,6 +84,7 @@ class Command:
     example: str
     options: Mapping[str, Option | None] = attrs.field(factory=dict)
     folder: str | None = ""
+    named_by: str = ""
     unchecked: bool = False
     pictures: bool = True
 
@@ -107,13 +109,17 @@ class Command:
                 command
             )
         if self.pictures or self.folder is not None:
-            default = f"{RESULTS}/TITLE{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
+            title = self.named_by.upper() or "TITLE"
+            default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
             command = out_option("nothing is written" if self.folder is None else default)(command)
         for parameter in reversed(params):
             command = self._option(parameter, words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             required = signature.parameters["scene"].default is inspect.Parameter.empty
-            command = set_keys(click.argument("scene", type=PATH, required=required)(command))
+            given = click.argument("scene", type=PATH, required=required)
+            if "scene" in self.options:
+                given = click.option("--scene", type=PATH, metavar="SCENE", help=_option_help(words["scene"]))
+            command = set_keys(given(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
                 command = _argument(parameter)(command)
@@ -164,6 +170,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
     elif changes and not changed_by_front:
         raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+    if about.named_by:
+        title = Path(arguments[about.named_by]).stem + "".join(title.partition("\n")[1:])
     folder = (
         out
         if out is not None or about.folder is None

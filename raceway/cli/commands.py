@@ -77,16 +77,59 @@ ANSWERS = (
         },
         folder="-band",
     ),
-    Later(
-        "fit", "raceway.studies.fit.command:fit", "Numbers of a scene, or K and C of a rig's bearing, from measured data."
+    Command(
+        "fit",
+        "raceway.studies.fit.command:fit_texts",
+        "Numbers of a scene, or K and C of a rig's bearing, from measured data.",
+        "raceway fit measured-k.csv --scene examples/b7206.toml \\\n"
+        "    --free bearing.contact_angle_deg\n"
+        "raceway fit shaker.csv --free K,C,mass\n"
+        "raceway study rig examples/test_rig.toml --out rig\n"
+        "raceway identify rig/signals-13000rpm-400N.csv \\\n"
+        "    --scene examples/test_rig.toml --set load.axial=400 \\\n"
+        "    --slow-roll rig/slow-roll-13000rpm-400N.csv\n"
+        "raceway identify orbit.csv --scene examples/test_rig.toml \\\n"
+        '    --map "Ch 1=y_um" --map "Ch 2=z_um"',
+        {
+            "data": Option(positional=True),
+            "free": Option(metavar="A.B,C.D"),
+            "scene": Option("scene"),
+            "mass": Option(metavar="KG"),
+            "slow_roll": Option("slow-roll", "FILE.csv"),
+            "run_out": Option("run-out", "UM,DEG"),
+            "columns": Option("map", '"HEADER=NAME"'),
+        },
+        folder="-fitted",
+        named_by="data",
     ),
-    Later(
-        "catalogue", "raceway.studies.catalogue.command:catalogue", "List, search and draw the bearings of the catalogue."
+    Command(
+        "catalogue",
+        "raceway.studies.catalogue.catalogue:look_up",
+        "List, search and draw the bearings of the catalogue.",
+        'raceway catalogue "70*C"\nraceway catalogue 7014C --picture 7014C.png',
+        {"pattern": Option(positional=True), "picture": Option(metavar="FILE.png")},
+        folder=None,
+        pictures=False,
     ),
-    Later(
+    Command(
         "infer",
-        "raceway.studies.catalogue.infer_command:infer",
+        "raceway.studies.catalogue.infer:infer_texts",
         "Balls and grooves of a bearing from what its maker prints.",
+        'raceway infer --bore "70 mm" --outer-diameter "110 mm" \\\n'
+        '    --rating "15:47 kN:43 kN" --rating "25:44.5 kN:41 kN"\n'
+        "raceway infer nsk --conformity 0.522",
+        {
+            "table": Option(positional=True),
+            "bore": Option(metavar="LENGTH"),
+            "outer_diameter": Option("outer-diameter", "LENGTH"),
+            "width": Option(metavar="LENGTH"),
+            "ratings": Option("rating", "ANGLE:C:C0"),
+            "pairs": Option("pair", "ANGLE:PRELOAD:STIFFNESS"),
+            "maker": Option(metavar="NAME"),
+            "conformity": Option(metavar="F"),
+        },
+        folder=None,
+        pictures=False,
     ),
     Later("view", "raceway.studies.view.command:view", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
     Later("mesh", "raceway.studies.view.mesh:mesh", "Mesh the bodies of a scene: counts, quality, files."),

@@ -1,18 +1,23 @@
-"""Balls and grooves of a bearing from what its maker prints, for Python: ``raceway.infer``."""
+"""Balls and grooves of a bearing, or of a table of bearings, from what makers print: ``raceway.infer`` and the command."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import SceneError
 from raceway.framework.doors import door
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
+from raceway.out.table import rows_table
+from raceway.out.wrapping import Words
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
-from raceway.studies.catalogue.inferred import Inferred, infer_printed
+from raceway.studies.catalogue.inferred import QUANTITIES, Inferred, infer_printed
 from raceway.studies.catalogue.printed import PairStiffness, Printed, Rating, Table, printed_by, read_table, sizes_of
 
 #: A number in SI units, or text with a unit.
@@ -101,11 +106,121 @@ def _number(name: str, unit: str, value: Quantity) -> float:
 
 #: Tables that come with the package, and whose they are.
 _TABLES = {"nsk": "NSK", "gmn": "GMN"}
-_QUANTITIES = ("dynamic rating", "static rating", "pair stiffness")
 
 
-def infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> Tables:
-    """Rows, one a size, and a summary.
+@attrs.frozen(eq=False, repr=False)
+class InferredTable(Answer):
+    """Inferred sizes of a table, and what could not be inferred.
+
+    Attributes
+    ----------
+    table, maker : what was read;  sizes : how many, and ``internals`` of them with printed balls
+    answers : inferred sizes, and what is refused, in the order of the table: a name, or a reason by name
+    """
+
+    stem: ClassVar[str] = "inferred"
+    table: str
+    maker: str | None
+    sizes: int
+    internals: int
+    answers: list[Inferred | tuple[str, str]]
+
+    @property
+    def inferred(self) -> list[Inferred]:
+        """What was not refused."""
+        return [answer for answer in self.answers if isinstance(answer, Inferred)]
+
+    @property
+    def summary(self) -> Tables:
+        """Largest errors of ratings, median and 90 % of stiffnesses, and how many printed internals are met; what is refused is not."""
+        errors = {
+            word: [abs(check.error) for answer in self.inferred for check in answer.checks if check.quantity == word]
+            for word in QUANTITIES
+        }
+        stiff = errors["pair stiffness"]
+        printed = [(a.printed.internals, a.numbers) for a in self.inferred if a.printed.internals is not None]
+
+        def share(key: str, within: float) -> float | None:
+            met = [abs(numbers[key].value / getattr(balls, key) - 1.0) <= within for balls, numbers in printed]
+            return sum(met) / self.internals if self.internals else None
+
+        return {
+            "sizes": self.sizes,
+            "inferred": len(self.inferred),
+            "designations": sum(len(answer.printed.ratings) for answer in self.inferred),
+            "dynamic_rating_error_max": max(errors["dynamic rating"]),
+            "static_rating_error_max": max(errors["static rating"]),
+            "pair_stiffnesses": len(stiff),
+            "pair_stiffness_error_median": float(np.median(stiff)) if stiff else None,
+            "pair_stiffness_error_90": float(np.quantile(stiff, 0.9)) if stiff else None,
+            "internals_printed": self.internals,
+            "ball_count_right": share("ball_count", 0.0),
+            "ball_diameter_within_1_percent": share("ball_diameter", 0.01),
+            "pitch_diameter_within_1_percent": share("pitch_diameter", 0.01),
+        }
+
+    def to_dict(self) -> Tables:
+        """A row a size, and the summary."""
+        rows = [
+            _row(answer) if isinstance(answer, Inferred) else {"name": answer[0], "refused": answer[1]}
+            for answer in self.answers
+        ]
+        return {"table": self.table, "maker": self.maker, "rows": rows, "summary": self.summary}
+
+    def _sentences(self) -> list[str]:
+        summary = {key: 100.0 * value if isinstance(value, float) else value for key, value in self.summary.items()}
+        sentences = [
+            "{inferred} of {sizes} sizes, {designations} designations; printed C met within {dynamic_rating_error_max:.2f} %, "
+            "C0 within {static_rating_error_max:.2f} %"
+        ]
+        if summary["pair_stiffnesses"]:
+            sentences.append(
+                "{pair_stiffnesses} axial stiffnesses of pairs: median error {pair_stiffness_error_median:.2f} %, "
+                "90 % within {pair_stiffness_error_90:.1f} %"
+            )
+        if summary["internals_printed"]:
+            sentences.append(
+                "{internals_printed} with printed balls, each inferred from the others: Z right in {ball_count_right:.1f} %, "
+                "D within 1 % in {ball_diameter_within_1_percent:.1f} %, d_m in {pitch_diameter_within_1_percent:.1f} %"
+            )
+        return [sentence.format(**summary) for sentence in sentences]
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        return f"Inferred from {self.table}", [(sentence, "", "") for sentence in self._sentences()]
+
+    def report(self) -> list[Part]:
+        refused = [Words(f"refused: {answer[1]}", "yellow") for answer in self.answers if not isinstance(answer, Inferred)]
+        return [rows_table(list(map(_line, self.inferred)), f"Inferred from {self.table}"), *refused, *self._sentences()]
+
+
+def _row(answer: Inferred) -> Tables:
+    worst = {word.replace(" ", "_") + "_error": answer.worst(word) for word in QUANTITIES}
+    numbers = {key: number.value for key, number in answer.numbers.items()}
+    scatter = {f"{key}_scatter": number.scatter for key, number in answer.numbers.items()}
+    internals = answer.printed.internals
+    printed = {} if internals is None else {f"printed_{key}": value for key, value in attrs.asdict(internals).items()}
+    return {"name": answer.printed.title, "practice": answer.practice, **numbers, **worst, **scatter, **printed}
+
+
+def _line(answer: Inferred) -> dict[str, str]:
+    name, internals = answer.printed.title, answer.printed.internals
+    line = {
+        "name": name if len(name) < 20 else name.partition(",")[0] + " ...",
+        "Z": str(answer.ball_count.value),
+        "D mm": f"{1e3 * answer.ball_diameter.value:.3f}",
+        "d_m mm": f"{1e3 * answer.pitch_diameter.value:.4g}",
+        "f_i": f"{answer.conformity_inner.value:.4f}",
+    }
+    for word, quantity in zip(("C %", "C0 %", "pairs %"), QUANTITIES, strict=True):
+        error = answer.worst(quantity)
+        line[word] = "-" if error is None else f"{100.0 * error:.2f}"
+    if internals is not None:
+        line |= {"printed Z": str(internals.ball_count), "D mm ": f"{1e3 * internals.ball_diameter:.3f}"}
+    return line
+
+
+def infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> InferredTable:
+    """All sizes of a table.
 
     Parameters
     ----------
@@ -121,55 +236,72 @@ def infer_table(table: str, maker: str | None = None, conformity: float | None =
     read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))
     sizes = sizes_of(read.lines)
     maker = maker or (_TABLES[table.lower()] if packaged else None)
-    rows: list[Tables] = [{"name": fault.path, "refused": str(fault)} for fault in read.faults]
-    answers: list[Inferred] = []
+    answers: list[Inferred | tuple[str, str]] = [(fault.path, str(fault)) for fault in read.faults]
     faults: list[SceneError] = []
     for size in sizes:
         try:
             answers.append(infer_printed(size, maker, conformity))
-            rows.append(_row(answers[-1]))
         except SceneError as error:
             faults.append(error)
-            rows.append({"name": size.title, "refused": str(error)})
-    if not answers:
+            answers.append((size.title, str(error)))
+    if len(faults) == len(sizes):
         raise SceneError([mistake for error in faults for mistake in error.mistakes][:5])
-    return {"table": table, "maker": maker, "rows": rows, "summary": _summary(answers, sizes)}
+    return InferredTable(table, maker, len(sizes), sum(size.internals is not None for size in sizes), answers)
 
 
-def _row(answer: Inferred) -> Tables:
-    worst = {word.replace(" ", "_") + "_error": answer.worst(word) for word in _QUANTITIES}
-    numbers = {key: number.value for key, number in answer.numbers.items()}
-    scatter = {f"{key}_scatter": number.scatter for key, number in answer.numbers.items()}
-    internals = answer.printed.internals
-    printed = {} if internals is None else {f"printed_{key}": value for key, value in attrs.asdict(internals).items()}
-    return {"name": answer.printed.title, "practice": answer.practice, **numbers, **worst, **scatter, **printed}
+def infer_texts(
+    table: str | None = None,
+    bore: str | None = None,
+    outer_diameter: str | None = None,
+    width: str | None = None,
+    ratings: Iterable[str] = (),
+    pairs: Iterable[str] = (),
+    maker: str | None = None,
+    conformity: float | None = None,
+) -> Inferred | InferredTable:
+    """Infer ball count, ball diameter, pitch diameter and conformity, each with its scatter and reason.
+
+    ISO 281 and ISO 76 say how ratings follow from balls; all angles of a size are met together, with a whole number of balls of a
+    usual size. TABLE is a CSV file of many bearings with the columns name, bore_mm, outer_diameter_mm, width_mm,
+    contact_angle_deg, dynamic_rating_n, static_rating_n, and if they are printed preload_1_n, stiffness_1_n_per_um,
+    preload_2_n ... and ball_count, ball_diameter_mm, pitch_diameter_mm, which are not used but compared. "nsk" and "gmn" are
+    tables that come with the package.
+
+    Parameters
+    ----------
+    table : CSV file, "nsk" or "gmn"
+    bore : with a unit: "70 mm"
+    outer_diameter : with a unit: "110 mm"
+    width : with a unit: "20 mm"
+    ratings : contact angle [deg], dynamic and static rating: "15:47 kN:43 kN"
+    pairs : axial stiffness of a preloaded pair: "15:145 N:51 N/µm"
+    maker : whose practice of rating it is: NSK, GMN; None: what explains the numbers better
+    conformity : of both grooves, above 0.5 and at most 0.6; None: from --pair, else 0.522
+    """
+    if conformity is not None and not 0.5 < conformity <= 0.6:
+        raise SceneError.at("conformity", conformity, "must be above 0.5 and at most 0.6")
+    single, ratings = {"--bore": bore, "--outer-diameter": outer_diameter, "--rating": tuple(ratings)}, tuple(ratings)
+    if table is not None:
+        if any((*single.values(), *pairs)):
+            raise SceneError.at("TABLE", table, "give it, or --bore, --outer-diameter and --rating, not both")
+        return infer_table(table, maker, conformity)
+    if missing := [word for word, value in single.items() if not value]:
+        raise SceneError.at("TABLE", None, f"is missing, or {', '.join(missing)}")
+    assert bore is not None and outer_diameter is not None
+    by_angle: dict[float, tuple[Quantity, Quantity]] = {}
+    for text in ratings:
+        angle, dynamic, static = _three("ratings", text, "15:47 kN:43 kN")
+        if angle in by_angle:
+            raise SceneError.at("ratings", text, f"{angle:g} deg is given twice")
+        by_angle[angle] = dynamic, static
+    stiffnesses = [_three("pairs", text, "15:145 N:51 N/µm") for text in pairs]
+    return infer(bore, outer_diameter, by_angle, width=width, pairs=stiffnesses, maker=maker, conformity=conformity)
 
 
-def _summary(answers: list[Inferred], sizes: list[Printed]) -> Tables:
-    """Largest errors of ratings, median and 90 % of stiffnesses, and how many printed internals are met; what is refused is not."""
-    errors = {
-        word: [abs(check.error) for answer in answers for check in answer.checks if check.quantity == word]
-        for word in _QUANTITIES
-    }
-    stiff = errors["pair stiffness"]
-    printed = [(answer.printed.internals, answer) for answer in answers if answer.printed.internals is not None]
-    count = sum(size.internals is not None for size in sizes)
-
-    def share(key: str, within: float) -> float | None:
-        met = [abs(answer.numbers[key].value / getattr(balls, key) - 1.0) <= within for balls, answer in printed]
-        return sum(met) / count if count else None
-
-    return {
-        "sizes": len(sizes),
-        "inferred": len(answers),
-        "designations": sum(len(answer.printed.ratings) for answer in answers),
-        "dynamic_rating_error_max": max(errors["dynamic rating"]),
-        "static_rating_error_max": max(errors["static rating"]),
-        "pair_stiffnesses": len(stiff),
-        "pair_stiffness_error_median": float(np.median(stiff)) if stiff else None,
-        "pair_stiffness_error_90": float(np.quantile(stiff, 0.9)) if stiff else None,
-        "internals_printed": count,
-        "ball_count_right": share("ball_count", 0.0),
-        "ball_diameter_within_1_percent": share("ball_diameter", 0.01),
-        "pitch_diameter_within_1_percent": share("pitch_diameter", 0.01),
-    }
+def _three(name: str, text: str, example: str) -> tuple[float, str, str]:
+    try:
+        angle, first, second = text.split(":")
+        return float(angle.removesuffix("deg")), first, second
+    except ValueError:
+        rule = f'must be three parts with colons between, the first an angle in deg: "{example}"'
+        raise SceneError.at(name, text, rule) from None

@@ -1,15 +1,19 @@
-"""What was inferred of a bearing: each number with its scatter and its reason."""
+"""Inferred bearings, each number with its scatter and its reason; tables of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, number
+from raceway.out.answer import Answer, Part
+from raceway.out.table import sections
+from raceway.out.wrapping import Words
 from raceway.storage.tables import Tables
 from raceway.studies.catalogue.printed import Printed
 from raceway.studies.catalogue.rating_conventions import (
@@ -23,6 +27,9 @@ from raceway.studies.catalogue.rating_conventions import (
     size_words,
     stiffnesses,
 )
+
+#: What is printed and checked.
+QUANTITIES = ("dynamic rating", "static rating", "pair stiffness")
 
 
 @attrs.frozen
@@ -49,7 +56,7 @@ class Check:
 
 
 @attrs.frozen(repr=False)
-class Inferred(Shown):
+class Inferred(Answer):
     """Balls and grooves of a bearing, inferred from what its maker prints.
 
     Attributes
@@ -70,6 +77,7 @@ class Inferred(Shown):
     (20, 11.906)
     """
 
+    stem: ClassVar[str] = "inferred"
     printed: Printed
     practice: str
     ball_count: Number
@@ -119,19 +127,37 @@ class Inferred(Shown):
             "bearing": self.bearing(),
         }
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _number_facts(self) -> list[Fact]:
         facts: list[Fact] = []
         for key, inferred in self.numbers.items():
-            length = key.endswith("diameter")
-            value = number(1e3 * inferred.value, "mm") if length else f"{inferred.value:g}"
+            value = number(1e3 * inferred.value, "mm") if key.endswith("diameter") else f"{inferred.value:.5g}"
             scatter = "" if key == "ball_count" else f"+- {100.0 * inferred.scatter:.2g} %; "
             facts.append((key.replace("_", " "), value, scatter + inferred.reason))
-        for quantity in ("dynamic rating", "static rating", "pair stiffness"):
-            off = self.worst(quantity)
-            if off is not None:
-                facts.append((quantity, f"{100.0 * off:.2g} %", "largest error of what is printed"))
+        return facts
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        facts = self._number_facts()
+        for quantity in QUANTITIES:
+            if (error := self.worst(quantity)) is not None:
+                facts.append((quantity, f"{100.0 * error:.2g} %", "largest error of what is printed"))
         facts.append(("axial stiffness", f"{100.0 * self.stiffness_error:.2g} %", "known to about this, 90 %"))
         return self.printed.title, facts
+
+    def report(self) -> Sequence[Part]:
+        practice = "the maker's grooves" if self.practice == "grooves" else "the tables of ISO 281 and ISO 76"
+        rows = [(f"Inferred by {practice}", "", ""), *self._number_facts()]
+        if self.other is not None and self.other["share"] > 1e-3:
+            balls = f"{self.other['ball_count']} of {1e3 * self.other['ball_diameter']:.4g} mm"
+            rows.append(("next likely", balls, f"{100.0 * self.other['share']:.2g} %"))
+        rows.append(("What is printed", "", ""))
+        for check in self.checks:
+            stiff = check.quantity == "pair stiffness"
+            value = number(1e-6 * check.printed, "N/µm") if stiff else number(1e-3 * check.printed, "kN")
+            rows.append(
+                (f"{check.quantity}, {check.contact_angle_deg:g} deg", value, f"met with {100.0 * check.error:+.2f} %")
+            )
+        error = f"geometry inferred: axial stiffness known to about {100.0 * self.stiffness_error:.0f} %"
+        return [Words(self.printed.title, "bold"), sections(rows), error]
 
 
 #: Practices of rating by maker, in small letters.

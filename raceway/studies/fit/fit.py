@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -12,18 +12,21 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact, Shown, number, number_within
+from raceway.framework.shown import Fact, number, number_within
+from raceway.out.answer import Answer, Part
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import read_in
+from raceway.out.table import rows_table
+from raceway.out.wrapping import Words
 from raceway.scene.inputs import SceneSource, as_scene
-from raceway.storage.files import without_nan, write_json
+from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.studies.fit.column_headers import quantity_of
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
 from raceway.studies.fit.signals import Data, headers_of, signals_of, table_of
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from matplotlib.figure import Figure
 
 #: Part of a half-width below which a cause of it is not shown.
 _SMALL = 0.02
@@ -63,7 +66,7 @@ class Derived:
 
 
 @attrs.frozen(eq=False, repr=False)
-class Fitted(Shown):
+class Fitted(Answer):
     """Free numbers of a scene or a linear model by measured data.
 
     Attributes
@@ -82,6 +85,7 @@ class Fitted(Shown):
     17.0
     """
 
+    stem: ClassVar[str] = "fit"
     title: str
     source: str
     kind: str
@@ -164,28 +168,33 @@ class Fitted(Shown):
         }  # fmt: skip
         return dict(without_nan(content))
 
-    def save(self, folder: Path) -> Path:
-        """Write fit.json.
-
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
-        return write_json(self.to_dict(), folder / "fit.json")
-
-    def picture(self, folder: Path) -> Path:
-        """Draw fit.png: data, fit with its band, residuals, confidence region.
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the folder cannot be written.
-        """
-        from raceway.out.picture import save_figure
+    def draw(self) -> Figure:
+        """Data, fit with its band, residuals, confidence region."""
         from raceway.studies.fit.picture import draw
 
-        return save_figure(draw(self.to_dict()), folder / "fit.png", 110)
+        return draw(self.to_dict())
+
+    def report(self) -> list[Part]:
+        """Numbers with their intervals by cause; below, how well the model meets the data, and warnings."""
+        estimate, starts, parts = self.estimate, {}, self.estimate.parts
+        if self.kind != "record":
+            starts = {key.name: number(key.start, key.unit, 6) for key in estimate.free}
+        rows = []
+        for k, (name, (value, half, unit)) in enumerate(self._numbers.items()):
+            _, read, width = interval(name, value, half, unit)
+            width = width.removesuffix(" at 95 %").replace("+-", "±")
+            rows.append({"free": name, "from": starts.get(name, ""), "found": read, "at 95 %": width})
+            if k < len(estimate.free) and len(parts) > 1 and np.isfinite(half):
+                shares = sorted(((float(sizes[k]), cause) for cause, sizes in parts.items()), reverse=True)
+                large = [f"{cause} {number(*read_in(size, unit), 2)}" for size, cause in shares if size > _SMALL * half]
+                rows[-1]["of which"] = ", ".join(large)
+        words = f"{len(estimate.residuals)} data, {len(estimate.free)} free, {estimate.evaluations} evaluations"
+        if estimate.scatter is not None and self.kind != "record":
+            of = "of the stated errors" if self.stated else "of the data"
+            size = f"{estimate.scatter:.2g}" if self.stated else f"{100.0 * estimate.scatter:.2g} %"
+            words += f"; residuals {size} {of}"
+        table = rows_table(rows, f"{self.title}\nfitted to {self.source}")
+        return [table, words, *(Words(text, "yellow") for text in self.warnings)]
 
     def _shown(self) -> tuple[str, list[Fact]]:
         facts = [interval(name, *numbers) for name, numbers in self._numbers.items()]
@@ -304,31 +313,3 @@ def _refuse(wrong: bool, path: str, why: str) -> None:
     """``SceneError`` at an argument that does not belong to the data."""
     if wrong:
         raise SceneError.at(path, None, why)
-
-
-def fit_screen(answer: Fitted, files: list[str]) -> RenderableType:
-    """Numbers with their intervals by cause; below, how well the model meets the data, warnings, and the files that were written."""
-    from rich.console import Group
-
-    from raceway.out.table import rows_table, written
-    from raceway.out.wrapping import Words
-
-    estimate, starts, parts = answer.estimate, {}, answer.estimate.parts
-    if answer.kind != "record":
-        starts = {key.name: number(key.start, key.unit, 6) for key in estimate.free}
-    rows = []
-    for k, (name, (value, half, unit)) in enumerate(answer._numbers.items()):
-        _, read, width = interval(name, value, half, unit)
-        width = width.removesuffix(" at 95 %").replace("+-", "±")
-        rows.append({"free": name, "from": starts.get(name, ""), "found": read, "at 95 %": width})
-        if k < len(estimate.free) and len(parts) > 1 and np.isfinite(half):
-            shares = sorted(((float(sizes[k]), cause) for cause, sizes in parts.items()), reverse=True)
-            large = [f"{cause} {number(*read_in(size, unit), 2)}" for size, cause in shares if size > _SMALL * half]
-            rows[-1]["of which"] = ", ".join(large)
-    words = f"{len(estimate.residuals)} data, {len(estimate.free)} free, {estimate.evaluations} evaluations"
-    if estimate.scatter is not None and answer.kind != "record":
-        of = "of the stated errors" if answer.stated else "of the data"
-        size = f"{estimate.scatter:.2g}" if answer.stated else f"{100.0 * estimate.scatter:.2g} %"
-        words += f"; residuals {size} {of}"
-    lines = [Words(words), *(Words(text, "yellow") for text in answer.warnings)]
-    return Group(rows_table(rows, f"{answer.title}\nfitted to {answer.source}"), *lines, *written(files))

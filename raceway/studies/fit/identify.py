@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from cmath import exp
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from math import pi, radians
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -14,14 +14,17 @@ import numpy as np
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, number
+from raceway.out.answer import Answer, Part
 from raceway.out.picture import given_axes, save_figure
 from raceway.out.progress import ShowProgress, telling
+from raceway.out.table import sections
+from raceway.out.wrapping import Words
 from raceway.plugins.labelled import labelled_dataset
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import rig_of
 from raceway.scene.tables import Rig
-from raceway.storage.files import without_nan, writable, write_json
+from raceway.storage.files import without_nan, writable
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fit import interval
@@ -43,7 +46,6 @@ from raceway.studies.shaft import Bearing, State, bearing, rotor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from rich.console import RenderableType
     from xarray import Dataset
 
 #: Deflection of the bearing below this part of that at the sensor is a small difference of large numbers.
@@ -55,7 +57,7 @@ _UNLIKE = 0.3
 
 
 @attrs.frozen(eq=False, repr=False)
-class Identified(Shown):
+class Identified(Answer):
     """A bearing's dynamic stiffness as identified from signals, at their speed, the tilt as in the rig.
 
     Attributes
@@ -76,6 +78,7 @@ class Identified(Shown):
     (12000, 84)
     """
 
+    stem: ClassVar[str] = "identify"
     rotation: Rotation
     component: Synchronous
     run_out: RunOut
@@ -234,17 +237,7 @@ class Identified(Shown):
         }
         return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
 
-    def save(self, folder: Path) -> Path:
-        """Write identify.json.
-
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
-        return write_json(self.to_dict(), folder / "identify.json")
-
-    def pictures(self, folder: Path) -> list[Path]:
+    def picture(self, folder: str | Path) -> list[Path]:
         """Draw signals.png, spectrum.png and orbits.png.
 
         Raises
@@ -254,7 +247,7 @@ class Identified(Shown):
         """
         from raceway.studies.fit.picture import figures
 
-        return [save_figure(figure, folder / f"{name}.png", 110) for name, figure in figures(self).items()]
+        return [save_figure(figure, Path(folder) / f"{name}.png", 110) for name, figure in figures(self).items()]
 
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:
         """Draw the orbits at the sensor and in the bearing [um], or the spectrum over orders.
@@ -297,6 +290,29 @@ class Identified(Shown):
         )
         scene = number(1e-6 * self.scene_stiffness, "N/µm")
         return [*facts, ("K of the scene's bearing", scene, "under the same force and moment"), locked]
+
+    def report(self) -> list[Part]:
+        """Signals, 1x component, bearing, K and C."""
+        content, component, state, run_out = self.content(), self.component, self.state, self.run_out
+        signals, speed = content["signals"], content["signals"]["speed_rpm"]
+        angle = f"{content['line']['angle_deg']:.2f} deg from the mark" if component.marked else ""
+        rows = [
+            ("Signals", "", f"{signals['samples']} samples, {signals['turns']} turns, angle from {signals['angle_from']}"),
+            ("speed", number(speed["mean"], "r/min", 6), f"{speed['lowest']:.1f} to {speed['highest']:.1f} r/min"),
+            ("1x component, forward", number(1e6 * abs(component.forward), "µm"), angle),
+            ("1x component, backward", number(1e6 * component.backward, "µm", 3), f"residual of the fit {100 * component.residual:.2g} %"),
+            ("run-out", number(1e6 * abs(run_out.vector), "µm", 4), run_out.how),
+            ("Bearing", "", "by inversion of the beam"),
+            ("deflection", number(1e6 * abs(state.deflection), "µm"), f"of {1e6 * abs(state.sensor):.4g} µm at the sensor"),
+            ("force, moment", number(abs(state.force), "N"), f"{abs(state.moment):.4g} N m, slope {abs(state.slope):.3g} rad"),
+            (f"Dynamic stiffness at {self.speed_rpm:.0f} r/min", "", content["identification"]["definition"]),
+            ("|Z|", number(1e-6 * abs(state.dynamic_stiffness), "N/µm"), "force over deflection"),
+            *self._coefficients(),
+            ("Relative change of K by", "", "a change of what is taken as known"),
+            *((str(change["change"]), f"{100 * float(change['stiffness']):+.2f} %", "") for change in self.changes),
+        ]  # fmt: skip
+        warnings = [Words(f"warning: {text}", "yellow") for text in self.warnings]
+        return [Words(self.title, "bold"), sections(rows), *warnings]
 
     def _shown(self) -> tuple[str, list[Fact]]:
         title = f"Identified from {self.source} at {self.speed_rpm:.1f} r/min\n{self.title.splitlines()[0]}"
@@ -415,32 +431,3 @@ def identify_recording(
     }
     changes = sensitivities(changed_rotors(rig, component.speed), shaft, state)
     return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)
-
-
-def identify_screen(answer: Identified, files: Sequence[str]) -> RenderableType:
-    """Signals, 1x component, bearing, K and C, and the files that were written."""
-    from rich.console import Group
-
-    from raceway.out.table import sections, written
-    from raceway.out.wrapping import Words
-
-    content, component, state, run_out = answer.content(), answer.component, answer.state, answer.run_out
-    signals, speed = content["signals"], content["signals"]["speed_rpm"]
-    angle = f"{content['line']['angle_deg']:.2f} deg from the mark" if component.marked else ""
-    rows = [
-        ("Signals", "", f"{signals['samples']} samples, {signals['turns']} turns, angle from {signals['angle_from']}"),
-        ("speed", number(speed["mean"], "r/min", 6), f"{speed['lowest']:.1f} to {speed['highest']:.1f} r/min"),
-        ("1x component, forward", number(1e6 * abs(component.forward), "µm"), angle),
-        ("1x component, backward", number(1e6 * component.backward, "µm", 3), f"residual of the fit {100 * component.residual:.2g} %"),
-        ("run-out", number(1e6 * abs(run_out.vector), "µm", 4), run_out.how),
-        ("Bearing", "", "by inversion of the beam"),
-        ("deflection", number(1e6 * abs(state.deflection), "µm"), f"of {1e6 * abs(state.sensor):.4g} µm at the sensor"),
-        ("force, moment", number(abs(state.force), "N"), f"{abs(state.moment):.4g} N m, slope {abs(state.slope):.3g} rad"),
-        (f"Dynamic stiffness at {answer.speed_rpm:.0f} r/min", "", content["identification"]["definition"]),
-        ("|Z|", number(1e-6 * abs(state.dynamic_stiffness), "N/µm"), "force over deflection"),
-        *answer._coefficients(),
-        ("Relative change of K by", "", "a change of what is taken as known"),
-        *((str(change["change"]), f"{100 * float(change['stiffness']):+.2f} %", "") for change in answer.changes),
-    ]  # fmt: skip
-    warnings = [Words(f"warning: {text}", "yellow") for text in answer.warnings]
-    return Group(Words(answer.title, "bold"), sections(rows), *warnings, *written(files))
