@@ -209,10 +209,10 @@ def test_stiffness_from_standstill_is_refused_with_the_command_that_gives_it(fil
 
 def test_columns_that_are_alike_are_one():
     """As ``raceway export`` shows them, speeds in r/min; what is the same at all points stands below."""
-    zero = {name: [0.0] * 5 for name in ("kyy", "kyz", "kzy", "kzz", "cyy", "cyz", "czy", "czz", "kxx")}
-    rising = [1.23456e8 * (1.0 + 0.1 * n) for n in range(5)]
-    values = {**zero, "kyy": rising, "kzz": rising, "kxx": [6e7] * 5}
-    rows, constant = point_rows({"speed": [104.719755 * n for n in range(5)], "frequency": None, "coefficients": values})
+    zero = {name: np.zeros(5) for name in ("kyy", "kyz", "kzy", "kzz", "cyy", "cyz", "czy", "czz", "kxx")}
+    rising = 1.23456e8 * (1.0 + 0.1 * np.arange(5))
+    values = {**zero, "kyy": rising, "kzz": rising, "kxx": np.full(5, 6e7)}
+    rows, constant = point_rows({"speed": 104.719755 * np.arange(5)}, values)
     assert [list(row.values()) for row in rows][:2] == [["0", "123.46"], ["1000", "135.8"]]
     assert list(rows[0]) == ["speed\nr/min", "kyy = kzz\nN/µm"]
     assert constant == ["kxx = 60 N/µm at all points", "0 at all points: kyz, kzy, cyy, cyz, czy, czz"]

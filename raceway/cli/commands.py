@@ -133,7 +133,32 @@ ANSWERS = (
     ),
     Later("view", "raceway.studies.view.command:view", "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page."),
     Later("mesh", "raceway.studies.view.mesh:mesh", "Mesh the bodies of a scene: counts, quality, files."),
-    Later("export", "raceway.studies.rotor.command:export", "Write a sweep's coefficients for a rotor program."),
+    Command(
+        "export",
+        "raceway.studies.rotor.command:export",
+        "Write a sweep's coefficients for a rotor program.",
+        "raceway export raceway-out/B7206C-sweep --ross bearing.toml \\\n"
+        "    --at load.axial=1000\n"
+        "raceway sweep examples/b7206.toml --set identifier.kind=tangent \\\n"
+        "    --grid kinematics.spin_speed_rpm=0:20000:21 --out raceway-out/from-rest\n"
+        "raceway export raceway-out/from-rest --from tangent --ross bearing.toml\n"
+        "raceway export raceway-out/from-rest --from tangent \\\n"
+        "    --nastran bearing.bdf --ansys bearing.inp --table bearing.csv",
+        {
+            "store": Option(positional=True),
+            "ross": Option(metavar="FILE"),
+            "nastran": Option(metavar="FILE"),
+            "ansys": Option(metavar="FILE"),
+            "table": Option(metavar="FILE"),
+            "at": Option(metavar="KEY=VALUE"),
+            "source": Option("from", choices=("rotating", "directions", "tangent")),
+            "damping": Option(metavar="C"),
+            "ross_version": Option("ross-version", choices=("2", "3")),
+            "tag": Option(metavar="NAME"),
+        },
+        folder=None,
+        pictures=False,
+    ),
 )
 TRUST = (
     Command(

@@ -24,7 +24,7 @@ from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.scene.inputs import tidy
 from raceway.storage.files import write_whole
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 from raceway.studies.rotor import files
 from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, unit
 from raceway.studies.rotor.ross_file import (
@@ -140,7 +140,7 @@ class CoefficientFile(Shown):
         return panel
 
     def _shown(self) -> tuple[str, list[Fact]]:
-        rows, constant = point_rows(self.to_dict())
+        rows, constant = point_rows(self.coefficients.axes, self.coefficients.columns())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
         # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
         notes = sorted(self.notes, key=lambda note: "next to nothing" not in note and "in these numbers" not in note)
@@ -400,13 +400,12 @@ def _dataset(data: Dataset | str | Path) -> Dataset:
     raise RacewayError(f"{type(data).__name__} is no sweep: give what raceway.sweep returned, or the folder of its store")
 
 
-def point_rows(content: ReadTables) -> tuple[list[dict[str, str]], list[str]]:
+def point_rows(axes: Mapping[str, np.ndarray], columns: Mapping[str, np.ndarray]) -> tuple[list[dict[str, str]], list[str]]:
     """Rows of a table over one axis, the corners of one over two, by name and unit; sentences on what does not vary.
 
     Columns with the same text at all points are one, ``kyy = kzz``; stiffnesses in N/µm, speeds in r/min.
     """
-    axes = {f"{name}\nr/min": _RPM * np.array(content[name]) for name in ("speed", "frequency") if content[name] is not None}
-    columns = {name: np.array(values) for name, values in content["coefficients"].items()}
+    axes = {f"{name}\nr/min": _RPM * values for name, values in axes.items()}
     bound = {
         kind: _ROUNDING * max(float(np.max(np.abs(v))) for name, v in columns.items() if name[0] == kind) for kind in "kc"
     }
