@@ -13,9 +13,9 @@ from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.disturbances import aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
-from raceway.studies.fit.linear import Linear, free_parts, spectra_of
+from raceway.studies.fit.linear import Linear, _free_parts, _spectra_of
 from raceway.studies.fit.signals import signals_of, write_recording
-from raceway.studies.fit.table import TableResiduals, measurements_in
+from raceway.studies.fit.table import _TableResiduals, measurements_in
 from raceway.studies.rig.signals import record as rig_record
 from raceway.studies.rig.signals import response, slow_roll_record, white_noise
 from raceway.studies.shaft import balance, bearing, rotor
@@ -115,7 +115,7 @@ def test_derivatives_of_residuals_are_those_of_the_residuals():
     )
     free = free_keys(scene, [ANGLE, "rotor.mass"])
     measured = measurements_in(table, "made up", scene)
-    problem = TableResiduals(measured, free, measured.scenes(scene))
+    problem = _TableResiduals(measured, free, measured.scenes(scene))
     at = np.array([15.5, 2.0])
     problem.residuals(at)
     exact = problem.jacobian(at)
@@ -196,8 +196,8 @@ def test_intervals_of_a_record_hold_what_they_state():
 
 
 def test_derivatives_of_a_records_residuals_are_those_of_the_residuals():
-    lines = spectra_of(signals_of(turning_record(np.diag([5e7, 4e7]), np.diag([800.0, 600.0]), 1.5, 3)))
-    free = free_parts(["K", "C", "mass"], lines, None)
+    lines = _spectra_of(signals_of(turning_record(np.diag([5e7, 4e7]), np.diag([800.0, 600.0]), 1.5, 3)))
+    free = _free_parts(["K", "C", "mass"], lines, None)
     colours = np.array([1.0, 0.5, 0.2])[:, None]
     noise = np.stack([colours * [1e-18, 2e-18], colours * [1e-4, 2e-4]])
     problem = Linear(lines, free, 0.0, noise, (2.0 * np.pi * 50.0,))

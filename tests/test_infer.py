@@ -16,7 +16,7 @@ from raceway.studies.catalogue.infer import infer_table
 from raceway.studies.catalogue.inferred import STIFFNESS_90, infer_printed
 from raceway.studies.catalogue.printed import Printed, Rating, parse_table, printed_by, sizes_of
 from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS
-from raceway.studies.catalogue.ratings import BallRow, groove, load_factor, static_factor
+from raceway.studies.catalogue.ratings import BallRow, _load_factor, _static_factor, groove
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -44,13 +44,13 @@ def test_the_table_of_f0_is_the_load_at_4200_mpa():
     """ISO 76's table is rounded to 0.1: 0.7 % of 14."""
     for g in (0.12, 0.2, 0.3, 0.4):
         exact = BallRow(1, 1e-3, 1e-3 / g, 0.0, 0.52, 0.53).static_rating_of_grooves()
-        assert exact == pytest.approx(static_factor(g), rel=7e-3)
+        assert exact == pytest.approx(_static_factor(g), rel=7e-3)
 
 
 def test_below_a_tenth_f0_goes_on_with_the_inner_race():
-    assert static_factor(0.0999999) == pytest.approx(static_factor(0.1), rel=1e-5)
+    assert _static_factor(0.0999999) == pytest.approx(_static_factor(0.1), rel=1e-5)
     # One maker prints 16.7 for 7922C, of 26 balls of 11.906 mm on 130 mm.
-    assert static_factor(11.90625 * np.cos(ANGLE) / 130.0) == pytest.approx(16.7, abs=0.05)
+    assert _static_factor(11.90625 * np.cos(ANGLE) / 130.0) == pytest.approx(16.7, abs=0.05)
 
 
 def test_wider_grooves_carry_less():
@@ -77,7 +77,7 @@ def test_the_load_factor_is_that_of_the_core():
     shape = BallBearing(D, PITCH, Z, ANGLE, 0.522, 0.53)
     g = shape.gamma
     for race, (f, exact) in enumerate(zip((0.522, 0.53), shape.ellipses(modulus), strict=True)):
-        assert load_factor(*groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
+        assert _load_factor(*groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
 
 
 # --- the answers

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError
-from raceway.studies.fit.shaft_angle import pulses_of, rotation_of
+from raceway.studies.fit.shaft_angle import _pulses_of, rotation_of
 from raceway.studies.fit.signals import Recording
-from raceway.studies.fit.synchronous import Synchronous, synchronous, without_response
+from raceway.studies.fit.synchronous import Synchronous, _without_response, synchronous
 from raceway.studies.shaft import rotor
 
 LINE = 3e-6 * np.exp(0.7j)
@@ -104,7 +104,7 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
     true = (np.arange(1, 19) - 1.0 / (2.0 * np.pi)) / HZ  # the angle begins at 1 rad
     off = []
     for seed in range(20):
-        marks = pulses_of(record.time, noisy(record, part, seed).key).times
+        marks = _pulses_of(record.time, noisy(record, part, seed).key).times
         assert len(marks) == len(true)
         off.append((marks - true).mean())
     # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples a turn leave of a flank.
@@ -173,5 +173,5 @@ def test_the_response_is_taken_out(rig, held, rpm, true):
     force, moment = np.linalg.solve(system, load)[2:]
     response = line.at_sensor(force, moment) * exp(1j * ANGLE)
     assert abs(response) > 1e-9  # there is something to take out
-    found = without_response(rolled(true + response, line.speed), held, line, ANGLE)
+    found = _without_response(rolled(true + response, line.speed), held, line, ANGLE)
     assert found.vector == pytest.approx(true, abs=1e-6 * abs(response))

@@ -184,12 +184,12 @@ def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
     without : designation of a printed bearing that is left out, to test the method on it
     """
     bearings, candidates = _printed_bearings(), []
-    others = bearings["name"] != without
+    references = bearings["name"] != without
     same = zip((bearings["bore"], bearings["size"]), _shape(size, 1, 1.0)[2:], _FAMILY, strict=True)
-    family = others * _bell(*((x - y) / s for x, y, s in same))
+    family = references * _bell(*((x - y) / s for x, y, s in same))
     for d, counts in _trials(size):
         near = np.log(bearings["diameter"] / d)
-        ball = others * (_bell(near / _SAME_BALL) + 0.02 * _bell(near / 0.3))
+        ball = references * (_bell(near / _SAME_BALL) + 0.02 * _bell(near / 0.3))
         for wide in (False, True):
             alike = bearings["wide"] == wide
             angles = _bell((bearings["angle"] - size.ratings[0].contact_angle_deg) / 6.0) if wide else 1.0

@@ -7,7 +7,7 @@ tabulated over g = D cos(a) / d_m for grooves of 0.52 D.
 
 Below g = 0.1 the table of f_0 bends down, because it allows an outer groove of 0.53 D, which then carries less than the inner one.
 Makers whose outer groove is as narrow as the inner one go on with the inner race (one prints f_0 up to 16.8 for bearings of
-g = 0.08): ``static_factor`` is the table from 0.1 on and the inner race's Hertz load at 4200 MPa below.
+g = 0.08): ``_static_factor`` is the table from 0.1 on and the inner race's Hertz load at 4200 MPa below.
 
 References
 ----------
@@ -70,13 +70,13 @@ def groove(diameter: ArrayLike, g: ArrayLike, conformity: ArrayLike, inner: bool
     return total / d, (1.0 / f + rolling) / total
 
 
-def load_at_pressure(curvature: np.ndarray, difference: np.ndarray, modulus: float, pressure: float) -> np.ndarray:
+def _load_at_pressure(curvature: np.ndarray, difference: np.ndarray, modulus: float, pressure: float) -> np.ndarray:
     """Load [N] at a peak pressure [Pa]: p = 1.5 Q / (pi a b), a b = a* b* (3 Q / (2 S E*))^(2/3)."""
     area = np.interp(difference, *_table()[:2])
     return (2.0 * np.pi * area * pressure / 3.0) ** 3 * (1.5 / (curvature * modulus)) ** 2
 
 
-def load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
+def _load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
     """K [N/m^1.5] of Q = K delta^1.5."""
     differences, _, delta = _table()
     unit = 2.0 / (curvature * np.interp(difference, differences, delta))
@@ -121,11 +121,11 @@ class BallRow:
 
     def static_rating(self) -> np.ndarray:
         """C0 of ISO 76 [N], by its table, whatever the conformities."""
-        return np.asarray(static_factor(self.gamma) * self.count * (1e3 * self.diameter) ** 2 * np.cos(self.angle))
+        return np.asarray(_static_factor(self.gamma) * self.count * (1e3 * self.diameter) ** 2 * np.cos(self.angle))
 
     def static_rating_of_grooves(self) -> np.ndarray:
         """C0 [N] of the grooves: Z Q cos(a) / 5 with Q the ball load at 4200 MPa on the race that reaches it first."""
-        loads = [load_at_pressure(*shape, _MODULUS, _PERMITTED) for shape in self._grooves]
+        loads = [_load_at_pressure(*shape, _MODULUS, _PERMITTED) for shape in self._grooves]
         return np.asarray(self.count * np.minimum(*loads) * np.cos(self.angle) / 5.0)
 
     def pair_stiffness(self, preload: ArrayLike, young: float, poisson: float) -> np.ndarray:
@@ -136,7 +136,7 @@ class BallRow:
         preload : [N];  young, poisson : of balls and rings, [Pa] and 1
         """
         modulus = 0.5 * young / (1.0 - poisson**2)
-        compliance = sum(load_factor(*shape, modulus) ** (-2.0 / 3.0) for shape in self._grooves)
+        compliance = sum(_load_factor(*shape, modulus) ** (-2.0 / 3.0) for shape in self._grooves)
         factor = np.asarray(compliance) ** -1.5
         distance = (self.inner + self.outer - 1.0) * self.diameter
         stretch = _stretch(np.asarray(preload) / (self.count * factor * distance**1.5), np.cos(self.angle))
@@ -163,10 +163,10 @@ def _closed(g: np.ndarray, fi: np.ndarray, fo: np.ndarray) -> np.ndarray:
     return (1.0 + both ** (10.0 / 3.0)) ** -0.3 * wide
 
 
-def static_factor(g: ArrayLike) -> np.ndarray:
+def _static_factor(g: ArrayLike) -> np.ndarray:
     """f_0 [N/mm2] of ISO 76, below g = 0.1 that of the inner race."""
     g = np.asarray(g, dtype=float)
     low = np.clip(g, 1e-3, 0.1)
-    inner = load_at_pressure(*groove(1.0, low, _STANDARD, True), _MODULUS, _PERMITTED)
-    edge = load_at_pressure(*groove(1.0, np.array(0.1), _STANDARD, True), _MODULUS, _PERMITTED)
+    inner = _load_at_pressure(*groove(1.0, low, _STANDARD, True), _MODULUS, _PERMITTED)
+    edge = _load_at_pressure(*groove(1.0, np.array(0.1), _STANDARD, True), _MODULUS, _PERMITTED)
     return np.where(g < 0.1, _F_0[_INNER_LIMITS] * inner / edge, np.interp(g, _G, _F_0))

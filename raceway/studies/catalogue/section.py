@@ -42,15 +42,15 @@ def section(name: str, bearing: Bearing) -> Figure:
     except MeshError as why:
         raise SceneError.at("bearing", name, f"cannot be drawn: {why}") from None
     figure = new_figure(9.0, 5.2)
-    whole, close = figure.subplots(1, 2, width_ratios=(1.0, 1.25))
-    for axes in (whole, close):
+    full, close = figure.subplots(1, 2, width_ratios=(1.0, 1.25))
+    for axes in (full, close):
         for outline in rings:
-            for sign in (1.0, -1.0) if axes is whole else (1.0,):
+            for sign in (1.0, -1.0) if axes is full else (1.0,):
                 axes.fill(_MM * outline[:, 0], sign * _MM * outline[:, 1], facecolor=_RACE, edgecolor=_INK, lw=0.9)
         axes.set_aspect("equal")
         axes.axis("off")
-    _whole(whole, bearing)
-    _close(close, bearing)
+    _draw_bearing(full, bearing)
+    _draw_ball_in_grooves(close, bearing)
     figure.suptitle(f"{name}, dimensions in mm")
     return figure
 
@@ -74,7 +74,7 @@ def _ball(axes: Axes, b: Bearing, sign: float = 1.0) -> None:
     axes.add_patch(Circle(centre, 0.5 * _MM * b.ball_diameter, facecolor=_BALL, edgecolor=_INK, lw=0.9))
 
 
-def _whole(axes: Axes, b: Bearing) -> None:
+def _draw_bearing(axes: Axes, b: Bearing) -> None:
     """Both halves of the section with bore, outer and pitch diameter, and width."""
     bore, outer, width = b.bore or 0.0, b.outer_diameter or 0.0, b.width or 0.0
     for sign in (1.0, -1.0):
@@ -92,7 +92,7 @@ def _whole(axes: Axes, b: Bearing) -> None:
     axes.text(0.0, top, f"B {_MM * width:.5g}", fontsize=8, ha="center", va="bottom")
 
 
-def _close(axes: Axes, b: Bearing) -> None:
+def _draw_ball_in_grooves(axes: Axes, b: Bearing) -> None:
     """One ball with its diameter, the line of contact and the grooves."""
     _ball(axes, b)
     r, radius = 0.5 * _MM * b.pitch_diameter, 0.5 * _MM * b.ball_diameter

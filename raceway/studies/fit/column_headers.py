@@ -53,7 +53,7 @@ _EXAMPLE = "for instance time_s,y_um,z_um,key"
 
 
 @attrs.frozen
-class Header:
+class _Header:
     """One column's header; ``name``: what it is read as, in ``COLUMNS``; ``fault``: why it is not; neither for a column left out.
 
     ``guess``: the quantity that it seems to be.
@@ -110,7 +110,7 @@ def quantity_of(text: str) -> str:
     return _parts(plain(text))[0]
 
 
-def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[Header]:
+def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
     """Each header by itself, then the axes together: X beside Y is another axis than X beside Z."""
     parts = [_parts(plain(text)) for text in headers]
     axes: dict[str | None, set[str]] = {"force ": set(), None: set()}
@@ -120,7 +120,7 @@ def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[Head
     columns = []
     for text, (quantity, unit) in zip(headers, parts, strict=True):
         if (name := mapping.get(plain(text))) is not None:
-            columns.append(Header(text, "" if name == IGNORE else name))
+            columns.append(_Header(text, "" if name == IGNORE else name))
         else:
             match = _AXIS.fullmatch(quantity)
             columns.append(_header(text, quantity, unit, axes[match["kind"]] if match else set()))
@@ -153,25 +153,25 @@ def _spelt(unit: str) -> str:
     return _SPELLINGS.get(unit, unit)
 
 
-def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> Header:
+def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Header:
     """One header, with the axes of all headers of its kind."""
     if quantity == "key":
-        return Header(text, "key")
+        return _Header(text, "key")
     if axes >= {"x", "z"}:
         if quantity.endswith("x"):
-            return Header(text, fault="may be along the shaft or across it")
+            return _Header(text, fault="may be along the shaft or across it")
     elif "x" in axes:
         quantity = quantity[:-1] + {"x": "y", "y": "z"}[quantity[-1]]
     name = quantity.replace(" ", "_")
     if name not in UNITS:
-        return Header(text, fault="names no known quantity")
+        return _Header(text, fault="names no known quantity")
     if unit is None:
-        return Header(text, fault="has no unit", guess=name)
+        return _Header(text, fault="has no unit", guess=name)
     if unit in _VOLTS:
-        return Header(text, fault="is a voltage: multiply it by the sensor's sensitivity first", guess=name)
+        return _Header(text, fault="is a voltage: multiply it by the sensor's sensitivity first", guess=name)
     if unit not in UNITS[name]:
-        return Header(text, fault=f"has the unit '{unit}', known are {', '.join(UNITS[name])}", guess=name)
-    return Header(text, f"{name}_{unit}")
+        return _Header(text, fault=f"has the unit '{unit}', known are {', '.join(UNITS[name])}", guess=name)
+    return _Header(text, f"{name}_{unit}")
 
 
 def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: str) -> None:
@@ -192,7 +192,7 @@ def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: s
             raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
 
 
-def _message(columns: Sequence[Header], where: str) -> str:
+def _message(columns: Sequence[_Header], where: str) -> str:
     """One message: the columns, the meaning of each, the map that mends it."""
     faulty = [header for header in columns if header.fault]
     present = {COLUMNS[header.name][0] for header in columns if header.name} | {header.guess for header in faulty}

@@ -153,8 +153,8 @@ class Identified(Answer):
 
     def content(self) -> Tables:
         """Signals, their 1x component, the bearing and its uncertainty, as tables for JSON."""
-        component, marked, state, error = self.component, self.component.marked, self.state, self.uncertainty
-        time, z, locked = self.rotation.recording.time, state.dynamic_stiffness, state.locked
+        component, marked, state = self.component, self.component.marked, self.state
+        time = self.rotation.recording.time
         speeds = {"mean": component.speed, "lowest": component.lowest, "highest": component.highest}
         return without_nan(
             {
@@ -187,24 +187,7 @@ class Identified(Answer):
                     "sensor_m": abs(state.sensor),
                     "runs": state.runs,
                 },
-                "identification": {
-                    "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
-                    "speed_rpm": self.speed_rpm,
-                    "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
-                    "equivalent_stiffness": state.stiffness,
-                    "equivalent_stiffness_error": error[0],
-                    "equivalent_damping": state.damping if marked else None,
-                    "equivalent_damping_error": error[1] if marked else None,
-                    "mass_used_kg": state.mass,
-                    "scene_stiffness": self.scene_stiffness,
-                    "tilt_locked": {
-                        "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
-                        "equivalent_stiffness": locked[0],
-                        "equivalent_stiffness_error": error[2],
-                        "equivalent_damping": locked[1] if marked else None,
-                        "equivalent_damping_error": error[3] if marked else None,
-                    },
-                },
+                "identification": self._identification(),
                 "uncertainty": {
                     "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
                     "whole-turn Fourier, the tilt stiffness that is assumed; what is taken as known of the rig is in `sensitivities`",
@@ -217,6 +200,29 @@ class Identified(Answer):
                 "warnings": self.warnings,
             }
         )
+
+    def _identification(self) -> Tables:
+        """K and C with the rig's tilt, then with it locked; what needs a phase is None without pulses."""
+        marked, state, z, error = self.component.marked, self.state, self.state.dynamic_stiffness, self.uncertainty
+        stiffness, damping = state.locked
+        return {
+            "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
+            "speed_rpm": self.speed_rpm,
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
+            "equivalent_stiffness": state.stiffness,
+            "equivalent_stiffness_error": error[0],
+            "equivalent_damping": self.equivalent_damping,
+            "equivalent_damping_error": self.equivalent_damping_error,
+            "mass_used_kg": state.mass,
+            "scene_stiffness": self.scene_stiffness,
+            "tilt_locked": {
+                "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
+                "equivalent_stiffness": stiffness,
+                "equivalent_stiffness_error": error[2],
+                "equivalent_damping": damping if marked else None,
+                "equivalent_damping_error": error[3] if marked else None,
+            },
+        }
 
     def to_xarray(self) -> Dataset:
         """The full turns of the record that were used: y, z [m], angle [rad], speed [rad/s], key over time [s].

@@ -48,7 +48,7 @@ _ONE, _TWO = (("y", "force"), ("y", "force_y"), ("z", "force_z")), (("y", "force
 
 
 @attrs.frozen(eq=False)
-class Spectra:
+class _Spectra:
     """Spectra of a record: ``omega`` (n,) [rad/s]; force [N] and displacement [m], (n, d) each; ``axes``: the directions.
 
     ``indices`` (n,) of the frequencies in the full transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N].
@@ -63,7 +63,7 @@ class Spectra:
     signal: np.ndarray
 
 
-def spectra_of(signals: Signals) -> Spectra:
+def _spectra_of(signals: Signals) -> _Spectra:
     """Spectra in the excited band; force and displacement along one axis, even intervals and a force that changes are needed."""
     columns, source = signals.columns, signals.source
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
@@ -89,10 +89,10 @@ def spectra_of(signals: Signals) -> Spectra:
     low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
     axes, time = tuple(name for name, _ in pairs), interval * np.arange(count)
-    return Spectra(omega[band], of_force[band], of_displacement[band], axes, np.flatnonzero(band), time, force)
+    return _Spectra(omega[band], of_force[band], of_displacement[band], axes, np.flatnonzero(band), time, force)
 
 
-def free_parts(names: Sequence[str], spectra: Spectra, mass: float | None) -> list[Free]:
+def _free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
     """Free numbers of the linear model, by words K, C and mass; in two directions K stands for its four parts, or they by name.
 
     A mass that is None is free, too.
@@ -137,7 +137,7 @@ class Linear:
     slopes : derivatives of Z by the free numbers (n, d, d, p)
     """
 
-    spectra: Spectra
+    spectra: _Spectra
     free: Sequence[Free]
     mass: float
     noise: np.ndarray
@@ -220,7 +220,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
     return np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2])
 
 
-def fit_spectra(spectra: Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear, np.ndarray]:
+def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
     while hum := tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
@@ -236,14 +236,14 @@ def fit_spectra(spectra: Spectra, free: Sequence[Free], mass: float) -> tuple[Es
     return attrs.evolve(_without_nuisance(answer, len(free), problem), free=tuple(free)), problem, residuals
 
 
-def _share_of_force(spectra: Spectra, tones: Sequence[float]) -> float:
+def _share_of_force(spectra: _Spectra, tones: Sequence[float]) -> float:
     """Part of the force's power at the frequencies of tones."""
     omega = spectra.omega
     near = (np.abs(omega[:, None] - np.array(tones)) < 1.5 * (omega[1] - omega[0])).any(axis=1)
     return float((np.abs(spectra.force[near]) ** 2).sum() / (np.abs(spectra.force) ** 2).sum())
 
 
-def _iterated(spectra: Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, Linear]:
+def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, Linear]:
     """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
     d = len(spectra.axes)
     problem = Linear(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
@@ -318,10 +318,10 @@ def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted
     """
     if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")
-    spectra = spectra_of(signals)
-    free = free_parts(names, spectra, mass)
+    spectra = _spectra_of(signals)
+    free = _free_parts(names, spectra, mass)
     refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), signals.source)
-    answer, model, residuals = fit_spectra(spectra, free, mass or 0.0)
+    answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)
     words, notes = {_word(number.name) for number in free}, []
     if mass is None and not any("mass" in name for name in names):
         notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")

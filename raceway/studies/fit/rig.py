@@ -96,16 +96,16 @@ def with_tilt_of(shaft: Rotor, state: State, sensor: complex, stiffer: float = 1
     return _state(shaft, load[0], load[1], state, 0)
 
 
-def with_moment(shaft: Rotor, sensor: complex, moment: complex, like: State | Bearing) -> State:
+def with_moment(shaft: Rotor, sensor: complex, moment: complex, tested: State | Bearing) -> State:
     """State of the bearing by the deflection at the sensor under a moment [N m]."""
     force = (sensor - shaft.at_sensor(0.0, moment)) / shaft.sensor[1]
-    return _state(shaft, force, moment, like, 0)
+    return _state(shaft, force, moment, tested, 0)
 
 
-def _state(shaft: Rotor, force: complex, moment: complex, like: State | Bearing, runs: int) -> State:
+def _state(shaft: Rotor, force: complex, moment: complex, tested: State | Bearing, runs: int) -> State:
     deflection, slope = shaft.at_ring(force, moment)
     sensor = shaft.at_sensor(force, moment)
-    return State(shaft.speed, force, moment, deflection, slope, sensor, like.mass, like.coupling, runs)
+    return State(shaft.speed, force, moment, deflection, slope, sensor, tested.mass, tested.coupling, runs)
 
 
 def coefficients(state: State) -> np.ndarray:
@@ -130,7 +130,7 @@ def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
 
 def largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
     """Largest change of ``coefficients`` (4,) among changed states."""
-    return np.max([np.abs(coefficients(other) - coefficients(state)) for other in changed], axis=0)
+    return np.max([np.abs(coefficients(near) - coefficients(state)) for near in changed], axis=0)
 
 
 def turned(shaft: Rotor, state: State, response: complex, angle: float) -> list[State]:
@@ -165,7 +165,7 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
         rigs["sensor 0.5 mm farther from the bearing"] = farther
     except ValueError:  # it sits at the end already
         rigs["sensor 0.5 mm nearer to the bearing"] = attrs.evolve(rig, sensor_distance=rig.sensor_distance - 5e-4)
-    return {change: rotor(other, speed) for change, other in rigs.items()}
+    return {change: rotor(changed, speed) for change, changed in rigs.items()}
 
 
 def sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[dict[str, float | str]]:
@@ -175,17 +175,17 @@ def sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[
     ----------
     rotors : of changed rigs, by their change
     """
-    states = {change: with_tilt_of(other, state, state.sensor) for change, other in rotors.items()}
+    states = {change: with_tilt_of(changed, state, state.sensor) for change, changed in rotors.items()}
     states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
     more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
     states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)
     states["sensor's scale +1 %"] = with_tilt_of(shaft, state, 1.01 * state.sensor)
     base = with_tilt_of(shaft, state, state.sensor).stiffness
-    return [{"change": change, "stiffness": other.stiffness / base - 1.0} for change, other in states.items()]
+    return [{"change": change, "stiffness": changed.stiffness / base - 1.0} for change, changed in states.items()]
 
 
 @attrs.frozen(eq=False)
-class Balanced:
+class _Balanced:
     """Shaft and bearing in balance, compared with the measured response.
 
     Attributes
@@ -210,7 +210,7 @@ class Slope:
 
 
 @attrs.define(eq=False)
-class RigResiduals:
+class _RigResiduals:
     """Weighted residuals of the 1x response: ``raceway.studies.fit.estimate.Residuals``.
 
     Attributes
@@ -225,7 +225,7 @@ class RigResiduals:
     free: Sequence[Free]
     component: Synchronous
     run_out: RunOut | Synchronous | None
-    last: Balanced = attrs.field(init=False)
+    last: _Balanced = attrs.field(init=False)
     slopes: list[Slope] = attrs.field(factory=list, init=False)
     _motion: list[Result] = attrs.field(factory=list, init=False)
 
@@ -267,7 +267,7 @@ class RigResiduals:
         along, across = self.last.errors
         return np.array([rotated.real / along, rotated.imag / across][: self.count])
 
-    def _balanced(self, scene: Scene, at: np.ndarray) -> Balanced:
+    def _balanced(self, scene: Scene, at: np.ndarray) -> _Balanced:
         """The rig with the bearing of such numbers, and the measured response less the run-out that this bearing leaves."""
         scene = with_free(scene, self.free, at)
         tested = bearing(scene, scene.load.axial, self.registry)
@@ -288,7 +288,7 @@ class RigResiduals:
         both = noise + (_LEAST * abs(response.deflection)) ** 2
         across = both + (self.component.angle_error * abs(self.component.forward) / COVERAGE) ** 2
         computed = state.sensor if self.component.marked else abs(state.sensor)
-        return Balanced(state, computed, response.deflection, (float(np.sqrt(both)), float(np.sqrt(across))))
+        return _Balanced(state, computed, response.deflection, (float(np.sqrt(both)), float(np.sqrt(across))))
 
     def notes(self) -> list[str]:
         """Sentences that a reader of the numbers needs."""
@@ -313,7 +313,7 @@ def fit_rig(
         refuse_no_load(scene)
     with faults_at(signals.source):
         component = synchronous(rotation_of(recording_of(signals)))
-        problem = RigResiduals(scene, rig, registry, free, component, run_out)
+        problem = _RigResiduals(scene, rig, registry, free, component, run_out)
         refuse_few(problem.count, len(free), signals.source)
         answer = estimate(problem, free, stated=True)
     problem.residuals(answer.values)

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
 #: Change of speed from one turn to the next, and over a record, through which the 1x component is followed.
-MOST_PER_TURN, MOST_RANGE = 0.01, 0.10
+_MOST_PER_TURN, _MOST_RANGE = 0.01, 0.10
 #: Samples per turn: harmonics up to 3x are told apart.
-LEAST_PER_TURN = 8
+_LEAST_PER_TURN = 8
 #: Turns between two knots of the angle's spline: the time of a pulse is uncertain by a sample.
 _TURNS_PER_KNOT = 12
 #: Largest relative difference between the speed of the pulses and that of a column.
@@ -71,27 +71,27 @@ def rotation_of(recording: Recording) -> Rotation:
     """
     rotation = _by_pulses(recording, recording.key) if recording.key is not None else _by_speed(recording)
     per_turn = len(rotation.angle) / rotation.turns
-    if per_turn < LEAST_PER_TURN:
-        raise RacewayError(f"{per_turn:.1f} samples a turn; at least {LEAST_PER_TURN} are needed: sample faster")
+    if per_turn < _LEAST_PER_TURN:
+        raise RacewayError(f"{per_turn:.1f} samples a turn; at least {_LEAST_PER_TURN} are needed: sample faster")
     speeds = rotation.means(rotation.speed)
     change = np.abs(np.diff(speeds)) / speeds[1:]
-    if change.max() > MOST_PER_TURN:
+    if change.max() > _MOST_PER_TURN:
         k = int(np.argmax(change))
         raise RacewayError(
             f"the speed is not constant: it changes by {100 * change[k]:.2g} % from one turn to the next at "
-            f"{rotation.means(rotation.recording.time)[k + 1]:.6g} s; order tracking follows up to {100 * MOST_PER_TURN:g} %"
+            f"{rotation.means(rotation.recording.time)[k + 1]:.6g} s; order tracking follows up to {100 * _MOST_PER_TURN:g} %"
         )
     span = (speeds.max() - speeds.min()) / speeds.mean()
-    if span > MOST_RANGE:
+    if span > _MOST_RANGE:
         raise RacewayError(
-            f"the speed is not constant: it changes by {100 * span:.3g} % over the record; up to {100 * MOST_RANGE:g} % is one "
+            f"the speed is not constant: it changes by {100 * span:.3g} % over the record; up to {100 * _MOST_RANGE:g} % is one "
             "operating point. Cut the record into parts"
         )
     return rotation
 
 
 def _by_pulses(recording: Recording, key: np.ndarray) -> Rotation:
-    pulses = pulses_of(recording.time, key)
+    pulses = _pulses_of(recording.time, key)
     times, turns = pulses.times, len(pulses.times) - 1
     if turns < 2:
         raise RacewayError(f"{max(turns, 0)} whole turns between the pulses of `key`; at least two are needed")
@@ -101,7 +101,7 @@ def _by_pulses(recording: Recording, key: np.ndarray) -> Rotation:
         fault = "missing" if ratio[k] > 1.0 else "double"
         raise RacewayError(
             f"the turn at {times[k]:.6g} s takes {ratio[k]:.2f} of the usual time: a pulse of `key` is {fault} there, or the "
-            f"speed is not constant (order tracking follows up to {100 * MOST_RANGE:g} % over the record). Cut the record there"
+            f"speed is not constant (order tracking follows up to {100 * _MOST_RANGE:g} % over the record). Cut the record there"
         )
     mean = 2.0 * pi * turns / float(times[-1] - times[0])
     if recording.speed is not None and abs(mean / float(recording.speed.mean()) - 1.0) > _AGREE:
@@ -132,7 +132,7 @@ def _smooth_angle(times: np.ndarray) -> PPoly:
     return make_lsq_spline(times, 2.0 * pi * np.arange(count), knots, degree)
 
 
-def _angle_error(time: np.ndarray, pulses: Pulses, spline: PPoly) -> float:
+def _angle_error(time: np.ndarray, pulses: _Pulses, spline: PPoly) -> float:
     """Error of the angle of all pulses together, half-width at 95 % [rad].
 
     Notes
@@ -184,7 +184,7 @@ def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
 
 
 @attrs.frozen(eq=False)
-class Pulses:
+class _Pulses:
     """Times at which a keyphasor's voltage rises through the middle of its range.
 
     Attributes
@@ -199,7 +199,7 @@ class Pulses:
     middle_error: float
 
 
-def pulses_of(time: np.ndarray, key: np.ndarray) -> Pulses:
+def _pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:
     """Pulses of a voltage.
 
     Parameters
@@ -226,10 +226,10 @@ def pulses_of(time: np.ndarray, key: np.ndarray) -> Pulses:
         low, high, error, noise = _plateaus(time, key, times)
         times, slopes = _crossings(time, (key - low) / (high - low), noise / (high - low))
     if not len(times):
-        return Pulses(times, 0.0, 0.0)
+        return _Pulses(times, 0.0, 0.0)
     slope = float(np.mean(slopes))
     jump = min(slope * float(np.median(np.diff(time))), 1.0)
-    return Pulses(times, jump, error / (high - low) / slope)
+    return _Pulses(times, jump, error / (high - low) / slope)
 
 
 def _crossings(time: np.ndarray, level: np.ndarray, noise: float) -> tuple[np.ndarray, np.ndarray]:

@@ -145,8 +145,8 @@ class Signals:
     def __str__(self) -> str:
         """Samples, duration and columns, in words."""
         time = self.columns["time"]
-        others = [f"{name}{_amplitude(name, values)}" for name, values in self.columns.items() if name != "time"]
-        return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(others) or 'nothing but time'}"
+        signals = [f"{name}{_amplitude(name, values)}" for name, values in self.columns.items() if name != "time"]
+        return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(signals) or 'nothing but time'}"
 
 
 def _amplitude(name: str, values: np.ndarray) -> str:
@@ -205,10 +205,10 @@ class Recording:
         """y + j z (n,)."""
         return self.y + 1j * self.z
 
-    def part(self, chosen: np.ndarray) -> Recording:
+    def part(self, samples: np.ndarray) -> Recording:
         """Some of the samples."""
-        key, speed = (None if v is None else v[chosen] for v in (self.key, self.speed))
-        return Recording(self.time[chosen], self.y[chosen], self.z[chosen], key, speed)
+        key, speed = (None if v is None else v[samples] for v in (self.key, self.speed))
+        return Recording(self.time[samples], self.y[samples], self.z[samples], key, speed)
 
 
 def recording_of(signals: Signals) -> Recording:

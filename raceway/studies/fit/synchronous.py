@@ -103,8 +103,8 @@ def _blocks(rotation: Rotation) -> tuple[np.ndarray, np.ndarray, np.ndarray, flo
     edges = 2.0 * pi * np.round(np.linspace(0, rotation.turns, count + 1))
     signal, forward, backward, speeds, squares = rotation.recording.plane, [], [], [], 0.0
     for first, last in zip(edges[:-1], edges[1:], strict=True):
-        chosen = (rotation.angle >= first) & (rotation.angle < last)
-        p = rotation.angle[chosen]
+        block = (rotation.angle >= first) & (rotation.angle < last)
+        p = rotation.angle[block]
         u = (2.0 * p - first - last) / (last - first)
         columns = [np.exp(1j * p), np.exp(-1j * p), np.ones_like(u), u]
         for k in range(2, _HARMONICS + 1):
@@ -112,12 +112,12 @@ def _blocks(rotation: Rotation) -> tuple[np.ndarray, np.ndarray, np.ndarray, flo
         if last - first > 3.0 * pi:  # within a single turn a changing component and a drift are alike
             columns += [u * u, u * np.exp(1j * p)]
         basis = np.column_stack(columns)
-        solution, *_ = np.linalg.lstsq(basis, signal[chosen], rcond=None)
-        residuals = signal[chosen] - basis @ solution
+        solution, *_ = np.linalg.lstsq(basis, signal[block], rcond=None)
+        residuals = signal[block] - basis @ solution
         squares += float(np.vdot(residuals, residuals).real) * len(p) / max(len(p) - basis.shape[1], 1)
         forward.append(solution[0])
         backward.append(solution[1])
-        t = rotation.recording.time[chosen]
+        t = rotation.recording.time[block]
         speeds.append((p[-1] - p[0]) / (t[-1] - t[0]))
     return np.array(forward), np.array(backward), np.array(speeds), float(np.sqrt(squares / len(signal)))
 
@@ -141,9 +141,9 @@ def _aligned(rotation: Rotation, forward: np.ndarray) -> Rotation:
     middles = pi * (edges[:-1] + edges[1:])
     phase = np.unwrap(np.angle(forward))
     shift = np.interp(rotation.angle, middles, phase)
-    for low, chosen in ((0, rotation.angle < middles[0]), (-2, rotation.angle > middles[-1])):
+    for low, end in ((0, rotation.angle < middles[0]), (-2, rotation.angle > middles[-1])):
         slope = (phase[low + 1] - phase[low]) / (middles[low + 1] - middles[low])
-        shift[chosen] = phase[low] + slope * (rotation.angle[chosen] - middles[low])
+        shift[end] = phase[low] + slope * (rotation.angle[end] - middles[low])
     angle = rotation.angle + shift - shift[0]
     return attrs.evolve(rotation, angle=angle, turns=max(int((angle[-1] + 1e-6) / (2.0 * pi)), 1))
 
@@ -209,7 +209,7 @@ def stated_run_out(
         return slow_roll(recording_of(signals))
 
 
-def without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalance_angle: float) -> RunOut:
+def _without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalance_angle: float) -> RunOut:
     """The run-out in a slow roll: its 1x component less the response to the unbalance at that speed.
 
     Parameters
@@ -262,7 +262,7 @@ def response_of(component: Synchronous, rig: Rig, bearing: Bearing, run_out: Run
         )
     angle = radians(rig.unbalance_angle_deg)
     if isinstance(run_out, Synchronous):
-        run_out = without_response(run_out, bearing, rotor(rig, run_out.speed), angle)
+        run_out = _without_response(run_out, bearing, rotor(rig, run_out.speed), angle)
     run_out = run_out or RunOut()
     if component.marked:
         forward, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (component.forward, component.fourier))

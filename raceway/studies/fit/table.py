@@ -189,7 +189,7 @@ def _refuse_contradictions(measured: Measurements) -> None:
 
 
 @attrs.define(eq=False)
-class TableResiduals:
+class _TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway.studies.fit.estimate.Residuals``.
 
     Attributes
@@ -290,7 +290,7 @@ def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
     moving = [name for name in measured.values if name in _MOTION]
     if moving and scene.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
-    problem = TableResiduals(measured, free, measured.scenes(scene))
+    problem = _TableResiduals(measured, free, measured.scenes(scene))
     answer = estimate(problem, free, measured.stated)
     fitted = problem.answers(answer.values)
     causes, left_out = problem.uncertain()

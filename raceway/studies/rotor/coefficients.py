@@ -12,6 +12,7 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import attrs
 import numpy as np
@@ -83,13 +84,6 @@ class Coefficients:
         across = {f"{k}{name}{self.ending}": m[..., i, j] for k, m in matrices.items() for name, (i, j) in ENTRIES.items()}
         return {**across, f"kxx{self.ending}": self.axial}
 
-    def largest(self) -> dict[str, float]:
-        """Largest magnitude of all stiffnesses ("k") and of all dampings ("c") [N/m, N s/m]."""
-        return {
-            kind: max(float(np.max(np.abs(values))) for name, values in self.columns().items() if name[0] == kind)
-            for kind in "kc"
-        }
-
     def to_dict(self) -> Tables:
         """Axes [rad/s] and columns as plain tables."""
         return {
@@ -99,6 +93,11 @@ class Coefficients:
             "frequency": None if self.frequency is None else self.frequency.tolist(),
             "coefficients": {name: values.tolist() for name, values in self.columns().items()},
         }
+
+
+def largest(columns: Mapping[str, np.ndarray]) -> dict[str, float]:
+    """Largest magnitude of all stiffnesses ("k") and of all dampings ("c") [N/m, N s/m]."""
+    return {kind: max(float(np.abs(v).max()) for name, v in columns.items() if name[0] == kind) for kind in "kc"}
 
 
 def unit(name: str) -> str:

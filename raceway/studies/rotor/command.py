@@ -91,11 +91,12 @@ def export(
     programs = [(kind_of(kind, path), Path(path)) for kind, path in paths.items() if path is not None]
     if ross is None and not programs:
         raise SceneError.at("raceway export", None, "writes nothing: give --ross, --nastran, --ansys or --table with a FILE")
-    for path in ([] if ross is None else [Path(ross)]) + [path for _, path in programs]:
+    for _, path in programs:
         writable(path.parent)
     exports: list[tuple[CoefficientFile, Path]] = []
     if ross is not None:
         check_name(Path(ross))
+        writable(Path(ross).parent)
         if ross_version is None and installed_generation() is None:
             warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
         bearing = export_ross(

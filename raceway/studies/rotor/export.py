@@ -25,8 +25,8 @@ from raceway.scene.changes import parse_value
 from raceway.scene.inputs import tidy
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.rotor import files
-from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, unit
+from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, largest, unit
+from raceway.studies.rotor.files import PROGRAMS
 from raceway.studies.rotor.ross_file import (
     GENERATIONS,
     NAMES,
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from ross import BearingElement
     from xarray import Dataset
 
-_PROGRAMS = {"nastran": "Nastran", "ansys": "Ansys", "csv": "CSV", "json": "JSON"}
 #: File endings of the kinds that have one of their own.
 _ENDINGS = {".csv": "csv", ".json": "json"}
 _RPM = 30.0 / np.pi
@@ -84,7 +83,7 @@ class CoefficientFile(Shown):
     @property
     def program(self) -> str:
         """The program that the file is for."""
-        return _PROGRAMS[self.kind]
+        return PROGRAMS[self.kind].name
 
     def to_dict(self) -> Tables:
         """The numbers by our names, and the notes, as plain tables."""
@@ -334,16 +333,9 @@ def export_coefficients(
     """
     kind = kind_of(kind, path)
     table, tag, origin = _swept(data, at, source, damping, 2, tag)
-    format_notes = {"nastran": files.nastran_notes, "ansys": files.ansys_notes}.get(kind)
-    about_format = files.NUMBERS_NOTES if format_notes is None else format_notes(table, number)
-    notes = (*origin, table.definition, *about_format, *table.notes)
-    text = {
-        "nastran": lambda: files.nastran_text(table, notes, number, node),
-        "ansys": lambda: files.ansys_text(table, notes, number),
-        "csv": lambda: files.csv_text(table, notes),
-        "json": lambda: files.json_text(table, notes, tag),
-    }[kind]()
-    bearing = CoefficientFile(kind, table, tag, notes, text)
+    program = PROGRAMS[kind]
+    notes = (*origin, table.definition, *program.notes(table, number), *table.notes)
+    bearing = CoefficientFile(kind, table, tag, notes, program.text(table, notes, number, node, tag))
     if path is not None:
         bearing.write(path)
     return bearing
@@ -361,8 +353,8 @@ def kind_of(kind: str | None, path: str | Path | None) -> str:
         kind = _ENDINGS.get(Path(path).suffix.lower())
         if kind is None:
             raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(_ENDINGS)}")
-    if kind not in _PROGRAMS:
-        raise SceneError.at("kind", kind, f"must be one of {', '.join(_PROGRAMS)}")
+    if kind not in PROGRAMS:
+        raise SceneError.at("kind", kind, f"must be one of {', '.join(PROGRAMS)}")
     return kind
 
 
@@ -406,9 +398,7 @@ def point_rows(axes: Mapping[str, np.ndarray], columns: Mapping[str, np.ndarray]
     Columns with the same text at all points are one, ``kyy = kzz``; stiffnesses in N/µm, speeds in r/min.
     """
     axes = {f"{name}\nr/min": _RPM * values for name, values in axes.items()}
-    bound = {
-        kind: _ROUNDING * max(float(np.max(np.abs(v))) for name, v in columns.items() if name[0] == kind) for kind in "kc"
-    }
+    bound = {kind: _ROUNDING * size for kind, size in largest(columns).items()}
     zero = [name for name, values in columns.items() if np.max(np.abs(values)) <= bound[name[0]]]
     alike: dict[tuple[str, ...], list[str]] = {}
     for name, values in columns.items():

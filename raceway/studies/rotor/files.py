@@ -26,8 +26,9 @@ import csv
 import io
 import json
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
+import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
@@ -36,14 +37,14 @@ from raceway.storage.tables import Tables
 from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients, unit
 
 #: Numbers of a Nastran file: the property's, then its tables'; the next bearing's may begin behind them.
-NUMBERS = 13
-_LARGEST_PROPERTY = 99_999_999 - NUMBERS  # of a field of 8 characters
+_NUMBERS = 13
+_LARGEST_PROPERTY = 99_999_999 - _NUMBERS  # of a field of 8 characters
 _LARGEST_TYPE = 99_999
 _NASTRAN_COMMENT, _APDL_COMMENT = "$ ", "! "
 #: Units of Nastran's directions 1 to 3 and 4 to 6.
 _UNITS = {"K": ("N/m", "N m/rad"), "B": ("N s/m", "N m s/rad")}
 #: Ansys' real constants in their order -> our entries.
-CONSTANTS = {
+_CONSTANTS = {
     "K11": "kyy", "K22": "kzz", "K12": "kyz", "K21": "kzy",
     "C11": "cyy", "C22": "czz", "C12": "cyz", "C21": "czy",
 }  # fmt: skip
@@ -56,7 +57,7 @@ _ROUNDING = 1e-9
 _WIDTH = 72
 
 
-def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: int) -> str:
+def _nastran_text(table: Coefficients, head: Sequence[str], number: int, node: int) -> str:
     """Bulk data of Nastran.
 
     Parameters
@@ -84,8 +85,8 @@ def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: in
     element = [_small("CBUSH", [number, number, node or "GA", None if node else "GB", None, None, None, 0])]
     if not node:
         words = "the element, to complete: GA on the shaft, GB on the housing or blank for ground"
-        element = [*comments([words], _NASTRAN_COMMENT), _NASTRAN_COMMENT + element[0]]
-    lines = [*comments(head, _NASTRAN_COMMENT), *element]
+        element = [*_comments([words], _NASTRAN_COMMENT), _NASTRAN_COMMENT + element[0]]
+    lines = [*_comments(head, _NASTRAN_COMMENT), *element]
     lines += _large("PBUSH", [number, "K", *stiffness[0], None, "B", *damping[0]])
     rows = [(letter, [numbers[letter, k] for k in range(6)]) for letter in "KB"]
     for k, (letter, row) in enumerate((letter, row) for letter, row in rows if any(row)):
@@ -98,7 +99,7 @@ def nastran_text(table: Coefficients, head: Sequence[str], number: int, node: in
     return "\n".join(lines) + "\n"
 
 
-def nastran_notes(table: Coefficients, number: int) -> list[str]:
+def _nastran_notes(table: Coefficients, number: int) -> list[str]:
     """What the reader of the file has to know."""
     with_tilts = _holds_tilts(table)
     over = (
@@ -114,7 +115,7 @@ def nastran_notes(table: Coefficients, number: int) -> list[str]:
     return [
         "N, m, s, rad; in a model of N, mm, s: entries 1 to 3 times 1e-3, entries 5 and 6 times 1e3",
         "frame: directions 1, 2, 3 of the element are x (the axis), y, z of the bearing; CBUSH with CID = 0 where the basic system is so",
-        f"property {number}, its tables {number + 1} to {number + NUMBERS - 1}",
+        f"property {number}, its tables {number + 1} to {number + _NUMBERS - 1}",
         over,
         "PBUSH holds the values of the first point: normal modes and statics take them, frequency response takes the tables",
         "TABLED1: straight lines between the points, and beyond the ends",
@@ -206,8 +207,8 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
         )
     columns = table.columns()
     largest = {"K": float(np.max(np.abs(table.stiffness))), "C": float(np.max(np.abs(table.damping)))}
-    lines, constants = comments(head, _APDL_COMMENT), []
-    for constant, entry in CONSTANTS.items():
+    lines, constants = _comments(head, _APDL_COMMENT), []
+    for constant, entry in _CONSTANTS.items():
         values, name = columns[entry + table.ending], f"{constant}_{number}"
         if not np.max(np.abs(values)) > _ROUNDING * largest[constant[0]]:
             constants.append("0")
@@ -223,12 +224,12 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     if not all(map(_symmetric, (table.stiffness, table.damping))):
         lines.append(f"KEYOPT,{number},3,1")
     lines += [f"R,{number},{','.join(constants[:6])}", f"RMORE,{','.join(constants[6:])}"]
-    lines += comments(["the element, to complete: nodes on the shaft and on the housing"], _APDL_COMMENT)
+    lines += _comments(["the element, to complete: nodes on the shaft and on the housing"], _APDL_COMMENT)
     lines += [f"{_APDL_COMMENT}{command}" for command in (f"TYPE,{number}", f"REAL,{number}", "E,SHAFT,HOUSING")]
     return "\n".join(lines) + "\n"
 
 
-def ansys_notes(table: Coefficients, number: int) -> list[str]:
+def _ansys_notes(table: Coefficients, number: int) -> list[str]:
     """What the reader of the file has to know."""
     return [
         "N, m, s, rad; in a model of N, mm, s: all of them times 1e-3",
@@ -252,7 +253,7 @@ def _assigned(name: str, column: int, values: np.ndarray) -> list[str]:
     return [f"{name}({k + 1},{column})={','.join(texts[k : k + _VALUES])}" for k in range(0, len(texts), _VALUES)]
 
 
-def comments(sentences: Iterable[str], sign: str) -> list[str]:
+def _comments(sentences: Iterable[str], sign: str) -> list[str]:
     """Lines of ASCII, which is all that old readers take."""
     ascii_only = (text.replace("µ", "u").encode("ascii", "replace").decode() for text in sentences)
     return [
@@ -262,7 +263,7 @@ def comments(sentences: Iterable[str], sign: str) -> list[str]:
     ]
 
 
-def csv_text(table: Coefficients, head: Sequence[str]) -> str:
+def _csv_text(table: Coefficients, head: Sequence[str]) -> str:
     """A line per point; the head's lines begin with #, and the line behind them names the columns and their units."""
     points = np.meshgrid(*table.axes.values(), indexing="ij")
     columns = {f"{name} [rad/s]": values for name, values in zip(table.axes, points, strict=True)}
@@ -276,7 +277,7 @@ def csv_text(table: Coefficients, head: Sequence[str]) -> str:
     return text.getvalue()
 
 
-def json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
+def _json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
     """The same as one object; the matrices are lists over points, rows and columns."""
     content: Tables = {
         "tag": tag,
@@ -293,7 +294,7 @@ def json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
 
 
 #: What the reader of CSV and JSON has to know.
-NUMBERS_NOTES = [
+_NUMBERS_NOTES = [
     "SI; coordinates x (the axis), y, z, tilt_y, tilt_z (about y, z) of the bearing",
     "kyy ... czz, kxx: the tilts held, or, by their names, following; x as told; K, C: 5x5 of the contacts at the equilibrium, every other motion held: "
     "small motions, without shaft, rotor and supports",
@@ -310,3 +311,27 @@ def _entry_unit(letter: str, row: str, column: str) -> str:
     """Of force or moment over displacement or tilt, or over their rates."""
     force, over = ("N m" if "tilt" in row else "N"), ("rad" if "tilt" in column else "m")
     return f"{force}{' s' if letter == 'C' else ''}/{over}"
+
+
+@attrs.frozen
+class Program:
+    """A program, or a plain format: its name, notes for the reader of its file, and the file's text.
+
+    ``notes``: of a table with the ``number`` of its first entry;  ``text``: of a table, notes, number, node and tag
+    """
+
+    name: str
+    notes: Callable[[Coefficients, int], list[str]]
+    text: Callable[[Coefficients, Sequence[str], int, int, str], str]
+
+
+PROGRAMS = {
+    "nastran": Program(
+        "Nastran", _nastran_notes, lambda table, head, number, node, _: _nastran_text(table, head, number, node)
+    ),
+    "ansys": Program("Ansys", _ansys_notes, lambda table, head, number, *_: ansys_text(table, head, number)),
+    "csv": Program("CSV", lambda *_: _NUMBERS_NOTES, lambda table, head, *_: _csv_text(table, head)),
+    "json": Program(
+        "JSON", lambda *_: _NUMBERS_NOTES, lambda table, head, _number, _node, tag: _json_text(table, head, tag)
+    ),
+}

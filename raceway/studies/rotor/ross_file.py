@@ -28,7 +28,7 @@ import numpy as np
 
 from raceway.errors import RacewayError, extra
 from raceway.storage.tables import Tables
-from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients
+from raceway.studies.rotor.coefficients import SPEED, SPIN, Coefficients, largest
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -125,10 +125,11 @@ def check_name(path: Path) -> None:
 
 def smoothing(table: Coefficients) -> Mapping[str, float]:
     """Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind; by our names, above 1e-12."""
-    largest, columns = table.largest(), table.columns().items()
+    columns = table.columns()
+    sizes = largest(columns)
     changes = {
-        name: float(np.max(np.abs(smoothed(table.axis, values) - values))) / (largest[name[0]] or 1.0)
-        for name, values in columns
+        name: float(np.max(np.abs(smoothed(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
+        for name, values in columns.items()
     }
     return {name: change for name, change in changes.items() if change > 1e-12}
 
