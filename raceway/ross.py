@@ -1,4 +1,4 @@
-"""Bearings under a rotor in ROSS, computed where ROSS asks for them.  Needs the extra ``ross``.
+"""Bearings under a rotor in ROSS, computed where ROSS asks for them.  Importing it imports ROSS, the extra ``ross``.
 
 RollingBearing            a ``ross.BearingElement`` that computes K and C itself at (frequency, speed)
 run_unbalance_response    ROSS's, with the stiffness that each bearing has at its own motion
@@ -13,30 +13,14 @@ Examples
 >>> shaft = [ross.ShaftElement(L=0.05, idl=0.0, odl=0.03, material=steel) for _ in range(6)]
 >>> disc = ross.DiskElement(n=3, m=3.0, Id=4.1e-3, Ip=8.05e-3)
 >>> rotor = ross.Rotor(shaft, [disc], [RollingBearing("B7206C", 1000.0, n=0), RollingBearing("B7206C", -1000.0, n=6)])
->>> found = run_unbalance_response(rotor, 3, 6.39e-4, 0.0, [1256.6])
->>> round(1e-6 * found.stiffness["B7206C, node 0"][0, 0, 0], 1)  # kxx [N/um]
+>>> response = run_unbalance_response(rotor, 3, 6.39e-4, 0.0, [1256.6])
+>>> round(1e-6 * response.stiffness["B7206C, node 0"][0, 0, 0], 1)  # kxx [N/um]
 230.3
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from raceway.studies.rotor.bearing import RollingBearing
+from raceway.studies.rotor.responses import UnbalanceResponse, run_time_response, run_unbalance_response
 
-_PUBLIC = {
-    "RollingBearing": "raceway.studies.rotor.bearing",
-    "run_unbalance_response": "raceway.studies.rotor.responses",
-    "UnbalanceResponse": "raceway.studies.rotor.responses",
-    "run_time_response": "raceway.studies.rotor.responses",
-}
-__all__ = sorted(_PUBLIC)
-
-
-def __getattr__(name: str) -> Any:
-    if name in _PUBLIC:
-        return getattr(import_module(_PUBLIC[name]), name)
-    raise AttributeError(f"module 'raceway.ross' has no attribute '{name}'")
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_PUBLIC])
+__all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]

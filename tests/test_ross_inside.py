@@ -123,11 +123,10 @@ def test_bad_input_is_refused(given, words):
 
 def test_what_is_missing_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
-    monkeypatch.delitem(sys.modules, "raceway.studies.rotor.bearing", raising=False)
-    import raceway.ross
-
+    for name in ("raceway.ross", "raceway.studies.rotor.bearing"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
     with pytest.raises(RacewayError, match=r"RollingBearing needs ROSS: pip install '.\[ross\]'"):
-        _ = raceway.ross.RollingBearing
+        importlib.import_module("raceway.ross")
 
 
 def test_an_old_ross_is_refused(monkeypatch):
