@@ -8,7 +8,7 @@ import pytest
 import raceway as rw
 from raceway import run
 from raceway.core.record import Motion, Record, Schedule
-from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, turns_of, without_drift
+from raceway.core.signals import fit_harmonics, identification, stiffness, synchronous_phasor, turns_of, without_drift
 from raceway.testing import model_of, solve_equilibrium
 from validation.scenes import rotating
 
@@ -99,9 +99,9 @@ def test_one_turn_has_no_drift_to_fit():
     """Harmonics above those fitted do not leak: over one turn the fit is the Fourier line."""
     time, force, displacement = signals(1)
     displacement = displacement + 500.0 / abs(Z) * 0.3 * np.sin(7.0 * SPEED * time)[:, None]
-    lines, _ = fit_lines(time, displacement, FREQUENCY, 3)
-    assert lines[0] == pytest.approx(fourier_line(time, displacement, FREQUENCY), abs=1e-12 * np.abs(lines[0]).max())
-    assert stiffness(fit_lines(time, force, FREQUENCY, 3)[0][0], lines[0]) == pytest.approx(Z, rel=1e-12)
+    lines, _ = fit_harmonics(time, displacement, FREQUENCY, 3)
+    assert lines[0] == pytest.approx(synchronous_phasor(time, displacement, FREQUENCY), abs=1e-12 * np.abs(lines[0]).max())
+    assert stiffness(fit_harmonics(time, force, FREQUENCY, 3)[0][0], lines[0]) == pytest.approx(Z, rel=1e-12)
 
 
 def test_turns_and_drift():

@@ -113,8 +113,8 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
     names = {kernel.partition(":")[2] for kernel, made in found["kernels"].items() if made}
     if plan.balls != "tangential":
         assert not names & {"find_root", "rigid_tangential", "gyroscopic_moment"}
-    assert ("square_or_linear" in names) == (scene.contact.kind == "penalty")
-    assert ("three_halves_or_linear" in names) == (scene.contact.kind == "hertz")
+    assert ("square" in names) == (scene.contact.kind == "penalty")
+    assert ("three_halves" in names) == (scene.contact.kind == "hertz")
 
 
 #: Coarse rings and balls with a force a contact, for one turn of 8 steps.

@@ -9,8 +9,7 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
-from raceway.core.ring.ring import Growth
-from raceway.core.ring.system import ChangingSpeed
+from raceway.core.ring.ring import ChangingSpeed, Growth
 from raceway.core.signatures import FORCE
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import force_params
@@ -137,7 +136,7 @@ def point_pairs(basis: Basis, inner: np.ndarray, area: np.ndarray) -> ContactPai
     )
 
 
-def linear_parts(problem: Problem, plan: Plan) -> dict[str, np.ndarray]:
+def linear_parts(problem: Problem, plan: Plan) -> Tables:
     """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
     inertia = problem.inertia
     damping = np.diag([problem.rotor.damping] * 3 + [0.0, 0.0]) + gyroscopic(problem)
@@ -154,7 +153,7 @@ def linear_parts(problem: Problem, plan: Plan) -> dict[str, np.ndarray]:
 def excitation(problem: Problem) -> Tables:
     """The excitation's kernel and parameters."""
     if problem.excitation is None:
-        from raceway.core.excitations.harmonic import no_force
+        from raceway.core.excitations import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
     return {

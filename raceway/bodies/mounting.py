@@ -18,8 +18,8 @@ from raceway.bodies.basis import Basis, first_guess, growth_of
 from raceway.bodies.running import renew
 from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import Evaluation, Growth, Ring, Spin
-from raceway.core.ring.system import ChangingSpeed, System
+from raceway.core.ring.ring import ChangingSpeed, Evaluation, Growth, Ring
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
 from raceway.planning.resolve import Problem
@@ -104,11 +104,11 @@ def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
 
 def _follow_speed(
     problem: Problem, system: Ring, guess: np.ndarray, place: Callable[[Ring, np.ndarray], np.ndarray]
-) -> Spin:
+) -> ChangingSpeed:
     """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
     from scipy.interpolate import CubicSpline
 
-    assert isinstance(system.spin, ChangingSpeed)
+    assert system.spin is not None
     spin = attrs.evolve(system.spin, shift=None)
     duration = problem.turns / problem.excitation.frequency_hz
     met = spin.speed(np.linspace(0.0, duration, _SAMPLES))

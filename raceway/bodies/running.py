@@ -12,7 +12,7 @@ from raceway.bodies.basis import Basis, contact_pairs
 from raceway.bodies.contacts import contact_angles
 from raceway.core.contact.film import entraining_speed
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import ChangingSpeed, System
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
 from raceway.framework.duties import law_params, law_report, reach_of, renews
@@ -114,7 +114,7 @@ def renew(
         found = system.running(law_params(law, pairs), reach_of(law, pairs))
         system.table, system.law_params = found.table, found.law_params
         system.mounted_params, system.reach = found.mounted_params, found.reach
-        if isinstance(system.spin, ChangingSpeed):
+        if system.spin is not None:
             system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force
     raise ConvergenceError(

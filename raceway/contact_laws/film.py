@@ -244,9 +244,9 @@ class Film:
         return (1.0 + slope) * thick
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import three_halves_or_linear
+        from raceway.core.contact.laws import three_halves
 
-        return three_halves_or_linear
+        return three_halves
 
     def report(self, pairs: ContactPairs) -> LawReport:
         """Thickness, Lambda and regime of every contact, and what makes them doubtful."""

@@ -38,6 +38,6 @@ class Hertz:
         return pairs.hertz_factor[:, np.newaxis]
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import three_halves_or_linear
+        from raceway.core.contact.laws import three_halves
 
-        return three_halves_or_linear
+        return three_halves

@@ -85,9 +85,9 @@ class Penalty:
         return np.asarray(factor)[:, np.newaxis]
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import square_or_linear
+        from raceway.core.contact.laws import square
 
-        return square_or_linear
+        return square
 
 
 @attrs.frozen
@@ -114,6 +114,6 @@ class Unilateral:
         return np.column_stack([np.zeros_like(stiffness), stiffness])
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import square_or_linear
+        from raceway.core.contact.laws import square
 
-        return square_or_linear
+        return square

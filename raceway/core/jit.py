@@ -17,11 +17,11 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numba
 import numpy as np
@@ -29,6 +29,9 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.typing.templates import Signature
+from numba.experimental.function_type import _get_wrapper_address
+from numba.extending import typeof_impl
 
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
@@ -142,11 +145,11 @@ class Kernel(_Dispatcher):
     signature : the numba signature
     """
 
-    def __init__(self, function: Callable[..., Any], signature: Any, options: dict[str, Any]) -> None:
+    def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
         super().__init__(function, targetoptions=options)
         self.signature = signature
 
-    def compile(self, sig: Any = None) -> Any:
+    def compile(self, sig: object = None) -> Any:
         """The machine code's entry point, for ``signature`` whatever is asked for; numba's own calls come here, too."""
         with global_compiler_lock:  # numba's, not one of our own: kernels of others may call this one
             if self._can_compile:
@@ -159,11 +162,11 @@ class Kernel(_Dispatcher):
         self.compile()
         return list(super().nopython_signatures)
 
-    def get_compile_result(self, sig: Any) -> Any:
+    def get_compile_result(self, sig: object) -> Any:
         self.compile()
         return super().get_compile_result(sig)
 
-    def _compile_for_args(self, *_arguments: Any, **_named: Any) -> Any:
+    def _compile_for_args(self, *_arguments: object, **_named: object) -> Kernel:
         """What numba calls next with the arguments of a first call: this, which checks their types."""
         self.compile()
         return self
@@ -179,7 +182,7 @@ class Kernel(_Dispatcher):
         return {"function": self.py_func, "signature": self.signature, "options": self.targetoptions, "uuid": self._uuid}
 
     @classmethod
-    def _rebuild(cls, function: Any, signature: Any, options: Any, uuid: str) -> Any:
+    def _rebuild(cls, function: Callable[..., Any], signature: Signature, options: dict[str, Any], uuid: str) -> Kernel:
         kernel = cls._memo.get(uuid)
         if kernel is None:
             kernel = cls(function, signature, options)
@@ -268,7 +271,7 @@ class Kernel(_Dispatcher):
         return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
 
 
-class KernelOfRecords(Kernel):
+class _KernelOfRecords(Kernel):
     """A kernel with named tuples among its arguments, called from Python without numba's search for a matching signature.
 
     That search takes 50 microseconds for nested tuples.  numba itself checks of an array what size its numbers have, but not
@@ -284,6 +287,48 @@ class KernelOfRecords(Kernel):
         return self._entry(*arguments)
 
 
+class Address(numba.types.WrapperAddressProtocol):
+    """A kernel of one signature, its machine code looked up once; can be called from Python too.
+
+    Notes
+    -----
+    Handing a dispatcher to a compiled loop as a function pointer costs numba some 35 microseconds a call, in which it looks
+    up the machine code by the signature again; an address whose type is at hand costs 3. For a loop of milliseconds that is
+    nothing; a periodic motion is solved for in a few dozen calls of 50 microseconds each.
+    """
+
+    def __init__(self, kernel: Kernel, pointer: numba.types.FunctionType) -> None:
+        self.pointer = pointer
+        self._kernel, self._signature = kernel, pointer.signature
+        self._address = _get_wrapper_address(kernel, pointer.signature)
+
+    def __wrapper_address__(self) -> int:
+        return self._address
+
+    def signature(self) -> Signature:
+        return self._signature
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._kernel(*arguments)
+
+
+@typeof_impl.register(Address)
+def _type_of(address: Address, _context: object) -> numba.types.FunctionType:
+    """The type that the address was made for; numba would make an equal one anew in every call."""
+    return address.pointer
+
+
+@lru_cache(maxsize=64)
+def address_of(kernel: Kernel, pointer: numba.types.FunctionType) -> Kernel:
+    """A kernel as an address, of which there is one and which stands for it."""
+    return kernel if isinstance(kernel, Address) else cast(Kernel, Address(kernel, pointer))
+
+
+def plain(kernel: Kernel) -> Kernel:
+    """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
+    return kernel._kernel if isinstance(kernel, Address) else kernel
+
+
 def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
     for value in values:
         if isinstance(value, tuple):
@@ -292,12 +337,12 @@ def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
             raise PluginError(f"kernel `{name}` got an array that is not C-contiguous: hand over np.ascontiguousarray(...)")
 
 
-def _named(module: str, name: str) -> Any:
+def _named(module: str, name: str) -> Kernel:
     return getattr(import_module(module), name)
 
 
 def jit(
-    signature: Any, allocates: bool = False, inline: bool = False, releases: bool = False
+    signature: Signature, allocates: bool = False, inline: bool = False, releases: bool = False
 ) -> Callable[[Callable[..., Any]], Kernel]:
     """Make a function a kernel of one explicit signature, compiled at its first use, through the cache.
 
@@ -341,10 +386,10 @@ def jit(
     if releases:
         options["nogil"] = True
     records = any(isinstance(kind, numba.types.BaseNamedTuple) for kind in signature.args)
-    return lambda function: (KernelOfRecords if records else Kernel)(function, signature, options)
+    return lambda function: (_KernelOfRecords if records else Kernel)(function, signature, options)
 
 
-def signature_words(signature: Any) -> str:
+def signature_words(signature: Signature) -> str:
     """A numba signature as one writes it: ``none(float64[::1], float64[:, ::1])``."""
 
     def word(kind: Any) -> str:

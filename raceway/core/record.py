@@ -71,6 +71,11 @@ class Schedule:
     def steps(self) -> int:
         return self.steps_per_turn * self.turns
 
+    def when(self, step: int) -> str:
+        """Where a run stands after so many steps of its own, in words."""
+        time, turn = (self.first + step) * self.dt, (self.first + step) // self.steps_per_turn + 1
+        return f"after {step} of {self.steps} steps (t = {time:.6g} s, turn {turn})"
+
 
 @attrs.frozen(eq=False)
 class Record:
@@ -150,7 +155,7 @@ def work(first, last, outer_before, outer, u_before, u):  # type: ignore[no-unty
 
 
 @jit(boolean(int64, int64, float64, VECTOR), releases=True)
-def bounded(first, last, bound, u):  # type: ignore[no-untyped-def]
+def _bounded(first, last, bound, u):  # type: ignore[no-untyped-def]
     """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
     beyond = 0
     for i in range(first, last):
@@ -337,6 +342,16 @@ def ramp(t: float, duration: float) -> float:
     return s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
+def unbounded(schedule: Schedule, when: str, limit: float, state: dict[str, Any]) -> StabilityError:
+    """The error for a motion that grows without bound, with the stable limit of explicit steps [s] where one is known."""
+    hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
+    return StabilityError(
+        f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, add "
+        "damping, or move away from a resonance.",
+        state,
+    )
+
+
 class Recorder:
     """Follows one integration.
 
@@ -390,7 +405,7 @@ class Recorder:
         try:
             system.commit()
         except ConvergenceError as why:
-            raise ConvergenceError(f"{why} It was {self._when()}.", self._last_good()) from why
+            raise ConvergenceError(f"{why} It was {self.schedule.when(self._done)}.", self._last_good()) from why
         self.state = state
         self._done += 1
         if (schedule.first + self._done) % schedule.stride == 0:
@@ -460,7 +475,7 @@ class Recorder:
 
         def block_work(number: int) -> None:
             part = _BLOCK * number, min(_BLOCK * (number + 1), size)
-            fine[number] = bounded(*part, BOUND, arrays[-1])
+            fine[number] = _bounded(*part, BOUND, arrays[-1])
             works[number] = work(*part, *arrays)
 
         self.system.threads.do(count, block_work)
@@ -474,12 +489,7 @@ class Recorder:
             limit = self.system.stable_step()
         except ConvergenceError:
             limit = float("inf")
-        hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
-        return StabilityError(
-            f"the motion grew without bound {self._when()}, step {self.schedule.dt:.3g} s{hint}. Take more "
-            "`integrator.steps_per_turn`, add damping, or move away from a resonance.",
-            self._last_good(),
-        )
+        return unbounded(self.schedule, self.schedule.when(self._done), limit, self._last_good())
 
     def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
         """The error for a step that found no balance, with the residuals [N] of its iterations."""
@@ -490,14 +500,9 @@ class Recorder:
             else ""
         )
         return ConvergenceError(
-            f"{why} {self._when()}{history}. Take more `integrator.steps_per_turn`.",
+            f"{why} {self.schedule.when(self._done)}{history}. Take more `integrator.steps_per_turn`.",
             {**self._last_good(), "residuals": np.array(residuals)},
         )
-
-    def _when(self) -> str:
-        schedule = self.schedule
-        t, turn = self.time_of(self._done), (schedule.first + self._done) // schedule.steps_per_turn + 1
-        return f"after {self._done} of {schedule.steps} steps (t = {t:.6g} s, turn {turn})"
 
     def _last_good(self) -> dict[str, np.ndarray]:
         self.system.rollback()

@@ -89,17 +89,9 @@ def steady_stiffness(force: np.ndarray, displacement: np.ndarray, change: np.nda
 
 
 def identification(
-    definition: str,
-    frequency_hz: float,
-    force: np.ndarray,
-    displacement: np.ndarray,
-    mass_used: float,
-    residual: float | None = None,
-    spread: float | None = None,
-    window: float | None = None,
-    series: tuple[tuple[float, complex], ...] = (),
+    definition: str, frequency_hz: float, force: np.ndarray, displacement: np.ndarray, mass_used: float
 ) -> Identification:
-    """An ``Identification`` from the complex 1x vectors (5,) of force and displacement."""
+    """An ``Identification`` from the complex 1x vectors (5,) of force and displacement, without quality figures."""
     forward = 0.5 * abs(displacement[1] + 1j * displacement[2])
     backward = 0.5 * abs(displacement[1] - 1j * displacement[2])
     # Real and imaginary part of the force vector are its values a quarter turn apart; the larger semi-axis is its amplitude.
@@ -114,14 +106,12 @@ def identification(
         backward_amplitude=float(backward),
         orbit_major=float(forward + backward),
         orbit_minor=float(abs(forward - backward)),
-        residual=residual,
-        spread=spread,
-        window=window,
-        series=series,
     )
 
 
-def fit_lines(time: np.ndarray, signal: np.ndarray, frequency_hz: float, harmonics: int) -> tuple[np.ndarray, np.ndarray]:
+def fit_harmonics(
+    time: np.ndarray, signal: np.ndarray, frequency_hz: float, harmonics: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Least squares of mean, drift and ``harmonics`` multiples of a frequency.
 
     Parameters
@@ -167,7 +157,7 @@ def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> 
     return signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
 
 
-def fourier_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
+def synchronous_phasor(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
     """1x phasor (k,) of a signal (n, k) over whole turns, after its drift over those turns is removed."""
     kernel = np.exp(-2j * np.pi * frequency_hz * time)
     return 2.0 * (kernel[:, None] * without_drift(time, signal, frequency_hz)).mean(axis=0)

@@ -124,7 +124,7 @@ class Recording(NamedTuple):
     counters: np.ndarray
 
 
-class Rest(NamedTuple):
+class StaticState(NamedTuple):
     """A state at rest: displacement (5,), positions of the balls (Z, c), the law's memory (2 Z, m)."""
 
     q: np.ndarray
@@ -138,10 +138,10 @@ OUTER = record(Outer, FORCE_POINTER, VECTOR, float64)
 STEPS = record(Steps, float64, int64, int64)
 STATE = record(State, MATRIX, MATRIX, MATRIX, MATRIX)
 RECORDING = record(Recording, int64, MATRIX, CUBE, VECTOR)
-REST = record(Rest, VECTOR, MATRIX, MATRIX)
+STATIC = record(StaticState, VECTOR, MATRIX, MATRIX)
 
 #: loop(forces, linear, outer, coefficients (k,), steps, state, recording) -> steps done, see raceway.core.time.compiled
 LOOP = int64(FORCES, LINEAR, OUTER, VECTOR, STEPS, STATE, RECORDING)
 
 #: settle(forces, linear, tolerance, t, rest, response, report (2,)) -> status, see raceway.core.ring.equilibrium
-SETTLE = int64(FORCES, LINEAR, float64, float64, REST, RESPONSE, VECTOR)
+SETTLE = int64(FORCES, LINEAR, float64, float64, STATIC, RESPONSE, VECTOR)

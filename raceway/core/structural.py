@@ -18,6 +18,7 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import Ellipse, normal_displacement
+from raceway.core.jit import plain
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.patches.pressure import BeyondPatch, Contact
@@ -31,7 +32,7 @@ from raceway.core.revolution.body import (
 )
 from raceway.core.revolution.sections import Profile, coarse_profile
 from raceway.core.ring.kernels.structural import condensed
-from raceway.core.ring.system import System, plain
+from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, MeshError
 from raceway.storage.array_cache import kept
 from raceway.storage.tables import Tables
@@ -165,7 +166,7 @@ def ring_compliance(
     }  # fmt: skip
 
     def make() -> dict[str, np.ndarray]:
-        body = Revolution(profile, divisions, young, poisson, 1.0, seat=seat)
+        body = Revolution(profile, divisions, young, poisson, seat=seat)
         raw = _columns(body, shape, table, half, depths, divisions // balls * np.arange(balls))
         return {"compliance": raw, "half_space": half_space(depths, half, young, poisson).mean(keepdims=True)}
 
@@ -198,7 +199,7 @@ def _columns(
         loads[3 * profile.race + 2, a] = weights * sign * np.sin(profile.angles)
         normal = sign * np.array([np.cos(angle), np.sin(angle)])
         centre = np.array([shape.centre_r, shape.centre_x])
-        nodes, shares = interpolation(profile, centre + (shape.groove + depths)[:, None] * normal)
+        nodes, shares = _interpolation(profile, centre + (shape.groove + depths)[:, None] * normal)
         for component, part in ((0, normal[0]), (2, normal[1])):
             np.add.at(observed[:, a], (3 * nodes + component).ravel(), (shares * part / len(depths)).ravel())
     unknowns = body.unknowns
@@ -214,7 +215,7 @@ def _columns(
     return np.ascontiguousarray(np.moveaxis(np.tensordot(even, harmonic, axes=1), 0, 2))
 
 
-def interpolation(profile: Profile, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _interpolation(profile: Profile, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (n, 3) and shares (n, 3) of the triangles (halves of the quadrilaterals) that hold points (n, 2) of a section.
 
     A point outside is put into the nearest triangle and extrapolated.
@@ -303,7 +304,7 @@ def calibrated(
         for contact_angle in (angle, angle + _FURTHER):
             try:
                 calibration.append(
-                    [_compliances(body, ball, ellipses, n, Loaded(load, radius, balls, contact_angle)) for n in POINTS]
+                    [_compliances(body, ball, ellipses, n, _Loaded(load, radius, balls, contact_angle)) for n in POINTS]
                 )
             except (BeyondPatch, ConvergenceError, MeshError):
                 break
@@ -331,7 +332,7 @@ def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
 
 
 @attrs.frozen
-class Loaded:
+class _Loaded:
     """A largest load of a ball [N], the ball's radius [m], the count of balls, and the contact angle [rad]."""
 
     load: float
@@ -340,7 +341,7 @@ class Loaded:
     angle: float
 
 
-def _compliances(body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse], nodes: int, at: Loaded) -> np.ndarray:
+def _compliances(body: RingBody, solid: Solid, ellipses: tuple[Ellipse, Ellipse], nodes: int, at: _Loaded) -> np.ndarray:
     """(loads,) with so many points along a semi-axis of the inner contact [m/N]."""
     load, radius, balls, angle = at.load, at.radius, at.balls, at.angle
     axes = np.array([ellipse.semi_axes(load) for ellipse in ellipses], dtype=float)

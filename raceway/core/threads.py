@@ -24,7 +24,7 @@ def usable_cores() -> int:
     return count
 
 
-def share(count: int, threads: int) -> list[tuple[int, int]]:
+def _share(count: int, threads: int) -> list[tuple[int, int]]:
     """Edges (start, end) that share ``count`` things among threads."""
     edges = [count * k // threads for k in range(threads + 1)]
     return list(zip(edges[:-1], edges[1:], strict=True))
@@ -91,7 +91,7 @@ class ThreadPool:
 
     def do_shares(self, count: int, job: Callable[[int, int], T]) -> list[T]:
         """What ``job(first, last)`` returns on equal shares of ``count`` things."""
-        shares = share(count, self.count if self._pool is not None else 1)
+        shares = _share(count, self.count if self._pool is not None else 1)
         # Every place is filled before the list is handed out.
         results: list[T] = [None] * len(shares)  # type: ignore[list-item]
 

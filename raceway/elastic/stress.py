@@ -7,8 +7,8 @@ import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.hexahedron.rows import centre_stress, largest_shear, von_mises
-from raceway.core.hexahedron.shape import CORNERS
 from raceway.core.hexahedron.stress_fit import StressFit
+from raceway.core.mesh.hex_mesh import CORNERS
 from raceway.elastic.contact import NodalContact
 
 

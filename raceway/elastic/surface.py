@@ -6,8 +6,9 @@ import attrs
 import numpy as np
 from numba import float64, int64, void
 
-from raceway.core.hexahedron.shape import shape_slopes, shape_values
+from raceway.core.hexahedron.shape import shape_values
 from raceway.core.jit import jit
+from raceway.core.mesh.hex_mesh import shape_slopes
 from raceway.core.signatures import MATRIX
 
 _NODES = int64[:, ::1]

@@ -24,7 +24,7 @@ from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
 from raceway.core.periodic.intervals import Change, Eliminated, condense, imbalances, spread
 from raceway.core.periodic.search import PeriodicMotion, find, problem_of
-from raceway.core.periodic.steady import first_line, growth_of_disturbances, orbit_tables, refuse
+from raceway.core.periodic.steady import growth_of_disturbances, orbit_tables, refuse, synchronous_response
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System, by_address, surrogate
@@ -228,7 +228,7 @@ def _rates(problem: Problem, path: Path) -> np.ndarray:
 
 
 def _line(solved: Solved, mass: float) -> np.ndarray:
-    z, amplitude = first_line(solved)
+    z, amplitude = synchronous_response(solved)
     omega = solved.problem.speed
     return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude])
 

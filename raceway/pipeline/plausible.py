@@ -330,11 +330,11 @@ def _secant(
             if not method.inertial:
                 raise
             from raceway.core.periodic.search import directly, problem_of
-            from raceway.core.periodic.steady import first_line
+            from raceway.core.periodic.steady import synchronous_response
 
             q, system = state.displacement, surrogate(variant.bearing.orbiting(variant.system))
             problem = problem_of(system, speed, q)
-            z = first_line(directly(problem, q, state.stiffness, _ROUGH).solved)[0]
+            z = synchronous_response(directly(problem, q, state.stiffness, _ROUGH).solved)[0]
         return float((z.real - base.real) / abs(base.real + model.mass_used * speed**2))
 
     return of_orbit, "of the steady orbit near the recorded one"

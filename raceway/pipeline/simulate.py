@@ -14,7 +14,7 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
-from raceway.core.signals import fourier_line, stiffness
+from raceway.core.signals import stiffness, synchronous_phasor
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
 from raceway.framework.duties import at_whirl, ramp_turns, steady_form
@@ -306,7 +306,9 @@ class SteadyMotions:
             return None
         self.last = record
         frequency = model.excitation.frequency_hz
-        return stiffness(*(fourier_line(record.time, signal, frequency) for signal in (record.force, record.displacement)))
+        return stiffness(
+            *(synchronous_phasor(record.time, signal, frequency) for signal in (record.force, record.displacement))
+        )
 
 
 def _at_speed(model: Model, speed: float) -> Model | None:
@@ -376,7 +378,7 @@ def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> 
         return False
     last, before = record.displacement[-per_turn:, :3], record.displacement[-2 * per_turn : -per_turn, :3]
     recorded, steady = (
-        fourier_line(turn.time[-n:], turn.displacement[-n:, :3], frequency)
+        synchronous_phasor(turn.time[-n:], turn.displacement[-n:, :3], frequency)
         for turn, n in ((record, per_turn), (settled, _SAMPLES))
     )
     change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))

@@ -42,7 +42,7 @@ import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
-from raceway.core.signals import Identification, fourier_line, stiffness, without_drift
+from raceway.core.signals import Identification, stiffness, synchronous_phasor, without_drift
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
@@ -178,10 +178,10 @@ def _closed(motion: Simulation, per_turn: int) -> complex:
         for signal in (record.displacement, record.velocity)
     )
     turn = slice(-per_turn, None)
-    line = fourier_line(record.time[turn], record.displacement[turn], w / (2.0 * np.pi))
+    line = synchronous_phasor(record.time[turn], record.displacement[turn], w / (2.0 * np.pi))
     seam = np.exp(-1j * w * record.time[-1])
     line[free] -= w / np.pi * seam * modes @ ((slope + 1j * w * jump) / (w**2 - squares))
-    return stiffness(fourier_line(record.time[turn], record.force[turn], w / (2.0 * np.pi)), line)
+    return stiffness(synchronous_phasor(record.time[turn], record.force[turn], w / (2.0 * np.pi)), line)
 
 
 def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:

@@ -110,7 +110,7 @@ class Amplitude:
         return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations.harmonic import harmonic
+        from raceway.core.excitations import harmonic
 
         return harmonic
 
@@ -225,7 +225,7 @@ class RunUp:
         return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations.run_up import run_up
+        from raceway.core.excitations import run_up
 
         return run_up
 
@@ -242,7 +242,7 @@ class HarmonicLoad(Bidirectional):
         return np.concatenate([[self.whirl_speed], np.array(self.amplitudes, dtype=complex).view(float)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations.harmonic import harmonic_load
+        from raceway.core.excitations import harmonic_load
 
         return harmonic_load
 

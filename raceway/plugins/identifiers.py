@@ -30,9 +30,9 @@ def whole_turns(record: Record) -> Record:
 
 def _fourier(record: Record, frequency_hz: float) -> tuple[np.ndarray, np.ndarray]:
     """1x lines (5,) of force and displacement over a record."""
-    from raceway.core.signals import fourier_line
+    from raceway.core.signals import synchronous_phasor
 
-    force, displacement = (fourier_line(record.time, s, frequency_hz) for s in (record.force, record.displacement))
+    force, displacement = (synchronous_phasor(record.time, s, frequency_hz) for s in (record.force, record.displacement))
     return force, displacement
 
 
@@ -58,21 +58,21 @@ class Fft1x:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals import fit_lines, fourier_line, identification, stiffness, without_drift
+        from raceway.core.signals import fit_harmonics, identification, stiffness, synchronous_phasor, without_drift
 
         record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
         time, signals = record.time, (record.force, record.displacement)
         force, line = _fourier(record, frequency)
         z = stiffness(force, line)
-        fit, _ = fit_lines(time, np.hstack(signals), frequency, 3)
+        fit, _ = fit_harmonics(time, np.hstack(signals), frequency, 3)
         straight = [without_drift(time, signal, frequency) for signal in signals]
         motion = record.displacement[:, :3] - record.displacement[:, :3].mean(axis=0)
         pure = (line[:3] * np.exp(1j * (2.0 * np.pi * frequency * time[:, None]))).real
         scale = np.sqrt((pure**2).sum())
-        return identification(
-            self.definition, frequency, force, line, model.mass_used,
+        return attrs.evolve(
+            identification(self.definition, frequency, force, line, model.mass_used),
             residual=float(np.sqrt(((motion - pure)[:, 1:] ** 2).sum()) / scale) if scale > 0 else None,
-            spread=_spread(record, z, lambda turn: stiffness(*(fourier_line(time[turn], s[turn], frequency) for s in straight))),
+            spread=_spread(record, z, lambda turn: stiffness(*(synchronous_phasor(time[turn], s[turn], frequency) for s in straight))),
             window=float(abs(stiffness(fit[0, :5], fit[0, 5:]) - z) / abs(z)),
         )  # fmt: skip
 
@@ -92,22 +92,22 @@ class SineFit:
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
         import numpy as np
 
-        from raceway.core.signals import fit_lines, identification, stiffness, without_drift
+        from raceway.core.signals import fit_harmonics, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
         signals = np.hstack([record.force, record.displacement])
         straight = without_drift(record.time, signals, frequency)
 
         def fitted(signals: np.ndarray, part: slice) -> tuple[np.ndarray, np.ndarray]:
-            lines, residual = fit_lines(record.time[part], signals[part], frequency, self.harmonics)
+            lines, residual = fit_harmonics(record.time[part], signals[part], frequency, self.harmonics)
             return lines[0], residual
 
         line, residual = fitted(signals, slice(None))
         z = stiffness(line[:5], line[5:])
         scale = np.linalg.norm(line[6:8]) * np.sqrt(0.5 * len(record.time))
         fourier = stiffness(*_fourier(record, frequency))
-        return identification(
-            self.definition, frequency, line[:5], line[5:], model.mass_used,
+        return attrs.evolve(
+            identification(self.definition, frequency, line[:5], line[5:], model.mass_used),
             residual=float(np.linalg.norm(residual[:, 6:8]) / scale) if scale > 0 else None,
             spread=_spread(record, z, lambda turn: stiffness(*np.split(fitted(straight, turn)[0], 2))),
             window=float(abs(fourier - z) / abs(z)),

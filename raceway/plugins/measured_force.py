@@ -121,7 +121,7 @@ class Measured:
         return np.concatenate([[grid[1] - grid[0], float(self.repeats)], self._at(grid).reshape(-1)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations.samples import samples
+        from raceway.core.excitations import samples
 
         return samples
 

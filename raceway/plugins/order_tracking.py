@@ -65,11 +65,11 @@ class OrderTracking:
             raise ConvergenceError(
                 f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
             )
-        identified = identification(
-            self.definition, last.speed / (2.0 * np.pi), last.line[:5], last.line[5:], model.mass_used,
-            residual=last.residual, series=tuple(series),
+        frequency = last.speed / (2.0 * np.pi)
+        return attrs.evolve(
+            identification(self.definition, frequency, last.line[:5], last.line[5:], model.mass_used),
+            dynamic_stiffness=last.value, residual=last.residual, series=tuple(series), series_error=tuple(errors),
         )  # fmt: skip
-        return attrs.evolve(identified, dynamic_stiffness=last.value, series_error=tuple(errors))
 
 
 @attrs.frozen

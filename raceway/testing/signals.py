@@ -201,7 +201,7 @@ def synthetic_record(
 
 def model_of(sense: int = 1, direction: float = 0.0) -> Model:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
-    from raceway.core.excitations.harmonic import harmonic
+    from raceway.core.excitations import harmonic
     from raceway.testing.systems import linear_system
 
     radial = np.diag([0.0, 1.0, 1.0, 0.0, 0.0])

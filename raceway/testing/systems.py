@@ -19,7 +19,7 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.contact.laws import three_halves
-from raceway.core.excitations.harmonic import harmonic, no_force
+from raceway.core.excitations import harmonic, no_force
 from raceway.core.jit import jit
 from raceway.core.record import Motion
 from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import LAW, ConvergenceError, MeshError, jit
-from raceway.core.contact.laws import three_halves_or_linear
+from raceway.core.contact.laws import three_halves
 from raceway.core.patches.patch import Spacing
 from raceway.core.patches.pressure import BeyondPatch, Contact, Factor, PointLaw, pressure_field
 from validation.single import Single, single
@@ -40,7 +40,7 @@ def broken(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate
 def linear(case: Single, share: float) -> PointLaw:
     """Pressure per gap whose penetration under the peak pressure at 300 N is a share of Hertz's approach."""
     stiffness = float(case.ellipse.peak_pressure(300.0)) / (share * float(case.ellipse.approach(300.0)))
-    return PointLaw(three_halves_or_linear, np.array([0.0, stiffness]), case.patch.area)
+    return PointLaw(three_halves, np.array([0.0, stiffness]), case.patch.area)
 
 
 @pytest.mark.parametrize("load", [100.0, 1000.0])

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from raceway.core.ring.kernels.impact import impact_system
+from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
 from raceway.studies.verify.cases import impact_of, measure, transient_integrators
@@ -76,7 +77,8 @@ def test_an_impact_on_a_penalty(name):
 def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
     from raceway.core.contact.laws import three_halves
 
-    system = impact_system(1.0, three_halves, np.array([1e10]), contact_damping=50.0)
+    system = impact_system(1.0, three_halves, np.array([1e10]))
+    system.scalars[DAMPING] = 50.0
     first, step = np.array([1.0, 0, 0, 0, 0]), 1e-11
     q, v = 3e-6 * first, 0.02 * first
     now = system.evaluate(q, v)

@@ -11,7 +11,7 @@ from raceway.core.signatures import LAW
 
 
 @jit(LAW)
-def three_halves_or_linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+def three_halves(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     """Hertz: Q = K delta^1.5 of a pair, or p = k delta at a point."""
     if params.shape[1] == 1:
         # Rows of one number lie side by side: this loop is vectorised, the one below is not.
@@ -32,7 +32,7 @@ def three_halves_or_linear(gap, gap_rate, params, state_old, state_new, dt, forc
 
 
 @jit(LAW)
-def square_or_linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+def square(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     """Penalty: p = k delta at a point, or, integrated over the overlap of a paraboloid, Q = c delta^2 of a pair."""
     if params.shape[1] == 1:
         for i in range(gap.size):
@@ -48,28 +48,6 @@ def square_or_linear(gap, gap_rate, params, state_old, state_new, dt, force, d_g
         slope = params[i, 0] * approach
         force[i] = (slope + linear) * approach
         d_gap[i] = -2.0 * slope - linear
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
-def three_halves(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    """Hertz: Q = K delta^1.5."""
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        slope = params[i, 0] * np.sqrt(approach)
-        force[i] = slope * approach
-        d_gap[i] = -1.5 * slope
-        d_rate[i] = 0.0
-
-
-@jit(LAW)
-def square(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    """A nodal penalty integrated over the overlap of a paraboloid: Q = c delta^2."""
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        slope = params[i, 0] * approach
-        force[i] = slope * approach
-        d_gap[i] = -2.0 * slope
         d_rate[i] = 0.0
 
 

@@ -17,7 +17,7 @@ from raceway.core.hexahedron.rows import (
     stable_step,
 )
 from raceway.core.hexahedron.shape import Floats
-from raceway.core.hexahedron.stiffness import WORK, range_force, range_hourglass_energy, range_point_force, stiffnesses
+from raceway.core.hexahedron.stiffness import WORK, Mesh, range_force, range_hourglass_energy, range_point_force, stiffnesses
 from raceway.core.hexahedron.strain import KINDS
 from raceway.core.threads import Job, ThreadPool
 from raceway.errors import MeshError
@@ -31,16 +31,10 @@ class HexOperator:
 
     Parameters
     ----------
-    points : (n, 3) float
-        Nodes [m].
-    cells : (m, 8) int
-        Elements, in the order of VTK's hexahedron.
-    young, poisson, density : float
-        Material of all elements [Pa, -, kg/m3].
-    formulation : str
-        "one_point" (exact mean gradient, hourglass control), "full" (2 x 2 x 2), "incompatible" or "mean_dilatation".
-    hourglass : float
-        Stiffness of the hourglass modes of "one_point", as a share of lambda + 2 mu; 0 leaves them free.
+    points : (n, 3) nodes [m];  cells : (m, 8) elements, in the order of VTK's hexahedron
+    young, poisson, density : of all elements [Pa, -, kg/m3]
+    formulation : "one_point" (exact mean gradient, hourglass control), "full" (2 x 2 x 2), "incompatible" or "mean_dilatation"
+    hourglass : stiffness of the hourglass modes of "one_point", as a share of lambda + 2 mu; 0 leaves them free
 
     Raises
     ------
@@ -74,13 +68,7 @@ class HexOperator:
             )
         self.points: Floats = np.ascontiguousarray(points, dtype=np.float64)
         numbers = np.asarray(cells)
-        if (
-            self.points.ndim != 2
-            or self.points.shape[1] != 3
-            or numbers.ndim != 2
-            or numbers.shape[1] != 8
-            or not len(numbers)
-        ):
+        if self.points.shape[1:] != (3,) or numbers.shape[1:] != (8,) or not len(numbers):
             raise MeshError(
                 f"points of shape {self.points.shape} and cells of shape {numbers.shape}: a mesh of hexahedra has points "
                 "(n, 3) and at least one cell, cells (m, 8)"
@@ -100,6 +88,7 @@ class HexOperator:
         self.element_masses: Floats = density * nodal_volumes(self.points, self.cells)
         self._kind = KINDS[formulation]
         self._ranges = divide(self.cells)
+        self._mesh = Mesh(self._ranges, self.cells, self.points.reshape(-1), self.moduli)
         last = self._ranges[-1]
         self._parts = np.zeros(3 * int(last[4] + last[3] - last[2]))
         self._work = np.zeros(WORK * len(self._ranges))
@@ -134,19 +123,13 @@ class HexOperator:
 
         Parameters
         ----------
-        u, v : (n, 3) float, C-contiguous
-            Displacements [m], and velocities half a step earlier [m/s].
-        load : (n, 3) float
-            Constant outer forces [N].
-        inverse_mass : (n,) float
-            1 / mass [1/kg]; 0 holds a node.
-        dt : float
-            Step [s], at most ``stable_step()``.
+        u, v : (n, 3) C-contiguous, displacements [m], and velocities half a step earlier [m/s]
+        load : (n, 3) constant outer forces [N];  inverse_mass : (n,) [1/kg], 0 holds a node
+        dt : step [s], at most ``stable_step()``
 
         Returns
         -------
-        force : (n, 3) float
-            Internal forces [N] at the start of the last step.
+        force : (n, 3) internal forces [N] at the start of the last step
         """
         flat_u, flat_v, outer, f = u.reshape(-1), v.reshape(-1), self._flat(load), np.zeros(self.points.size)
         job = self.force_job(flat_u)
@@ -192,8 +175,7 @@ class HexOperator:
         """``hourglass_energy`` [J] of one range of elements at u (3 n,) [m]."""
         if self.formulation != "one_point":
             return 0.0
-        x = self.points.reshape(-1)
-        return float(range_hourglass_energy(r, self._ranges, self.cells, x, u, self.moduli))
+        return float(range_hourglass_energy(r, self._mesh, u))
 
     def stable_step(self) -> float:
         """Stable step of central differences with the lumped mass [s], from the elements' eigenvalues."""
@@ -202,9 +184,8 @@ class HexOperator:
     def force_job(self, u: Floats) -> Job:
         """The forces of one range of elements, by its number, at u (3 n,) [m]; ``add_parts`` sums them when all are there."""
         if self.formulation == "one_point":
-            x = self.points.reshape(-1)
-            return lambda r: range_force(r, self._ranges, self.cells, x, u, self.moduli, self._work, self._parts)
-        return lambda r: range_point_force(self._kind, r, self._ranges, self.cells, self.points, u, self.moduli, self._parts)
+            return lambda r: range_force(r, self._mesh, u, self._work, self._parts)
+        return lambda r: range_point_force(self._kind, r, self._mesh, u, self._parts)
 
     def add_parts(self, first: int, last: int, f: Floats) -> None:
         """Forces of the nodes ``first`` to ``last - 1`` into f (3 n,) [N], from those of the ranges."""

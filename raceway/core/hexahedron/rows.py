@@ -21,11 +21,11 @@ from raceway.core.hexahedron.shape import (
     gauss,
     jacobians,
     mean_gradients,
-    shape_slopes,
     shape_values,
 )
 from raceway.core.hexahedron.stiffness import WIDTH, add_to_sparse
 from raceway.core.jit import jit
+from raceway.core.mesh.hex_mesh import shape_slopes
 from raceway.core.signatures import CUBE, VECTOR
 from raceway.errors import MeshError
 
@@ -79,8 +79,7 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
 
     Returns
     -------
-    ranges : (at most RANGES, 5) int
-        First element, last element + 1, first node, last node + 1, first node's place among the parts.
+    ranges : (at most RANGES, 5) first element, last element + 1, first node, last node + 1, first node's place among the parts
 
     Notes
     -----
@@ -117,14 +116,9 @@ def add_parts_and_move(first, last, ranges, parts, load, inverse_mass, f, dt, u,
 
     Parameters
     ----------
-    load : (3 n,) float
-        Outer forces [N].
-    inverse_mass : (n,) float
-        0 holds a node [1/kg].
-    f : (3 n,) float
-        Out: internal forces before the update [N].
-    u, v : (3 n,) float
-        Displacements at the step [m] and velocities half a step earlier [m/s]; both move on by ``dt``.
+    load : (3 n,) outer forces [N];  inverse_mass : (n,) [1/kg], 0 holds a node
+    f : (3 n,) out: internal forces before the update [N]
+    u, v : (3 n,) displacements at the step [m] and velocities half a step earlier [m/s]; both move on by ``dt``
     """
     for begin in range(first, last, _CHUNK):
         end = min(begin + _CHUNK, last)
@@ -190,7 +184,7 @@ def _spread(components, starts, neighbours, row_starts, columns):  # type: ignor
             row_starts[components * node + a + 1] = at
 
 
-def node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+def _node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
     """For each of ``count`` nodes the sorted nodes that share an element with it: starts (count + 1,), neighbours."""
     from scipy.sparse import csr_array
 
@@ -202,11 +196,11 @@ def node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int6
     return pattern.indptr.astype(np.int64), pattern.indices.astype(np.int32)
 
 
-def assemble_blocks(
+def _assemble_blocks(
     cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
-    """``node_pattern``, and the numbers: the rows of a node after each other.  Parameters: see ``assemble``."""
-    starts, neighbours = node_pattern(cells, count)
+    """``_node_pattern``, and the numbers: the rows of a node after each other.  Parameters: see ``assemble``."""
+    starts, neighbours = _node_pattern(cells, count)
     data = np.zeros(components**2 * len(neighbours))
     for part in batches(len(cells), 2048):
         add_to_sparse(part.start, components, element_matrices(part), cells, starts, neighbours, data)
@@ -223,13 +217,8 @@ def assemble(
 
     Parameters
     ----------
-    cells : (m, 8) uint32
-    count : int
-        Nodes.
-    components : int
-        Unknowns a node: 3 for a stiffness, 1 for the mass of one direction.
-    element_matrices : function
-        Of a slice of elements: their matrices (k, 8 components, 8 components).
+    cells : (m, 8);  count : of nodes;  components : unknowns a node: 3 for a stiffness, 1 for the mass of one direction
+    element_matrices : of a slice of elements (k, 8 components, 8 components)
 
     Returns
     -------
@@ -237,7 +226,7 @@ def assemble(
     """
     from scipy.sparse import csr_array
 
-    starts, neighbours, data = assemble_blocks(cells, count, components, element_matrices)
+    starts, neighbours, data = _assemble_blocks(cells, count, components, element_matrices)
     row_starts = np.empty(components * count + 1, dtype=np.int64)
     columns = np.empty(len(data), dtype=np.int32)
     _spread(components, starts, neighbours, row_starts, columns)
@@ -256,10 +245,7 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
 
     Parameters
     ----------
-    matrices : function
-        Of a slice of elements: their stiffness matrices (k, 24, 24) [N/m].
-    masses : (m, 8) float
-        Shares of the nodes' lumped masses [kg].
+    matrices : stiffness of a slice of elements (k, 24, 24) [N/m];  masses : (m, 8) shares of the nodes' lumped masses [kg]
 
     Notes
     -----
@@ -332,10 +318,8 @@ class BlockRows:
 
     Attributes
     ----------
-    starts : (n + 1,) int64;  neighbours : (k,) int32
-        Nodes that share an element with node i, sorted: neighbours[starts[i] : starts[i + 1]].
-    data : (9 k,)
-        The three rows of a node after each other [N/m].
+    starts : (n + 1,);  neighbours : (k,) nodes that share an element with node i, sorted: neighbours[starts[i] : starts[i + 1]]
+    data : (9 k,) the three rows of a node after each other [N/m]
     """
 
     starts: NDArray[np.int64]
@@ -345,7 +329,7 @@ class BlockRows:
     @classmethod
     def assemble(cls, cells: NDArray[np.uint32], nodes: int, element_matrices: Callable[[slice], Floats]) -> BlockRows:
         """Sum of element matrices (k, 24, 24), which ``element_matrices`` gives for a slice of cells (m, 8)."""
-        return cls(*assemble_blocks(cells, nodes, 3, element_matrices))
+        return cls(*_assemble_blocks(cells, nodes, 3, element_matrices))
 
     def times(self, nodes: NDArray[np.int64], moved: Floats) -> Floats:
         """(m, 3, c) forces [N] on ``nodes`` (m,) of displacements (n, 3, c) [m]."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from raceway.core.mesh.hex_mesh import CORNERS, shape_slopes
+
 Floats = NDArray[np.float64]
 
-#: (8, 3) Corners of the reference cube, in the order of VTK's hexahedron.
-CORNERS: Floats = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], dtype=float
-)
 #: (8, 4) Nodal values of eta zeta, xi zeta, xi eta and xi eta zeta: what a constant gradient does not see.
 HOURGLASS: Floats = np.stack(
     [CORNERS[:, 1] * CORNERS[:, 2], CORNERS[:, 0] * CORNERS[:, 2], CORNERS[:, 0] * CORNERS[:, 1], CORNERS.prod(axis=1)],
@@ -21,15 +19,6 @@ HOURGLASS: Floats = np.stack(
 def shape_values(at: Floats) -> Floats:
     """(p, 8) Shape functions at points (p, 3) of the reference cube."""
     return np.asarray(np.prod(1.0 + at[:, None, :] * CORNERS, axis=2) / 8.0)
-
-
-def shape_slopes(at: Floats) -> Floats:
-    """(p, 8, 3) Their derivatives along xi, eta, zeta."""
-    parts = 1.0 + at[:, None, :] * CORNERS
-    out = np.empty((len(at), 8, 3))
-    for k in range(3):
-        out[:, :, k] = CORNERS[:, k] * parts[:, :, (k + 1) % 3] * parts[:, :, (k + 2) % 3] / 8.0
-    return out
 
 
 def gauss(count: int) -> tuple[Floats, Floats]:

@@ -1,19 +1,29 @@
 """Element stiffness matrices, and their sum straight into a compressed sparse matrix."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import float64, int32, int64, types, uint32, uint64, void
 
 from raceway.core.hexahedron.shape import HOURGLASS
-from raceway.core.hexahedron.strain import COLUMNS, gradient_modes, mean_gradient, modes, nodal, square, strain_matrices
+from raceway.core.hexahedron.strain import (
+    COLUMNS,
+    ELEMENT,
+    gradient_modes,
+    mean_gradient,
+    modes,
+    new_element,
+    nodal,
+    square,
+    strain_matrices,
+)
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import solve
-from raceway.core.signatures import CUBE, MATRIX, VECTOR
-
-_CELLS = uint32[:, ::1]
+from raceway.core.ring.equilibrium import eliminate
+from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 
 @jit(void(VECTOR, CUBE, int64, float64, MATRIX))
-def stress_rows(moduli, B, point, weight, out):
+def _stress_rows(moduli, B, point, weight, out):
     """weight times stress for every column of strains: out (6, 33) [N m, over the unit of a column]."""
     lame, shear = moduli[0] * weight, moduli[1] * weight
     for j in range(COLUMNS):
@@ -24,7 +34,7 @@ def stress_rows(moduli, B, point, weight, out):
 
 
 @jit(void(VECTOR, MATRIX, MATRIX, float64, MATRIX))
-def add_hourglass(moduli, x, mean, volume, K):
+def _add_hourglass(moduli, x, mean, volume, K):
     """Add the hourglass stiffness of the one-point element; see ``raceway.core.hexahedron.stiffness``."""
     squares = 0.0
     for n in range(8):
@@ -45,14 +55,15 @@ def add_hourglass(moduli, x, mean, volume, K):
                     K[3 * i + k, 3 * j + k] += factor * gamma_i * gamma_j
 
 
-@jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX, CUBE, VECTOR, MATRIX, MATRIX))
-def element_stiffness(kind, moduli, x, inverse, mean, B, weight, rows, K):
-    """Stiffness of one element: the first 24 rows and columns of K (33, 33) [N/m]; the other arrays are work space."""
-    points = strain_matrices(kind, x, inverse, mean, B, weight)
+@jit(void(int64, VECTOR, ELEMENT, MATRIX))
+def _element_stiffness(kind, moduli, element, K):
+    """Stiffness of one element from its corners: the first 24 rows and columns of K (33, 33) [N/m]."""
+    points = strain_matrices(kind, element)
+    x, mean, B, weight, _, rows = element
     columns = COLUMNS if kind == 2 else 24
     K[:, :] = 0.0
     for g in range(points):
-        stress_rows(moduli, B, g, weight[g], rows)
+        _stress_rows(moduli, B, g, weight[g], rows)
         for i in range(columns):
             for s in range(6):
                 factor = B[g, s, i]
@@ -60,7 +71,7 @@ def element_stiffness(kind, moduli, x, inverse, mean, B, weight, rows, K):
                     for j in range(columns):
                         K[i, j] += factor * rows[s, j]
     if kind == 0:
-        add_hourglass(moduli, x, mean, weight[0], K)
+        _add_hourglass(moduli, x, mean, weight[0], K)
     for pivot in range(columns - 1, 23, -1):  # the incompatible modes carry no load: they are eliminated
         for i in range(pivot):
             factor = K[i, pivot] / K[pivot, pivot]
@@ -68,16 +79,30 @@ def element_stiffness(kind, moduli, x, inverse, mean, B, weight, rows, K):
                 K[i, j] -= factor * K[pivot, j]
 
 
+class Mesh(NamedTuple):
+    """Ranges (r, 5) of ``divide``, cells (m, 8), coordinates x (3 n,) node by node [m], moduli (3,) lambda, mu and
+    hourglass (lambda + 2 mu) [Pa].
+    """
+
+    ranges: np.ndarray
+    cells: np.ndarray
+    x: np.ndarray
+    moduli: np.ndarray
+
+
+_CELLS = uint32[:, ::1]
+_MESH = record(Mesh, int64[:, ::1], _CELLS, VECTOR, VECTOR)
+
+
 @jit(void(int64, int64, int64, VECTOR, _CELLS, MATRIX, CUBE), allocates=True, releases=True)
 def stiffnesses(kind, first, last, moduli, cells, points, out):
     """Stiffness matrices of the elements ``first`` to ``last - 1``: out (last - first, 24, 24) [N/m]."""
-    x, inverse, mean, weight = np.empty((8, 3)), np.empty((3, 3)), np.empty((8, 3)), np.empty(8)
-    B, rows, K = np.zeros((8, 6, COLUMNS)), np.zeros((6, COLUMNS)), np.empty((COLUMNS, COLUMNS))
+    element, K = new_element(), np.empty((COLUMNS, COLUMNS))
     for e in range(first, last):
         for n in range(8):
             for k in range(3):
-                x[n, k] = points[cells[e, n], k]
-        element_stiffness(kind, moduli, x, inverse, mean, B, weight, rows, K)
+                element.x[n, k] = points[cells[e, n], k]
+        _element_stiffness(kind, moduli, element, K)
         for i in range(24):
             for j in range(24):
                 out[e - first, i, j] = K[i, j]
@@ -177,11 +202,8 @@ def _block(w, base, lame, shear, hourglass):
 
     Parameters
     ----------
-    w : (at least base + WORK,) float
-        Coordinate c of node I of element l at ``base + (8 c + I) WIDTH + l`` [m]; the displacements follow likewise [m].
-    base : int
-    lame, shear, hourglass : float
-        lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa].
+    w : coordinate c of node I of element l at ``base + (8 c + I) WIDTH + l`` [m]; the displacements follow likewise [m]
+    lame, shear, hourglass : lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa]
     """
     for i in range(WIDTH):
         at = base + uint64(i)  # unsigned: numba then checks for no index from the end
@@ -204,24 +226,14 @@ def _block(w, base, lame, shear, hourglass):
         _store(w, at + uint64(640), _force(s, b, q))
 
 
-@jit(void(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W, _W, _W), releases=True)
-def range_force(r, ranges, cells, x, u, moduli, work, f):
+@jit(void(int64, _MESH, _W, _W, _W), releases=True)
+def range_force(r, mesh, u, work, f):
     """Forces of one range of elements, into that range's part of ``f``.
 
     Parameters
     ----------
-    r : int
-        Number of the range.
-    ranges : (ranges, 5) int
-        First element, last element + 1, first node, last node + 1, first node's place in ``f``.
-    cells : (m, 8) uint32
-    x, u : (3 n,) float
-        Coordinates and displacements, node by node [m].
-    moduli : (3,) float
-        lambda, mu, and hourglass (lambda + 2 mu) [Pa].
-    work : (ranges WORK,) float
-    f : (3 places,) float
-        The part of this range is overwritten by its forces [N].
+    r : number of the range;  u : (3 n,) displacements, node by node [m]
+    work : (ranges WORK,) scratch;  f : (3 places,) the part of this range is overwritten by its forces [N]
 
     Notes
     -----
@@ -242,6 +254,7 @@ def range_force(r, ranges, cells, x, u, moduli, work, f):
     Flanagan, Belytschko, A uniform strain hexahedron and quadrilateral with orthogonal hourglass control, Int. J. Numer.
     Meth. Engng 17 (1981) 679-706.
     """
+    ranges, cells, x, moduli = mesh
     first, last, node, end, offset = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
     for i in range(3 * offset, 3 * (offset + end - node)):
         f[i] = 0.0
@@ -276,14 +289,15 @@ def _nodes(cells, e, k, a):
     )  # fmt: skip
 
 
-@jit(float64(int64, int64[:, ::1], uint32[:, ::1], _W, _W, _W), releases=True)
-def range_hourglass_energy(r, ranges, cells, x, u, moduli):
+@jit(float64(int64, _MESH, _W), releases=True)
+def range_hourglass_energy(r, mesh, u):
     """Energy [J] that the hourglass control of one range of elements holds; arguments as of ``range_force``.
 
     Notes
     -----
     kappa / 16 sum_ai (gamma_a . u_i)^2 an element: half of what its forces do on u.
     """
+    ranges, cells, x, moduli = mesh
     total = 0.0
     for e in range(ranges[r, 0], ranges[r, 1]):
         coordinates = (
@@ -304,11 +318,11 @@ def range_hourglass_energy(r, ranges, cells, x, u, moduli):
     return total
 
 
-@jit(void(VECTOR, CUBE, int64, float64, int64, int64, VECTOR, VECTOR))
-def point_stress(moduli, B, point, weight, first, last, values, stress):
-    """weight times the stress (6,) of the columns ``first`` to ``last - 1`` with these values."""
+@jit(void(VECTOR, CUBE, int64, float64, int64, VECTOR, VECTOR))
+def _point_stress(moduli, B, point, weight, columns, values, stress):
+    """weight times the stress (6,) of the first columns with these values."""
     xx, yy, zz, xy, yz, zx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for j in range(first, last):
+    for j in range(columns):
         value = values[j]
         xx += B[point, 0, j] * value
         yy += B[point, 1, j] * value
@@ -325,50 +339,50 @@ def point_stress(moduli, B, point, weight, first, last, values, stress):
     stress[3], stress[4], stress[5] = weight * moduli[1] * xy, weight * moduli[1] * yz, weight * moduli[1] * zx
 
 
-@jit(void(int64, VECTOR, CUBE, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR))
-def _relax_modes(points, moduli, B, weight, rows, square, stress, values):
-    """The amplitudes of the nine incompatible modes, ``values[24:]``, at which they carry no load."""
+@jit(void(int64, VECTOR, ELEMENT, MATRIX, VECTOR, VECTOR))
+def _relax_modes(points, moduli, element, square, stress, values):
+    """The amplitudes of the nine incompatible modes, ``values[24:]``, at which they carry no load; square (9, 10) is scratch."""
+    B, weight, rows = element.B, element.weight, element.rows
     square[:, :] = 0.0
-    for i in range(9):
-        values[24 + i] = 0.0
-    load = values[24:]
     for g in range(points):
-        stress_rows(moduli, B, g, weight[g], rows)
-        point_stress(moduli, B, g, weight[g], 0, 24, values, stress)
+        _stress_rows(moduli, B, g, weight[g], rows)
+        _point_stress(moduli, B, g, weight[g], 24, values, stress)
         for i in range(9):
             for s in range(6):
-                load[i] -= B[g, s, 24 + i] * stress[s]
+                square[i, 9] -= B[g, s, 24 + i] * stress[s]
                 for j in range(9):
                     square[i, j] += B[g, s, 24 + i] * rows[s, 24 + j]
-    solve(square, load)
+    eliminate(square)
+    for i in range(9):
+        values[24 + i] = square[i, 9]
 
 
-@jit(void(int64, int64, int64[:, ::1], uint32[:, ::1], MATRIX, VECTOR, VECTOR, VECTOR), allocates=True, releases=True)
-def range_point_force(kind, r, ranges, cells, points, u, moduli, f):
+@jit(void(int64, int64, _MESH, VECTOR, VECTOR), allocates=True, releases=True)
+def range_point_force(kind, r, mesh, u, f):
     """Forces of one range of elements; see ``raceway.core.hexahedron.stiffness.range_force``.
 
     Notes
     -----
     These are the elements for accuracy on coarse meshes; the loops are plain, one element after the other.
     """
+    ranges, cells, x, moduli = mesh
     first, last, node, end, offset = ranges[r, 0], ranges[r, 1], ranges[r, 2], ranges[r, 3], ranges[r, 4]
-    x, inverse, mean, weight = np.empty((8, 3)), np.empty((3, 3)), np.empty((8, 3)), np.empty(8)
-    B, rows, square = np.zeros((8, 6, COLUMNS)), np.zeros((6, COLUMNS)), np.empty((9, 9))
+    element, square = new_element(), np.empty((9, 10))
     values, stress = np.zeros(COLUMNS), np.empty(6)
     columns = COLUMNS if kind == 2 else 24
     f[3 * offset : 3 * (offset + end - node)] = 0.0
     for e in range(first, last):
         for n in range(8):
             for k in range(3):
-                x[n, k] = points[cells[e, n], k]
-                values[3 * n + k] = u[3 * int64(cells[e, n]) + k]
-        count = strain_matrices(kind, x, inverse, mean, B, weight)
+                at = 3 * int64(cells[e, n]) + k
+                element.x[n, k], values[3 * n + k] = x[at], u[at]
+        count = strain_matrices(kind, element)
         if kind == 2:
-            _relax_modes(count, moduli, B, weight, rows, square, stress, values)
+            _relax_modes(count, moduli, element, square, stress, values)
         for g in range(count):
-            point_stress(moduli, B, g, weight[g], 0, columns, values, stress)
+            _point_stress(moduli, element.B, g, element.weight[g], columns, values, stress)
             for n in range(8):
                 at = 3 * (int64(cells[e, n]) - node + offset)
                 for k in range(3):
                     for s in range(6):
-                        f[at + k] += B[g, s, 3 * n + k] * stress[s]
+                        f[at + k] += element.B[g, s, 3 * n + k] * stress[s]

@@ -15,12 +15,15 @@ Simo, Rifai, A class of mixed assumed strain methods, Int. J. Numer. Meth. Engng
 Hughes, Generalization of selective integration procedures, Int. J. Numer. Meth. Engng 15 (1980) 1413-1418.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import float64, int64, types, void
 
-from raceway.core.hexahedron.shape import gauss, shape_slopes
+from raceway.core.hexahedron.shape import gauss
 from raceway.core.jit import jit
-from raceway.core.signatures import CUBE, MATRIX, VECTOR
+from raceway.core.mesh.hex_mesh import shape_slopes
+from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 #: Numbers of the formulations, as the kernels know them.
 KINDS = {"one_point": 0, "full": 1, "incompatible": 2, "mean_dilatation": 3}
@@ -64,30 +67,34 @@ def _set_columns(B, point, column, gx, gy, gz):
     B[point, 5, column + 2], B[point, 5, column] = gx, gz
 
 
-@jit(int64(int64, MATRIX, MATRIX, MATRIX, CUBE, VECTOR))
-def strain_matrices(kind, x, inverse, mean, B, weight):
-    """Fill the strain matrices of one element.
-
-    Parameters
-    ----------
-    kind : int
-        See ``KINDS``.
-    x : (8, 3) float
-        Corners [m].
-    inverse : (3, 3) float
-        Work space.
-    mean : (8, 3) float
-        Out: mean gradients of the shape functions [1/m].
-    B : (8, 6, 33) float
-        Out: strains at each point of unit displacements [1/m].
-    weight : (8,) float
-        Out: volume of each point [m3].
-
-    Returns
-    -------
-    points : int
-        How many points there are: 1 or 8.
+class Element(NamedTuple):
+    """One element: corners x (8, 3) [m], mean gradients of its shape functions (8, 3) [1/m], strains of unit displacements at its
+    points B (8, 6, 33) [1/m], the points' volumes (8,) [m3]; scratch: inverse (3, 3), rows (6, 33).
     """
+
+    x: np.ndarray
+    mean: np.ndarray
+    B: np.ndarray
+    weight: np.ndarray
+    inverse: np.ndarray
+    rows: np.ndarray
+
+
+ELEMENT = record(Element, MATRIX, MATRIX, CUBE, VECTOR, MATRIX, MATRIX)
+
+
+@jit(ELEMENT(), allocates=True)
+def new_element():
+    """Room for one."""
+    return Element(
+        np.empty((8, 3)), np.empty((8, 3)), np.zeros((8, 6, COLUMNS)), np.empty(8), np.empty((3, 3)), np.zeros((6, COLUMNS))
+    )
+
+
+@jit(int64(int64, ELEMENT))
+def strain_matrices(kind, element):
+    """Fill the strain matrices of an element from its corners; kind : of ``KINDS``.  The number of its points, 1 or 8."""
+    x, mean, B, weight, inverse, _ = element
     volume = 0.0
     mean[:, :] = 0.0
     for g in range(8):
@@ -179,8 +186,7 @@ def gradient_modes(y, z):
 
     Returns
     -------
-    b : 6 floats [m2]
-        64 times the integral of the gradient of shape function I along x is sum_k b_k h_k(I).
+    b : (6,) [m2]: 64 times the integral of the gradient of shape function I along x is sum_k b_k h_k(I)
 
     Notes
     -----

@@ -31,11 +31,11 @@ CORNERS = np.array(
 BLOCK = 65536
 
 
-def _points(value: object) -> np.ndarray:
+def floats(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.float64)
 
 
-def _cells(value: object) -> np.ndarray:
+def integers(value: object) -> np.ndarray:
     return np.ascontiguousarray(value, dtype=np.int64)
 
 
@@ -64,8 +64,8 @@ class HexMesh:
     facet_sets : name -> (k, 2) int64, cell and local face, ascending
     """
 
-    points: np.ndarray = attrs.field(converter=_points)
-    cells: np.ndarray = attrs.field(converter=_cells)
+    points: np.ndarray = attrs.field(converter=floats)
+    cells: np.ndarray = attrs.field(converter=integers)
     node_sets: dict[str, np.ndarray] = attrs.field(factory=dict, converter=_node_sets, repr=False)
     facet_sets: dict[str, np.ndarray] = attrs.field(factory=dict, converter=_facet_sets, repr=False)
 
@@ -115,8 +115,7 @@ class HexMesh:
 
     def cell_volumes(self) -> np.ndarray:
         """(m,) volumes [m3] by 2 x 2 x 2 Gauss points, which is exact: the determinant is quadratic in each coordinate."""
-        gauss = CORNERS / np.sqrt(3.0)
-        slopes = _slopes(gauss).reshape(24, 8)
+        slopes = shape_slopes(CORNERS / np.sqrt(3.0)).swapaxes(1, 2).reshape(24, 8)
         out = np.empty(len(self.cells))
         for first in range(0, len(out), BLOCK):
             corner = self.points[self.cells[first : first + BLOCK]]
@@ -205,13 +204,12 @@ def nodes_of(cells: np.ndarray, facets: np.ndarray) -> np.ndarray:
     return np.unique(cells[facets[:, :1], FACES[facets[:, 1]]])
 
 
-def _slopes(local: np.ndarray) -> np.ndarray:
-    """(g, 3, 8) derivatives of the trilinear shape functions at local coordinates (g, 3)."""
-    factors = 1.0 + local[:, None, :] * CORNERS[None]
-    out = np.empty((len(local), 3, 8))
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        out[:, i] = CORNERS[:, i] * factors[:, :, j] * factors[:, :, k] / 8.0
+def shape_slopes(at: np.ndarray) -> np.ndarray:
+    """(p, 8, 3) derivatives of the shape functions along xi, eta, zeta at points (p, 3) of the reference cube."""
+    parts = 1.0 + at[:, None, :] * CORNERS
+    out = np.empty((len(at), 8, 3))
+    for k in range(3):
+        out[:, :, k] = CORNERS[:, k] * parts[:, :, (k + 1) % 3] * parts[:, :, (k + 2) % 3] / 8.0
     return out
 
 

@@ -63,7 +63,7 @@ class Outline:
         return np.column_stack([x, np.interp(x, *line.T)])
 
 
-def plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> Outline:
+def _plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> Outline:
     """A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m]."""
     half = 0.5 * width
     return Outline(
@@ -74,7 +74,7 @@ def plain_outline(seat: float, land: float, width: float, ends: tuple[float, flo
     )
 
 
-def polygon_outline(
+def _polygon_outline(
     key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
 ) -> Outline:
     """The outline that a polygon of the whole section, groove not yet cut, stands for.
@@ -351,7 +351,7 @@ class RingShape:
         if self.profile is not None:
             return self.profile
         reach = self.groove * sin(self.edge)
-        return plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
+        return _plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
 
     @property
     def wall(self) -> float:
@@ -541,7 +541,7 @@ def _groove(bearing: Any, inner: bool) -> Tables:
 def _profile_ring(bearing: Any, key: str, inner: bool) -> RingShape:
     """A ring whose section the user gives."""
     groove = _groove(bearing, inner)
-    outline = polygon_outline(
+    outline = _polygon_outline(
         f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
     )
     radii, lands = outline.seat[:, 1], np.r_[outline.left[-1, 1], outline.right[0, 1]]

@@ -31,7 +31,7 @@ _STEP = 1e-5
 
 
 @attrs.frozen(eq=False)
-class Turned:
+class _Turned:
     """Tangential resultants of a ball's gyroscopic moment.
 
     Attributes
@@ -58,7 +58,7 @@ class Gyroscopic:
 
     Notes
     -----
-    ``raceway.core.ring.kernels.tangential.add_gyroscopic`` has the equations: T = share M / D at both contacts along the grooves, M a
+    ``raceway.core.ring.kernels.tangential`` (``_add_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
     function of both contact angles; the inner race takes no more than its normal force, the outer one the rest.
     """
 
@@ -68,7 +68,7 @@ class Gyroscopic:
     diameter: float
     groove: float
 
-    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: ContactState) -> Turned:
+    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: ContactState) -> _Turned:
         """At places D (2,) of the ball in both grooves; pressed : the inner contact."""
         si, so = float(np.hypot(*inner)), float(np.hypot(*outer))
         ni, no = -inner / si, outer / so
@@ -99,7 +99,7 @@ class Gyroscopic:
         stiffness[:2] = np.outer(ti, by_place[0]) - pull[0] * np.outer(ni, angle[0])
         stiffness[2:] = -np.outer(to, by_place[1]) + pull[1] * np.outer(no, angle[1])
         force = np.concatenate([-pull[0] * ti, pull[1] * to])
-        return Turned(force, stiffness, self.groove * pull[0], self.groove * by_place[0])
+        return _Turned(force, stiffness, self.groove * pull[0], self.groove * by_place[0])
 
     def _moment(self, inner: float, outer: float) -> float:
         return float(gyroscopic_moment(inner, outer, self.ratio, self.scale))

@@ -100,8 +100,8 @@ class Friction:
             if not (breaks.any() or stops.any()):
                 break
             if iteration > _WHOLE:
-                breaks, stops = _one(breaks, np.abs(traction) - bound), stops & ~breaks.any()
-                stops = _one(stops, -sliding * excess)
+                breaks, stops = only_largest(breaks, np.abs(traction) - bound), stops & ~breaks.any()
+                stops = only_largest(stops, -sliding * excess)
             sliding = np.where(breaks, np.sign(traction).astype(np.int64), np.where(stops, 0, sliding))
         else:
             raise ConvergenceError(f"the points that slip were not found after {_LIMIT} exchanges")
@@ -138,8 +138,8 @@ class Friction:
         return np.asarray(dpotrs(self._lower, right, lower=1)[0])
 
 
-def _one(flags: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Only the largest of the flagged ones."""
+def only_largest(flags: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Only that of the flagged ones whose value is largest."""
     out = np.zeros_like(flags)
     if flags.any():
         out[np.argmax(np.where(flags, values, -np.inf))] = True

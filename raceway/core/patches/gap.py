@@ -10,23 +10,32 @@ point at angle phi and latitude l lies at
 and its gap is g = R_g - rho with rho = hypot(hypot(R, y) - R_c, z); s = -1 on the inner race, 1 on the outer one.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.signatures import CUBE, MATRIX, VECTOR
+from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 INDEX = int64[::1]
 
 
-@jit(void(float64, float64, VECTOR, MATRIX, MATRIX, MATRIX))
-def sphere_in_torus(axial, radial, geometry, meridian, parallel, gap):
-    """gap (m, n) [m] of every point.
+class Points(NamedTuple):
+    """Of a sphere in a groove: geometry (4,) s, R_g, R_c, R_b, meridian (2, m) cosine and sine of phi, parallel (2, n) of l."""
 
-    Parameters
-    ----------
-    geometry : (4,) s, R_g, R_c, R_b;  meridian : (2, m) cosine and sine of phi;  parallel : (2, n) of l
-    """
+    geometry: np.ndarray
+    meridian: np.ndarray
+    parallel: np.ndarray
+
+
+_POINTS = record(Points, VECTOR, MATRIX, MATRIX)
+
+
+@jit(void(float64, float64, _POINTS, MATRIX))
+def sphere_in_torus(axial, radial, points, gap):
+    """gap (m, n) [m] of every point."""
+    geometry, meridian, parallel = points
     sense, groove, circle, ball = geometry[0], geometry[1], geometry[2], geometry[3]
     for i in range(parallel.shape[1]):
         size = sense * ball * parallel[0, i]
@@ -38,14 +47,15 @@ def sphere_in_torus(axial, radial, geometry, meridian, parallel, gap):
             gap[k, i] = groove - np.sqrt(u * u + z * z)
 
 
-@jit(void(float64, float64, VECTOR, MATRIX, MATRIX, INDEX, VECTOR, MATRIX, VECTOR))
-def derivatives(axial, radial, geometry, meridian, parallel, nodes, load, slope, curved):
+@jit(void(float64, float64, _POINTS, INDEX, VECTOR, MATRIX, VECTOR))
+def derivatives(axial, radial, points, nodes, load, slope, curved):
     """slope (n, 2): derivatives of chosen points' gaps by D; curved (3,): aa, ar, rr of sum(load * second derivatives).
 
     Parameters
     ----------
     nodes : (n,) numbers k * columns + i;  load : (n,)
     """
+    geometry, meridian, parallel = points
     sense, circle, ball = geometry[0], geometry[2], geometry[3]
     columns = parallel.shape[1]
     curved[0], curved[1], curved[2] = 0.0, 0.0, 0.0

@@ -17,7 +17,8 @@ import attrs
 import numpy as np
 
 from raceway.core.mesh.ring_mesh import RingShape
-from raceway.core.revolution.body import FreeBall, cached_compliance, free_ball, groove_compliance
+from raceway.core.patches.gap import Points
+from raceway.core.revolution.body import BallMesh, Revolution, free_ball, groove_compliance
 from raceway.core.revolution.sections import dofs, graded_profile
 from raceway.errors import MeshError
 
@@ -73,7 +74,7 @@ class Spacing:
         return attrs.evolve(self, columns=max(self.columns, ceil(widest / self.across)))
 
 
-def race_divisions(centre_radius: float, groove: float, sense: float, angle: float, across: float, balls: int) -> int:
+def _race_divisions(centre_radius: float, groove: float, sense: float, angle: float, across: float, balls: int) -> int:
     """Points around a race so that they lie ``across`` [m] apart at a contact angle; a multiple of the balls."""
     circle = 2.0 * pi * (centre_radius + sense * groove * cos(angle))
     return balls * max(round(circle / across / balls), 1)
@@ -150,29 +151,27 @@ class Patch:
 
     Attributes
     ----------
-    ball, race
-    area : of a surface point [m2]
+    area : of a surface point [m2];  phi : (m,) angle of every row on the ball [rad];  points : for kernels
     """
 
     ball: Ball
     race: Race
     area: float
     phi: np.ndarray = attrs.field(init=False)
-    geometry: np.ndarray = attrs.field(init=False)
-    meridian: np.ndarray = attrs.field(init=False)
-    parallel: np.ndarray = attrs.field(init=False)
+    points: Points = attrs.field(init=False)
 
-    def __attrs_post_init__(self) -> None:
-        race, ball = self.race, self.ball
+    @phi.default
+    def _phi(self) -> np.ndarray:
+        race = self.race
         middle = race.angle[race.anchor]
-        # The angle on the ball of every row; frozen: set once.
-        phi = middle + (race.angle - middle) * race.groove / ball.radius
-        object.__setattr__(self, "phi", phi)
-        object.__setattr__(
-            self, "geometry", np.array([race.sense, race.groove, race.centre_radius, ball.radius], dtype=float)
-        )
-        object.__setattr__(self, "meridian", np.ascontiguousarray([np.cos(phi), np.sin(phi)]))
-        object.__setattr__(self, "parallel", np.ascontiguousarray([np.cos(ball.latitude), np.sin(ball.latitude)]))
+        return middle + (race.angle - middle) * race.groove / self.ball.radius
+
+    @points.default
+    def _points(self) -> Points:
+        race, ball = self.race, self.ball
+        geometry = np.array([race.sense, race.groove, race.centre_radius, ball.radius], dtype=float)
+        meridian, parallel = (np.ascontiguousarray([np.cos(x), np.sin(x)]) for x in (self.phi, ball.latitude))
+        return Points(geometry, meridian, parallel)
 
     @property
     def rows(self) -> int:
@@ -229,15 +228,15 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     middle = 0.5 * (ring.window[0] + ring.window[1])
     finest = min(spacing.along, spacing.across)
     section = graded_profile(shape, spacing.along, ring.window, finest, ring.solid.bulk)
-    count = race_divisions(shape.centre_r, shape.groove, sense, middle, spacing.across, balls)
+    count = _race_divisions(shape.centre_r, shape.groove, sense, middle, spacing.across, balls)
     columns, rows = 2 * spacing.columns + 1, len(section.race)
     neighbours = np.arange(1, balls // 2 + 1) * (count // balls)
     steps = np.concatenate([np.arange(columns), neighbours])
     load = dofs(section.race)
     label = f"{'inner' if sense < 0.0 else 'outer'} ring, {count} x {len(section.quads)} elements, {rows} rows of points"
-    full = cached_compliance(
-        label, section, count, ring.solid.young, ring.solid.poisson, load, load, steps, ring.solid.formulation, ring.seat
-    )
+    solid = ring.solid
+    body = Revolution(section, count, solid.young, solid.poisson, formulation=solid.formulation, seat=ring.seat)
+    full = body.cached_compliance(label, load, load, steps)
     normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial
     near = _projected(full[:columns], normal)
     along = np.array([-normal[1], normal[0]])
@@ -262,19 +261,18 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     steps = np.append(np.arange(rows), spacing.ball_divisions // 2)
     finest = min(spacing.along, spacing.across)
 
-    def found(components: tuple[int, ...]) -> FreeBall:
-        return free_ball(
-            radius, solid.poisson, spacing.ball_divisions, spacing.across, (spacing.columns - 0.5) * spacing.across, finest, solid.bulk,
-            steps, components, solid.formulation,
-        )  # fmt: skip
-
-    pressed = found((0, 2))
-    assert len(pressed.latitudes) == 2 * spacing.columns + 1
-    normal = np.array([np.cos(pressed.latitudes), np.sin(pressed.latitudes)])
-    near = _projected(pressed.compliance(radius, solid.young), normal)
-    middle = len(pressed.latitudes) // 2
-    around = np.ascontiguousarray(found((1,)).compliance(radius, solid.young)[:-1]) if shear else None
-    return Ball(radius, pressed.latitudes, np.ascontiguousarray(near[:-1]), float(near[-1, middle, middle]), around)
+    half_width = (spacing.columns - 0.5) * spacing.across
+    mesh = BallMesh(spacing.ball_divisions, spacing.across, half_width, finest, solid.bulk)
+    along_normal = free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
+    assert len(along_normal.latitudes) == 2 * spacing.columns + 1
+    normal = np.array([np.cos(along_normal.latitudes), np.sin(along_normal.latitudes)])
+    near = _projected(along_normal.compliance(radius, solid.young), normal)
+    middle = len(along_normal.latitudes) // 2
+    opposite, around = float(near[-1, middle, middle]), None
+    if shear:
+        rolling = free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
+        around = np.ascontiguousarray(rolling.compliance(radius, solid.young)[:-1])
+    return Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
 
 
 def _projected(full: np.ndarray, normal: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.linalg.lapack import dpotrf, dpotrs
 
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.patches.friction import Friction, Traction
+from raceway.core.patches.friction import Friction, Traction, only_largest
 from raceway.core.patches.gap import between, derivatives, displaced, sphere_in_torus
 from raceway.core.patches.patch import Patch
 from raceway.errors import ConvergenceError, RacewayError
@@ -148,7 +148,7 @@ class PointLaw:
 
 
 @attrs.frozen(eq=False)
-class LawState:
+class _LawState:
     """Points that carry something.
 
     Attributes
@@ -160,7 +160,7 @@ class LawState:
     nodes: np.ndarray
     load: np.ndarray
     gap: np.ndarray
-    lower: Any
+    lower: tuple[np.ndarray, bool] | None
     viscous: np.ndarray
     iterations: int
 
@@ -169,7 +169,7 @@ class LawState:
         return cho_solve(self.lower, right, check_finite=False) if len(self.nodes) else np.zeros_like(right)
 
 
-def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: Factor) -> LawState:
+def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: Factor) -> _LawState:
     """Pressures at gaps (rows * columns,) that change at rates of the same shape.
 
     Parameters
@@ -189,7 +189,7 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     """
     near = np.flatnonzero(gap < 0.0)
     if not len(near):
-        return LawState(near, np.zeros(0), np.zeros(0), None, np.zeros(0), 0)
+        return _LawState(near, np.zeros(0), np.zeros(0), None, np.zeros(0), 0)
     compliance = factor.block(near, near)
     g, v = gap[near], np.ascontiguousarray(rate[near])
     depth = abs(g.min())
@@ -207,8 +207,7 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
         active = np.flatnonzero(by_gap < 0.0)
         more = np.zeros(len(near))
         if len(active):
-            lower = _factor(compliance, active, -by_gap[active])
-            more[active] = -cho_solve(lower, residual[active], check_finite=False)
+            more[active] = -cho_solve(_factor(compliance, active, -by_gap[active]), residual[active], check_finite=False)
         step = residual + compliance @ more
         part = 1.0 if now < before else 0.5
         w = w + part * step
@@ -220,13 +219,14 @@ def by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, 
     active = np.flatnonzero((load > 0.0) & (by_gap < 0.0))
     stiff = -by_gap[active]
     lower = _factor(compliance, active, stiff) if len(active) else None
-    return LawState(near[active], load[active], w[active], lower, by_rate[active] / stiff, count)
+    return _LawState(near[active], load[active], w[active], lower, by_rate[active] / stiff, count)
 
 
-def _factor(compliance: np.ndarray, active: np.ndarray, stiff: np.ndarray) -> Any:
+def _factor(compliance: np.ndarray, active: np.ndarray, stiff: np.ndarray) -> tuple[np.ndarray, bool]:
     matrix = compliance[np.ix_(active, active)]
     matrix[np.diag_indices(len(active))] += 1.0 / stiff
-    return cho_factor(matrix, lower=True, check_finite=False)
+    factor: tuple[np.ndarray, bool] = cho_factor(matrix, lower=True, check_finite=False)
+    return factor
 
 
 #: Iterations with whole exchanges, after which only the worst point is exchanged, and their largest number.
@@ -235,7 +235,7 @@ _WHOLE, _UNILATERAL_LIMIT = 25, 400
 _ROUNDING = 1e-10
 
 
-def active_set(gap: np.ndarray, start: np.ndarray, factor: Factor) -> tuple[np.ndarray, np.ndarray, int]:
+def _active_set(gap: np.ndarray, start: np.ndarray, factor: Factor) -> tuple[np.ndarray, np.ndarray, int]:
     """Points in contact (n,), ascending, their loads (n,) [N], and the number of iterations.
 
     Parameters
@@ -271,17 +271,9 @@ def active_set(gap: np.ndarray, start: np.ndarray, factor: Factor) -> tuple[np.n
         if not (pulls.any() or joins.any()):
             return nodes, load, iteration
         if iteration > _WHOLE:
-            pulls, joins = _worst(pulls, load), _worst(joins, depth) if not pulls.any() else np.zeros_like(joins)
+            pulls, joins = only_largest(pulls, -load), only_largest(joins & ~pulls.any(), -depth)
         nodes = np.sort(np.concatenate([nodes[~pulls], outside[joins]]))
     raise ConvergenceError(f"the points in contact were not found after {_UNILATERAL_LIMIT} exchanges")
-
-
-def _worst(flags: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Only the most negative of the flagged ones."""
-    out = np.zeros_like(flags)
-    if flags.any():
-        out[np.argmin(np.where(flags, values, np.inf))] = True
-    return out
 
 
 class BeyondPatch(RacewayError):
@@ -380,18 +372,18 @@ class Contact:
         """
         patch = self.patch
         axial, radial = float(position[0]), float(position[1])
-        sphere_in_torus(axial, radial, patch.geometry, patch.meridian, patch.parallel, self._gap)
+        sphere_in_torus(axial, radial, patch.points, self._gap)
         gap = self._gap.reshape(-1)
         if not (gap < 0.0).any():
             return self._open(position, slipping)
         if self.law is None:
-            nodes, load, count = active_set(gap, self._nodes, self._factor)
+            nodes, load, count = _active_set(gap, self._nodes, self._factor)
             solve = lambda right: self._factor.solve(nodes, right)  # noqa: E731
             state, penetration = None, 0.0
         else:
             every = np.arange(len(gap))
             speed = self._derivatives(every, np.zeros(len(gap)), axial, radial)[0] @ rate
-            state = by_law(gap, speed, self.law, self._depth, self._factor)
+            state = _by_law(gap, speed, self.law, self._depth, self._factor)
             nodes, load, count, solve = state.nodes, state.load, state.iterations, state.solve
             penetration = float(-state.gap.min(initial=0.0))
         self.iterations += count
@@ -463,15 +455,12 @@ class Contact:
     def _derivatives(
         self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        patch = self.patch
         slope, curved = np.empty((len(nodes), 2)), np.empty(3)
-        derivatives(
-            axial, radial, patch.geometry, patch.meridian, patch.parallel, nodes, np.ascontiguousarray(load), slope, curved
-        )
+        derivatives(axial, radial, self.patch.points, nodes, np.ascontiguousarray(load), slope, curved)
         return slope, curved[[0, 1, 1, 2]].reshape(2, 2)
 
     @staticmethod
-    def _viscous(state: LawState | None, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
+    def _viscous(state: _LawState | None, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
         if state is None or not state.viscous.any():
             return np.zeros((2, 2))
         return -held.T @ (state.viscous[:, None] * slope)

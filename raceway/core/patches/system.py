@@ -14,23 +14,8 @@ from raceway.core.patches.friction import Traction
 from raceway.core.patches.patch import Patch
 from raceway.core.patches.pressure import BeyondPatch, Contact, PointLaw
 from raceway.core.record import Record
-from raceway.core.ring.kernels.layout import (
-    BALL_OVER_PITCH,
-    CENTRIFUGAL,
-    DAMPING,
-    DIAMETER,
-    FRICTION,
-    GYROSCOPIC,
-    LEVER,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OUTER_SHARE,
-    SHARE_INNER,
-    SHARE_OUTER,
-    SIDE,
-    TILT_ARM,
-    place,
-)
+from raceway.core.ring.kernels import layout
+from raceway.core.ring.kernels.layout import place
 from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
 from raceway.core.ring.system import SteppedRing
 from raceway.core.signatures import Constants
@@ -132,7 +117,7 @@ _WIDER = 12
 
 
 @attrs.define(eq=False)
-class Row:
+class _Row:
     """The balls' solver of one system and where it was last.
 
     Attributes
@@ -193,7 +178,7 @@ class Pool:
         friction: float = 0.0,
     ) -> None:
         self.generations, self.laws, self._wider, self.friction = [patches], laws, wider, friction
-        self._rows: dict[tuple[bool, tuple[float, ...]], Row] = {}
+        self._rows: dict[tuple[bool, tuple[float, ...]], _Row] = {}
 
     @property
     def patches(self) -> tuple[Patch, Patch]:
@@ -205,17 +190,17 @@ class Pool:
         """Of the balls [m]."""
         return 2.0 * self.patches[0].ball.radius
 
-    def row(self, table: np.ndarray, with_friction: bool = False) -> Row:
+    def row(self, table: np.ndarray, with_friction: bool = False) -> _Row:
         """The solver for the balls of a system's ``table``; ``with_friction``: with friction."""
-        key = with_friction, tuple(table[:, CENTRIFUGAL].tolist())
+        key = with_friction, tuple(table[:, layout.CENTRIFUGAL].tolist())
         if key not in self._rows:
             z = len(table)
             both, friction = zip(self.patches, self.laws, strict=True), self.friction if with_friction else 0.0
             contacts = [Contact(patch, law, friction) for patch, law in both for _ in range(z)]
             loads = np.zeros((z, 2))
-            loads[:, 1] = table[:, CENTRIFUGAL]
+            loads[:, 1] = table[:, layout.CENTRIFUGAL]
             balls = Balls(contacts, self._coupling(z), loads, STEP * self.diameter)
-            self._rows[key] = Row(balls, np.zeros((2 * z, 2)))
+            self._rows[key] = _Row(balls, np.zeros((2 * z, 2)))
         return self._rows[key]
 
     def widened(self, solve: Callable[[], T]) -> T:
@@ -255,6 +240,22 @@ class Pool:
         return out.reshape(4 * z, 4 * z)
 
 
+@attrs.frozen(eq=False)
+class _Grooves:
+    """The inner grooves at every ball.
+
+    Attributes
+    ----------
+    centre, velocity : (Z, 2) of the groove centres [m, m/s];  jacobian : (2 Z, 5) derivatives of ``centre`` by q
+    turning : (Z, 5) turn of the ring's section by q
+    """
+
+    centre: np.ndarray
+    jacobian: np.ndarray
+    velocity: np.ndarray
+    turning: np.ndarray
+
+
 _LIMIT = 60
 #: Balls' residual over the largest contact force at which they are in equilibrium.
 _BALLS = 1e-11
@@ -285,17 +286,17 @@ class PatchSystem(SteppedRing):
 
     @property
     def conservative(self) -> bool:
-        return self.pool.friction == 0.0 and self.scalars[GYROSCOPIC] == 0.0
+        return self.pool.friction == 0.0 and self.scalars[layout.GYROSCOPIC] == 0.0
 
     @property
     def gyroscopic(self) -> Gyroscopic | None:
         """Moments of the balls, where the scene has them."""
         s = self.scalars
-        if s[GYROSCOPIC] == 0.0:
+        if s[layout.GYROSCOPIC] == 0.0:
             return None
         groove = self.pool.patches[0].race.groove
         return Gyroscopic(
-            float(s[GYROSCOPIC]), float(s[BALL_OVER_PITCH]), (float(s[SHARE_INNER]), float(s[SHARE_OUTER])), float(s[DIAMETER]),
+            float(s[layout.GYROSCOPIC]), float(s[layout.BALL_OVER_PITCH]), (float(s[layout.SHARE_INNER]), float(s[layout.SHARE_OUTER])), float(s[layout.DIAMETER]),
             groove,
         )  # fmt: skip
 
@@ -306,7 +307,7 @@ class PatchSystem(SteppedRing):
     @property
     def with_friction(self) -> bool:
         """Whether friction acts where its history is known."""
-        return self.pool.friction > 0.0 and bool(self.scalars[FRICTION] > 0.0)
+        return self.pool.friction > 0.0 and bool(self.scalars[layout.FRICTION] > 0.0)
 
     def evaluate(
         self,
@@ -328,18 +329,17 @@ class PatchSystem(SteppedRing):
         dt, gain = step.dt, step.gain
         with_friction = self.with_friction and ball is not None  # without a history nothing sticks
         row = self.pool.row(self.table, with_friction)
-        centre, jacobian, velocity = self._groove(q, v, t)
-        where = self._places(centre, ball)
+        grooves = self._grooves(q, v, t)
+        where = self._places(grooves.centre, ball)
         moving = bool(v.any()) or ball_rate is not None
-        rate = self._rates(row, velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
-        turning = self._turning(t)
-        loads = AppliedLoads(turning @ q, gyroscopic=self.gyroscopic)
+        rate = self._rates(row, grooves.velocity, where, ball_rate, gain) if moving else np.zeros((2 * self.ball_count, 2))
+        loads = AppliedLoads(grooves.turning @ q, gyroscopic=self.gyroscopic)
         if with_friction and ball is not None:
             loads = attrs.evolve(loads, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
         if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
             loads = history.with_inertia(loads, self.ball_mass, dt, gain, ball_rate[:, :2])
-        where, now = row.settle(centre, where, rate, _BALLS, loads)
-        answer = self._answer(row.balls, centre, jacobian, turning, where, rate, now)
+        where, now = row.settle(grooves.centre, where, rate, _BALLS, loads)
+        answer = self._answer(row.balls, grooves, where, rate, now)
         ball_velocity = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
         after = history.after(
@@ -354,16 +354,14 @@ class PatchSystem(SteppedRing):
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
 
-        def found() -> np.ndarray:
+        def smoothed() -> np.ndarray:
             self._evaluate(np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, AT_ONCE)
             row = self.pool.row(self.table, self.with_friction)
-            _, jacobian, _ = self._groove(q, np.zeros(5), 0.0)
             assert row.last is not None
-            return self._stiffness(
-                row.balls, row.balls.smoothed_stiffness(row.last, row.centre, row.where), jacobian, self._turning(0.0)
-            )
+            state = row.balls.smoothed_stiffness(row.last, row.centre, row.where)
+            return self._stiffness(row.balls, state, self._grooves(q, np.zeros(5), 0.0))
 
-        return self.pool.widened(found)
+        return self.pool.widened(smoothed)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -396,10 +394,10 @@ class PatchSystem(SteppedRing):
         return q, ball, count
 
     def stress_free_slip(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
-        still = self.without(FRICTION)
+        still = self.without(layout.FRICTION)
         still.evaluate(q, ball=ball, t=t)
         row = self.pool.row(self.table)
-        turn = self._turning(t) @ q
+        turn = self._grooves(q, np.zeros(5), t).turning @ q
         assert row.last is not None
         places = [
             contact.along(position, float(turn[k % self.ball_count]))
@@ -416,7 +414,7 @@ class PatchSystem(SteppedRing):
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
         first = attrs.evolve(self.surrogate, load=self.load / parts)
         q_part, ball, _ = first.settle(q)
-        if not self.table[:, CENTRIFUGAL].any():
+        if not self.table[:, layout.CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0
         for part in range(1, parts + 1):
@@ -433,10 +431,10 @@ class PatchSystem(SteppedRing):
         balls = row.balls
         still = np.zeros((2 * self.ball_count, 2))
         q = q.copy()
-        centre, jacobian, _ = self._groove(q, none, 0.0)
-        where, force = self._places(centre, ball), np.zeros((2 * self.ball_count, 2))
-        turning, gyroscopic = self._turning(0.0), self.gyroscopic
-        now = balls.linear(centre, where, force, still, AppliedLoads(turning @ q, gyroscopic=gyroscopic))
+        grooves, gyroscopic = self._grooves(q, none, 0.0), self.gyroscopic
+        jacobian, turning = grooves.jacobian, grooves.turning
+        where, force = self._places(grooves.centre, ball), np.zeros((2 * self.ball_count, 2))
+        now = balls.linear(grooves.centre, where, force, still, AppliedLoads(turning @ q, gyroscopic=gyroscopic))
         weight = np.array([1.0, 1.0, 1.0, 1.0 / self.arm, 1.0 / self.arm]) * self.free
         limit = STEP * self.pool.diameter
         free = self.free > 0.0
@@ -448,10 +446,10 @@ class PatchSystem(SteppedRing):
             scale = float(np.abs(now.force[: self.ball_count]).sum() + np.abs(load * weight).sum())
             relative = size / max(scale, 1e-300)
             if relative <= tolerance or (relative <= 1e3 * tolerance and size >= best):
-                row.force, row.last, row.centre, row.where = now.force, now, centre, where
+                row.force, row.last, row.centre, row.where = now.force, now, grooves.centre, where
                 return q, where, iteration
             best = min(best, size)
-            tangent = self._stiffness(balls, now, jacobian, turning) + self.stiffness
+            tangent = self._stiffness(balls, now, grooves) + self.stiffness
             dq = np.zeros(5)
             matrix = self.reduced(tangent)
             matrix += 1e-12 * max(np.trace(matrix), 1.0) * np.eye(len(matrix))
@@ -464,9 +462,9 @@ class PatchSystem(SteppedRing):
             before = size
             for _ in range(6):
                 trial_q = q + part * dq
-                centre, _, _ = self._groove(trial_q, none, 0.0)
+                grooves = self._grooves(trial_q, none, 0.0)
                 loads = AppliedLoads(turning @ trial_q, gyroscopic=gyroscopic)
-                trial = balls.linear(centre, where + part * step, force + part * change, still, loads)
+                trial = balls.linear(grooves.centre, where + part * step, force + part * change, still, loads)
                 out = jacobian.T @ trial.force[: self.ball_count].reshape(-1) + turning.T @ trial.couple
                 out += self.stiffness @ trial_q - load
                 if max(float(np.abs(out * weight).max()), balls.residual(trial)) < 2.0 * before:
@@ -484,31 +482,30 @@ class PatchSystem(SteppedRing):
         return [] if last is None else last.contact_states
 
     def _answer(
-        self, balls: Balls, centre: np.ndarray, jacobian: np.ndarray, turning: np.ndarray, where: np.ndarray, rate: np.ndarray,
-        now: LinearisedBalls,
-    ) -> Evaluation:  # fmt: skip
+        self, balls: Balls, grooves: _Grooves, where: np.ndarray, rate: np.ndarray, now: LinearisedBalls
+    ) -> Evaluation:
         force = now.force + now.excess  # of pressures, friction and gyroscopic moments
         pressures = np.array([state.force if state.traction_state is None else state.normal for state in now.contact_states])
         size = np.hypot(pressures[:, 0], pressures[:, 1])
         viscous = np.zeros((4 * self.ball_count, 4 * self.ball_count))
         for k, state in enumerate(now.contact_states):
             block = state.viscous
-            if self.scalars[DAMPING] > 0.0 and size[k] > 0.0:
+            if self.scalars[layout.DAMPING] > 0.0 and size[k] > 0.0:
                 normal = pressures[k] / size[k]
-                dashpot = self.scalars[DAMPING] * np.outer(normal, normal)
+                dashpot = self.scalars[layout.DAMPING] * np.outer(normal, normal)
                 pull = -float(normal @ dashpot @ rate[k])
                 if size[k] + pull > 0.0:
                     force[k] += pull * normal
                     size[k] += pull
                     block = block + dashpot
             viscous[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = block
-        along = balls.slip(now) @ jacobian
+        along = balls.slip(now) @ grooves.jacobian
         inner = force[: self.ball_count]
-        reach = np.concatenate([centre - where, where])
-        first_touch = np.repeat([self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]], self.ball_count)
+        reach = np.concatenate([grooves.centre - where, where])
+        first_touch = np.repeat([self.scalars[layout.OFFSET_INNER], self.scalars[layout.OFFSET_OUTER]], self.ball_count)
         return Evaluation(
-            jacobian.T @ inner.reshape(-1) + turning.T @ now.couple,
-            self._stiffness(balls, now, jacobian, turning),
+            grooves.jacobian.T @ inner.reshape(-1) + grooves.turning.T @ now.couple,
+            self._stiffness(balls, now, grooves),
             along.T @ viscous @ along,
             first_touch - np.hypot(reach[:, 0], reach[:, 1]),
             size,
@@ -517,35 +514,25 @@ class PatchSystem(SteppedRing):
         )
 
     @staticmethod
-    def _stiffness(balls: Balls, now: LinearisedBalls, jacobian: np.ndarray, turning: np.ndarray) -> np.ndarray:
+    def _stiffness(balls: Balls, now: LinearisedBalls, grooves: _Grooves) -> np.ndarray:
         """(5, 5) against motions of the ring."""
         if now.couple_by_place is None:
-            return np.asarray(jacobian.T @ balls.tangent(now) @ jacobian)
-        both = np.concatenate([jacobian, turning])
+            return np.asarray(grooves.jacobian.T @ balls.tangent(now) @ grooves.jacobian)
+        both = np.concatenate([grooves.jacobian, grooves.turning])
         return np.asarray(both.T @ balls.tangent_with_turns(now) @ both)
 
-    def _turning(self, t: float) -> np.ndarray:
-        """(Z, 5) turn of the ring's section at every ball by the ring's motion."""
-        work = np.zeros((3, 2 * self.ball_count))
-        place(float(t), np.zeros(5), np.zeros(5), Constants(self.scalars, self.table), work, (0, 1, 2))
-        out = np.zeros((self.ball_count, 5))
-        out[:, 3], out[:, 4] = (
-            self.table[:, SIDE] * work[0, self.ball_count :],
-            -self.table[:, SIDE] * work[0, : self.ball_count],
-        )
-        return out
-
-    def _groove(self, q: np.ndarray, v: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(Z, 2) inner groove centres, (2 Z, 5) their derivatives by q, (Z, 2) their velocities."""
+    def _grooves(self, q: np.ndarray, v: np.ndarray, t: float) -> _Grooves:
         work = np.zeros((3, 2 * self.ball_count))
         place(float(t), np.ascontiguousarray(q, dtype=float), v, Constants(self.scalars, self.table), work, (0, 1, 2))
         (c, s), centre, velocity = work[0].reshape(2, -1), work[1].reshape(2, -1).T.copy(), work[2].reshape(2, -1).T.copy()
-        side, lever, arm = self.table[:, SIDE], self.table[:, LEVER], self.scalars[TILT_ARM]
-        jacobian = np.zeros((self.ball_count, 2, 5))
+        side, lever = self.table[:, layout.SIDE], self.table[:, layout.LEVER]
+        arm = self.scalars[layout.TILT_ARM]
+        jacobian, turning = np.zeros((self.ball_count, 2, 5)), np.zeros((self.ball_count, 5))
         jacobian[:, 0, 0], jacobian[:, 0, 3], jacobian[:, 0, 4] = side, side * arm * s, -side * arm * c
         jacobian[:, 1, 1], jacobian[:, 1, 2] = c, s
         jacobian[:, 1, 3], jacobian[:, 1, 4] = -lever * s, lever * c
-        return centre, jacobian.reshape(-1, 5), velocity
+        turning[:, 3], turning[:, 4] = side * s, -side * c
+        return _Grooves(centre, jacobian.reshape(-1, 5), velocity, turning)
 
     def _places(self, centre: np.ndarray, ball: np.ndarray | None) -> np.ndarray:
         """(Z, 2) first guess of the balls' places; rows of zeros are guessed from the groove centres."""
@@ -553,14 +540,14 @@ class PatchSystem(SteppedRing):
         unknown = ~out.any(axis=1)
         if unknown.any():
             reach = np.hypot(centre[:, 0], centre[:, 1])
-            li, lo = self.scalars[OFFSET_INNER], self.scalars[OFFSET_OUTER]
+            li, lo = self.scalars[layout.OFFSET_INNER], self.scalars[layout.OFFSET_OUTER]
             over = reach - li - lo
-            share = np.where(over > 0.0, (lo + self.table[:, OUTER_SHARE] * over) / reach, lo / (li + lo))
+            share = np.where(over > 0.0, (lo + self.table[:, layout.OUTER_SHARE] * over) / reach, lo / (li + lo))
             out[unknown] = (share[:, None] * centre)[unknown]
         return out
 
     def _rates(
-        self, row: Row, velocity: np.ndarray, where: np.ndarray, ball_rate: np.ndarray | None, gain: float
+        self, row: _Row, velocity: np.ndarray, where: np.ndarray, ball_rate: np.ndarray | None, gain: float
     ) -> np.ndarray:
         """(2 Z, 2) velocities of the balls seen from both grooves; balls follow the ring where no rate is given."""
         if ball_rate is not None:
@@ -568,5 +555,5 @@ class PatchSystem(SteppedRing):
         elif row.last is not None:
             ball = (row.balls.follow(row.last) @ velocity.reshape(-1)).reshape(-1, 2)
         else:
-            ball = self.table[:, [OUTER_SHARE]] * velocity
+            ball = self.table[:, [layout.OUTER_SHARE]] * velocity
         return np.concatenate([ball - velocity, ball])

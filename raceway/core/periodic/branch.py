@@ -158,10 +158,8 @@ class Branch:
         path, dp = solved.path, size * here.tangent[-1] * self.unit
         # Predictor: the last linearised problem carries the tangent at the start through the span; the last correction, which it
         # adds once more, is far below the tolerance.
-        dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
-        first = size * self.displacement(here)
-        spread(solved.problem.free, solved.eliminated, first, dp, Change(dq, dv, da))
-        moved = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da, ball=path.ball.copy(), rate=path.rate.copy())
+        moved, _ = _moved(path, solved.problem.free, solved.eliminated, size * self.displacement(here), dp)
+        moved = attrs.evolve(moved, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
         path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
         estimated = self._estimate(last, tangent)
@@ -181,8 +179,7 @@ class Branch:
         folded = tangent[-1] * here.tangent[-1] < 0.0
         off = np.abs([path.q[0] - moved.q[0], path.v[0] - moved.v[0]]) / last.problem.weight
         deviation = float(off.max()) / max(last.size, 1e-300)
-        free = last.problem.free
-        state = np.concatenate([(path.q[0] - moved.q[0])[free], (path.v[0] - moved.v[0])[free]]) / self.length
+        state = (path.state(0, last.problem.free) - moved.state(0, last.problem.free)) / self.length
         strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
         return Point(parameter, last, estimated.error, tangent, folded, deviation, strayed, self._order(last, parameter))
 
@@ -264,7 +261,7 @@ class Branch:
             right[: 2 * n, 0] = (span_transfer[:, 2 * n] + gap(problem, path)) / self.length
             right[2 * n, 1] = 1.0
             if predicted is not None:
-                off = np.concatenate([(path.q[0] - predicted[0].q[0])[free], (path.v[0] - predicted[0].v[0])[free]])
+                off = path.state(0, free) - predicted[0].state(0, free)
                 right[2 * n, 0] = -across[: 2 * n] @ off / self.length
                 right[2 * n, 0] -= across[-1] * (parameter - predicted[1]) / self.unit
             try:
@@ -272,15 +269,14 @@ class Branch:
             except np.linalg.LinAlgError as why:
                 raise ConvergenceError("the branch has no single direction here") from why
             first, dp = self.length * solution[: 2 * n, 0], self.unit * solution[2 * n, 0]
-            dq, dv, da = np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a)
-            spread(free, linear, first, dp, Change(dq, dv, da))
-            correction = float(np.abs(dq / problem.weight).max())
+            corrected, change = _moved(path, free, linear, first, dp)
+            correction = float(np.abs(change.q / problem.weight).max())
             if not np.isfinite(correction) or (
                 sweeps > 2 and report[IMBALANCE] > 10.0 * worst and report[IMBALANCE] > 1e-9 * report[FORCE]
             ):
                 raise ConvergenceError("the corrector diverges")
             worst = report[IMBALANCE]
-            path = attrs.evolve(path, q=path.q + dq, v=path.v + dv, a=path.a + da)
+            path = corrected
             parameter += dp
             renew(problem, path, lagging)
             size = float(np.abs(path.v / problem.weight).max())
@@ -290,6 +286,13 @@ class Branch:
                 solved = Solved(problem, path, linear, size, True, sweeps, correction)
                 return path, parameter, tangent, solved
         raise ConvergenceError("the corrector does not converge")
+
+
+def _moved(path: Path, free: np.ndarray, linear: Eliminated, first: np.ndarray, dp: float) -> tuple[Path, Change]:
+    """A path after changes of its first state (2 n,) and of the parameter, and its change."""
+    change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
+    spread(free, linear, first, dp, change)
+    return attrs.evolve(path, q=path.q + change.q, v=path.v + change.v, a=path.a + change.a), change
 
 
 def towards(before: Point, after: Point, parameter: float) -> Path:
@@ -313,7 +316,7 @@ def twice(symmetry: Symmetry) -> Symmetry:
     return Symmetry(2.0 * symmetry.span, turned, 2.0 * symmetry.angle, symmetry.order[symmetry.order], symmetry.pitch)
 
 
-def two_spans(problem: Problem) -> Problem:
+def _two_spans(problem: Problem) -> Problem:
     """The same problem with a period of two spans."""
     return Problem(
         problem.system, problem.speed, twice(problem.symmetry), problem.share, problem.clock, problem.rule, problem.watch
@@ -347,7 +350,7 @@ def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
     values, vectors = np.linalg.eig(point.transfer)
     flip = vectors[:, np.argmin(np.abs(values + 1.0))].real
     at = branch.problem_at
-    longer = attrs.evolve(branch, problem_at=lambda p: two_spans(at(p)), most_intervals=2 * branch.most_intervals)
+    longer = attrs.evolve(branch, problem_at=lambda p: _two_spans(at(p)), most_intervals=2 * branch.most_intervals)
     tangent = np.append(flip / branch.length, 0.0)
     return longer, longer.along(both, point.parameter, tangent / np.linalg.norm(tangent))
 

@@ -29,6 +29,7 @@ from raceway.core.periodic.intervals import (
     differentiate,
     forces,
     newton,
+    renew_rates,
 )
 from raceway.core.ring.kernels.layout import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
 from raceway.core.ring.orbit import States
@@ -49,10 +50,10 @@ class Rule:
     ----------
     points : (s,) in (0, 1)
     velocity, position : (s, s) first and second integrals of the Lagrange polynomials up to each point
-    end : (2, s) the same up to the end of the interval
-    packed : (2 s + 3, s) velocity, position, end and points one below the other, for kernels
-    tried : (e,) further points, tried_values : (e, s) values there from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them (columns 0 to s - 1), then weights of
-        all s + e points for the velocity and the position at the end, then the points themselves in columns 0 to e - 1
+    packed : (2 s + 3, s) velocity, position, the same up to the end of the interval and points one below the other, for kernels
+    tried_values : (e, s) values at e further points from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them
+        (columns 0 to s - 1), then weights of all s + e points for the velocity and the position at the end, then the further points
+        themselves in columns 0 to e - 1
     legendre : (s, s) Legendre coefficients of values at the points
 
     Notes
@@ -70,9 +71,7 @@ class Rule:
     points: np.ndarray
     velocity: np.ndarray
     position: np.ndarray
-    end: np.ndarray
     packed: np.ndarray
-    tried: np.ndarray
     tried_values: np.ndarray
     try_packed: np.ndarray
     legendre: np.ndarray
@@ -95,20 +94,15 @@ def rule(stages: int = STAGES) -> Rule:
     points = 0.5 * (x + 1.0)
     _, velocity, position = integrals(points, points)
     _, v_end, q_end = integrals(points, np.ones(1))
-    end = np.vstack([v_end, q_end])
-    tried = np.array(_TRIED)
+    tried, e = np.array(_TRIED), len(_TRIED)
     values, v_tried, q_tried = integrals(points, tried)
-    both = np.concatenate([points, tried])
-    _, v_all, q_all = integrals(both, np.ones(1))
-    e = len(tried)
+    _, v_all, q_all = integrals(np.concatenate([points, tried]), np.ones(1))
     packed = np.zeros((2 * e + 3, stages + e))
     packed[:e, :stages], packed[e : 2 * e, :stages] = v_tried, q_tried
     packed[2 * e], packed[2 * e + 1], packed[2 * e + 2, :e] = v_all[0], q_all[0], tried
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
-    return Rule(
-        points, velocity, position, end, np.ascontiguousarray(np.vstack([velocity, position, end, points])), tried,
-        values, packed, legendre,
-    )  # fmt: skip
+    both = np.ascontiguousarray(np.vstack([velocity, position, v_end, q_end, points]))
+    return Rule(points, velocity, position, both, values, packed, legendre)
 
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
@@ -335,6 +329,10 @@ class Path:
     def intervals(self) -> int:
         return len(self.nodes) - 1
 
+    def state(self, k: int, free: np.ndarray) -> np.ndarray:
+        """(2 n,) of the unknown coordinates at a node."""
+        return np.concatenate([self.q[k, free], self.v[k, free]])
+
     def samples(self, push: np.ndarray, slope: np.ndarray | None = None) -> Samples:
         """For compiled parts, with outer forces ``push`` (m s, 5) and their derivative ``slope``; zeros for none."""
         by = np.zeros_like(push) if slope is None else slope
@@ -347,16 +345,12 @@ _STIFF = 0.02
 _STEP = 0.1
 
 
-def derivative(problem: Problem, path: Path) -> np.ndarray:
+def _derivative(problem: Problem, path: Path) -> np.ndarray:
     """Rates (m s, Z, r) of the columns that have rates, from the balls' places along the motion."""
-    rated = problem.system.rated_columns
-    order = problem.symmetry.order
-    # Those of the next and of the last span are this one's, renumbered.
-    before, after = path.ball[-2:][:, np.argsort(order)], path.ball[:2][:, order]
-    ball = np.ascontiguousarray(np.concatenate([before, path.ball, after])[:, :, rated])
-    rate = np.empty_like(ball)
-    differentiate(_longer(path.nodes), problem.rule.points, problem.speed, ball, rate)
-    return rate[2:-2]
+    rated = np.array(problem.system.rated_columns)
+    closure, rate = Closure(problem.closing, problem.symmetry.order, rated), path.rate.copy()
+    renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, rate)
+    return rate[:, :, rated]
 
 
 def stiff(problem: Problem, path: Path) -> bool:
@@ -385,7 +379,7 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
     rated = problem.system.rated_columns
-    rates = derivative(problem, path)
+    rates = _derivative(problem, path)
     if solved:
         old = path.rate[:, :, rated]
         rates = old + _solve(problem, path, rates - old)
@@ -513,8 +507,7 @@ class Solved:
 
 def gap(problem: Problem, path: Path) -> np.ndarray:
     """Gap between the end of a path (2 n,) and the rotated state of its beginning: y_m - P y_0 of the unknown states."""
-    first, last = (np.concatenate([path.q[k, problem.free], path.v[k, problem.free]]) for k in (0, -1))
-    return np.asarray(last - problem.closing @ first)
+    return np.asarray(path.state(-1, problem.free) - problem.closing @ path.state(0, problem.free))
 
 
 def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, limit: int = 40) -> Solved:

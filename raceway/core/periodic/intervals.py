@@ -10,13 +10,13 @@ dA = S_y (dq, dq') + S_r + S_p dp, which leaves the transfer (dq, dq')_next = T_
 n unknown coordinates, m intervals, s points an interval, k the number of an interval.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import boolean, float64, int64, types, void
 
-from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import copy_cube, copy_matrix
+from raceway.core.jit import Kernel, jit
+from raceway.core.ring.equilibrium import copy_cube, copy_matrix, eliminate
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.layout import work_rows
 from raceway.core.ring.orbit import STATES
@@ -40,7 +40,7 @@ INDICES = int64[::1]
 
 
 class Equations(NamedTuple):
-    """Compiled forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
+    """Kernel forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
 
     The weight makes moments forces.
     """
@@ -101,7 +101,7 @@ CHANGE = record(Change, MATRIX, MATRIX, MATRIX)
 IMBALANCE, JUMP, FORCE = range(3)
 
 
-class Local(NamedTuple):
+class _Local(NamedTuple):
     """Of one interval: state q, v (5,) at a point, its linear system (s n, s n + 2 n + 2), and its transfer (2 n, 2 n + 2)."""
 
     q: np.ndarray
@@ -110,42 +110,11 @@ class Local(NamedTuple):
     transfer: np.ndarray
 
 
-LOCAL = record(Local, VECTOR, VECTOR, MATRIX, MATRIX)
-
-
-@jit(boolean(MATRIX, int64, int64))
-def eliminate(matrix, n, columns):
-    """Solve in place: matrix (n, n + columns) holds the system and its right sides, which become the solutions."""
-    for column in range(n):
-        pivot, largest = column, abs(matrix[column, column])
-        for row in range(column + 1, n):
-            if abs(matrix[row, column]) > largest:
-                pivot, largest = row, abs(matrix[row, column])
-        if not largest > 0.0:
-            return False
-        if pivot != column:
-            for k in range(column, n + columns):
-                matrix[column, k], matrix[pivot, k] = matrix[pivot, k], matrix[column, k]
-        inverse = 1.0 / matrix[column, column]
-        for row in range(column + 1, n):
-            factor = matrix[row, column] * inverse
-            if factor != 0.0:
-                for k in range(column + 1, n + columns):
-                    matrix[row, k] -= factor * matrix[column, k]
-    for row in range(n - 1, -1, -1):
-        inverse = 1.0 / matrix[row, row]
-        for k in range(n, n + columns):
-            matrix[row, k] *= inverse
-        for above in range(row):
-            factor = matrix[above, row]
-            if factor != 0.0:
-                for k in range(n, n + columns):
-                    matrix[above, k] -= factor * matrix[row, k]
-    return True
+LOCAL = record(_Local, VECTOR, VECTOR, MATRIX, MATRIX)
 
 
 @jit(float64(MESH, SAMPLES, int64, int64, float64, VECTOR, VECTOR))
-def state_at(mesh, samples, k, i, speed, q, v):
+def _state_at(mesh, samples, k, i, speed, q, v):
     """q [m] and v [m/s] (5,) at point i of the mesh's rule in interval k; the time [s]."""
     nodes, rule = mesh
     points, s = (rule.shape[0] - 3) // 2, samples.a.shape[0] // (nodes.size - 1)
@@ -162,7 +131,7 @@ def state_at(mesh, samples, k, i, speed, q, v):
 
 
 @jit(float64(EQUATIONS, SAMPLES, int64, int64, VECTOR, VECTOR, VECTOR))
-def left_over(equations, samples, at, c, q, v, f):
+def _left_over(equations, samples, at, c, q, v, f):
     """Imbalance [N] along coordinate c at Gauss point ``at``: f (5,) are the contacts' forces."""
     linear, speed = equations.linear, equations.speed
     total = f[c] - samples.push[at, c]
@@ -176,7 +145,7 @@ def left_over(equations, samples, at, c, q, v, f):
 
 
 @jit(boolean(EQUATIONS, MESH, SAMPLES, int64, RESPONSE, LOCAL, VECTOR))
-def linearise(equations, mesh, samples, at, response, local, report):
+def _linearise(equations, mesh, samples, at, response, local, report):
     """Rows of the interval's linear system that belong to Gauss point ``at``; False where a force is no number."""
     linear, free, speed, rule = equations.linear, equations.free, equations.speed, mesh.rule
     n, s, block = free.size, rule.shape[1], local.block
@@ -184,7 +153,7 @@ def linearise(equations, mesh, samples, at, response, local, report):
     size, h, u = s * n, mesh.nodes[k + 1] - mesh.nodes[k], rule[2 * s + 2, i]
     for r in range(n):
         row, c = i * n + r, free[r]
-        total = left_over(equations, samples, at, c, local.q, local.v, response.f)
+        total = _left_over(equations, samples, at, c, local.q, local.v, response.f)
         if not np.isfinite(total):
             return False
         report[IMBALANCE] = max(report[IMBALANCE], abs(total) * equations.weight[c])
@@ -206,7 +175,7 @@ def linearise(equations, mesh, samples, at, response, local, report):
 
 
 @jit(void(EQUATIONS, MESH, SAMPLES, int64, LOCAL, VECTOR))
-def transfer_of(equations, mesh, samples, k, local, report):
+def _transfer_of(equations, mesh, samples, k, local, report):
     """Transfer of interval k, and the jump that a path still makes at its end, from the solved linear system."""
     free, rule, transfer, block = equations.free, mesh.rule, local.transfer, local.block
     n, s, h = free.size, rule.shape[1], mesh.nodes[k + 1] - mesh.nodes[k]
@@ -231,7 +200,7 @@ def transfer_of(equations, mesh, samples, k, local, report):
 
 
 @jit(void(LOCAL, int64, ELIMINATED, MATRIX))
-def carry_on(local, k, eliminated, product):
+def _carry_on(local, k, eliminated, product):
     """Keep what interval k leaves, and multiply the transfer of those before by its own; ``product`` is scratch."""
     stages, transfer, span_transfer = eliminated
     size = local.block.shape[0]
@@ -259,7 +228,7 @@ def condense(equations, mesh, samples, eliminated, report):
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
     contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
-    local = Local(np.empty(5), np.empty(5), np.empty((size, size + columns)), np.empty((2 * n, columns)))
+    local = _Local(np.empty(5), np.empty(5), np.empty((size, size + columns)), np.empty((2 * n, columns)))
     product = np.empty((2 * n, columns))
     report[IMBALANCE], report[JUMP], report[FORCE] = 0.0, 0.0, 0.0
     for i in range(2 * n):
@@ -268,16 +237,16 @@ def condense(equations, mesh, samples, eliminated, report):
     for k in range(m):
         for i in range(s):
             at = k * s + i
-            t = state_at(mesh, samples, k, i, equations.speed, local.q, local.v)
+            t = _state_at(mesh, samples, k, i, equations.speed, local.q, local.v)
             balls = Balls(samples.ball[at], 0.0, samples.rate[at])
             if forces.system(t, local.q, local.v, balls, contacts, constants, response) != 0:
                 return k
-            if not linearise(equations, mesh, samples, at, response, local, report):
+            if not _linearise(equations, mesh, samples, at, response, local, report):
                 return k
-        if not eliminate(local.block, size, columns):
+        if not eliminate(local.block):
             return k
-        transfer_of(equations, mesh, samples, k, local, report)
-        carry_on(local, k, eliminated, product)
+        _transfer_of(equations, mesh, samples, k, local, report)
+        _carry_on(local, k, eliminated, product)
     return m
 
 
@@ -294,12 +263,12 @@ def imbalances(equations, mesh, samples, out):
     for k in range(m):
         for i in range(s):
             at = k * s + i
-            t = state_at(mesh, samples, k, i, equations.speed, q, v)
+            t = _state_at(mesh, samples, k, i, equations.speed, q, v)
             copy_matrix(samples.ball[at], ball)
             if forces.system(t, q, v, Balls(ball, 0.0, samples.rate[at]), contacts, constants, response) != 0:
                 return k
             for c in range(5):
-                out[at, c] = left_over(equations, samples, at, c, q, v, response.f)
+                out[at, c] = _left_over(equations, samples, at, c, q, v, response.f)
     return m
 
 
@@ -310,33 +279,41 @@ def forces(force, params, times, out):
         force(times[i], params, out[i])
 
 
-@jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE))
+@jit(void(INDICES, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX))
+def carry(free, transfer, first, defect, dq, dv):
+    """dq, dv (m + 1, 5) that defects (m, 2 n) at the ends of intervals and a first state (2 n,) make."""
+    n = free.size
+    m = transfer.shape[0] // (2 * n)
+    for r in range(n):
+        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
+    for k in range(m):
+        for i in range(2 * n):
+            total = defect[k, i]
+            for r in range(n):
+                total += transfer[2 * n * k + i, r] * dq[k, free[r]] + transfer[2 * n * k + i, n + r] * dv[k, free[r]]
+            if i < n:
+                dq[k + 1, free[i]] = total
+            else:
+                dv[k + 1, free[i - n]] = total
+
+
+@jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE), allocates=True)
 def spread(free, eliminated, first, parameter, change):
     """The change of a path that the change first (2 n,) of its first state and that of the parameter make."""
     stages, transfer, _ = eliminated
     dq, dv, da = change
     n = free.size
     m = transfer.shape[0] // (2 * n)
-    s = stages.shape[0] // (m * n)
-    for r in range(n):
-        dq[0, free[r]] = first[r]
-        dv[0, free[r]] = first[n + r]
-    for k in range(m):
-        for i in range(s * n):
-            row = k * s * n + i
-            total = stages[row, 2 * n] + stages[row, 2 * n + 1] * parameter
-            for r in range(n):
-                total += stages[row, r] * dq[k, free[r]] + stages[row, n + r] * dv[k, free[r]]
-            da[k * s + i // n, free[i % n]] = total
-        for i in range(2 * n):
-            row = k * 2 * n + i
-            total = transfer[row, 2 * n] + transfer[row, 2 * n + 1] * parameter
-            for r in range(n):
-                total += transfer[row, r] * dq[k, free[r]] + transfer[row, n + r] * dv[k, free[r]]
-            if i < n:
-                dq[k + 1, free[i]] = total
-            else:
-                dv[k + 1, free[i - n]] = total
+    s, defect = stages.shape[0] // (m * n), np.empty((m, 2 * n))
+    for row in range(transfer.shape[0]):
+        defect[row // (2 * n), row % (2 * n)] = transfer[row, 2 * n] + transfer[row, 2 * n + 1] * parameter
+    carry(free, transfer, first, defect, dq, dv)
+    for row in range(stages.shape[0]):
+        k, i = row // (s * n), row % (s * n)
+        total = stages[row, 2 * n] + stages[row, 2 * n + 1] * parameter
+        for r in range(n):
+            total += stages[row, r] * dq[k, free[r]] + stages[row, n + r] * dv[k, free[r]]
+        da[k * s + i // n, free[i % n]] = total
 
 
 @jit(void(VECTOR, VECTOR, float64, CUBE, CUBE), allocates=True)
@@ -396,7 +373,7 @@ def contacts(forces, memory, states, gap, force):
 class Excitation(NamedTuple):
     """Excitation with its parameters (k,), the share of it that acts, and the speed of its own clock [rad/s]."""
 
-    force: Any
+    force: Kernel
     params: np.ndarray
     share: float
     clock: float
@@ -406,7 +383,7 @@ EXCITATION = record(Excitation, FORCE_POINTER, VECTOR, float64, float64)
 
 
 @jit(void(EQUATIONS, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
-def acceleration_of(equations, inverse, q, v, push, f, out):
+def _acceleration_of(equations, inverse, q, v, push, f, out):
     """out (n,): second derivatives by the angle of the unknowns, which balance the forces; ``inverse`` (n, n) of the mass.
 
     f (5,), at first the contacts' forces, becomes what is left of the others.
@@ -455,36 +432,18 @@ def try_between(equations, excitation, inverse, mesh, tried, samples, defect):
                 defect[k, n + r] += h * (tried[2 * e, i] - mesh.rule[2 * s, i]) * value
         for i in range(e):
             u = tried[2 * e + 2, i]
-            t = state_at(trial, samples, k, i, equations.speed, q, v)
+            t = _state_at(trial, samples, k, i, equations.speed, q, v)
             copy_matrix(samples.ball[k * s + min(s - 1, int64(u * s))], ball)
             if forces.system(t, q, v, Balls(ball, 0.0, samples.rate[k * e + i]), contacts, constants, response) != 0:
                 return k
             excitation.force((mesh.nodes[k] + u * h) / excitation.clock, excitation.params, push)
             for c in range(5):
                 push[c] = load[c] + excitation.share * push[c]
-            acceleration_of(equations, inverse, q, v, push, response.f, acceleration)
+            _acceleration_of(equations, inverse, q, v, push, response.f, acceleration)
             for r in range(n):
                 defect[k, r] += h * h * tried[2 * e + 1, s + i] * acceleration[r]
                 defect[k, n + r] += h * tried[2 * e, s + i] * acceleration[r]
     return m
-
-
-@jit(void(INDICES, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX))
-def carry(free, transfer, first, defect, dq, dv):
-    """dq, dv (m + 1, 5) that defects (m, 2 n) at the ends of intervals and a first state (2 n,) make."""
-    n = free.size
-    m = transfer.shape[0] // (2 * n)
-    for r in range(n):
-        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
-    for k in range(m):
-        for i in range(2 * n):
-            total = defect[k, i]
-            for r in range(n):
-                total += transfer[2 * n * k + i, r] * dq[k, free[r]] + transfer[2 * n * k + i, n + r] * dv[k, free[r]]
-            if i < n:
-                dq[k + 1, free[i]] = total
-            else:
-                dv[k + 1, free[i - n]] = total
 
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.
@@ -520,7 +479,7 @@ LIMITS = record(Limits, float64, float64, int64, int64)
 
 
 @jit(void(SAMPLES, CHANGE, float64))
-def move(samples, change, factor):
+def _move(samples, change, factor):
     """Add a part of a change to a path."""
     for k in range(samples.q.shape[0]):
         for c in range(5):
@@ -532,7 +491,7 @@ def move(samples, change, factor):
 
 
 @jit(boolean(EQUATIONS, MATRIX, MATRIX, SAMPLES, MATRIX, VECTOR))
-def first_state(equations, rotation, span_transfer, samples, close, first):
+def _first_state(equations, rotation, span_transfer, samples, close, first):
     """first (2 n,): correction of the state at the start with which the span closes; False where it has none."""
     free = equations.free
     n, m, q, v = free.size, samples.q.shape[0] - 1, samples.q, samples.v
@@ -542,7 +501,7 @@ def first_state(equations, rotation, span_transfer, samples, close, first):
         for j in range(2 * n):
             close[i, j] = rotation[i, j] - span_transfer[i, j]
             close[i, 2 * n] -= rotation[i, j] * (q[0, free[j]] if j < n else v[0, free[j - n]])
-    if not eliminate(close, 2 * n, 1):
+    if not eliminate(close):
         return False
     for i in range(2 * n):
         first[i] = close[i, 2 * n]
@@ -550,7 +509,7 @@ def first_state(equations, rotation, span_transfer, samples, close, first):
 
 
 @jit(types.UniTuple(float64, 3)(VECTOR, SAMPLES, CHANGE))
-def sizes(weight, samples, change):
+def _sizes(weight, samples, change):
     """Largest correction of a displacement, derivative by the angle, and displacement [m]; tilts as lengths."""
     correction, size, displacement = 0.0, 0.0, 0.0
     for k in range(samples.q.shape[0]):
@@ -604,18 +563,18 @@ def newton(equations, closure, mesh, samples, limits, eliminated, report):
             if sweep == 1 or halvings > limits.patience:
                 return BALLS_FAILED if condensed < m else STALLED
             factor *= 0.5
-            move(samples, change, -factor)
+            _move(samples, change, -factor)
             copy_cube(safe, samples.ball)
             continue
         worst, halvings = noted[IMBALANCE], 0
         report[WORST_IMBALANCE] = worst
-        if not first_state(equations, closure.rotation, eliminated.span_transfer, samples, close, first):
+        if not _first_state(equations, closure.rotation, eliminated.span_transfer, samples, close, first):
             return SINGULAR
         spread(equations.free, eliminated, first, 0.0, change)
         if sweep > 1:
             factor = min(1.0, 2.0 * factor)
-        move(samples, change, factor)
-        correction, size, displacement = sizes(equations.weight, samples, change)
+        _move(samples, change, factor)
+        correction, size, displacement = _sizes(equations.weight, samples, change)
         report[CORRECTION], report[SIZE] = correction, size
         if not np.isfinite(correction):
             return SINGULAR

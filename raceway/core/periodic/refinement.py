@@ -13,7 +13,6 @@ intervals are divided again and again.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
@@ -184,7 +183,9 @@ def motion_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[np.ndar
     return q, v, np.einsum("ns,nsc->nc", values, a), ball, rate
 
 
-def _displacement_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[Any, ...]:
+def _displacement_at(
+    problem: Problem, path: Path, angles: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
     """Of angles (n,) the intervals, their lengths (n, 1), the places in them, q (n, 5), the rule's integrals, accelerations."""
     s, h = len(problem.rule.points), np.diff(path.nodes)
     k = np.clip(np.searchsorted(path.nodes, angles, side="right") - 1, 0, path.intervals - 1)

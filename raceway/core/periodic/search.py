@@ -55,10 +55,10 @@ def guess(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarra
         waves = np.exp(1j * angles[:, None] * orders) * (1j * orders) ** derivative
         return (waves @ lines).real
 
-    return standing(problem, q, nodes, at(nodes, 0), at(nodes, 1), at(problem.angles(nodes), 2))
+    return _standing(problem, q, nodes, at(nodes, 0), at(nodes, 1), at(problem.angles(nodes), 2))
 
 
-def standing(
+def _standing(
     problem: Problem,
     q: np.ndarray,
     nodes: np.ndarray,
@@ -114,15 +114,15 @@ def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
 def directly(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """The motion that full steps from the linear response about an equilibrium q (5,) lead to."""
     first = guess(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
-    return refine(full_steps(problem, first, 1e-2 * tolerance), tolerance)
+    return refine(_full_steps(problem, first, 1e-2 * tolerance), tolerance)
 
 
-def full_steps(problem: Problem, first: Path, tolerance: float) -> Solved:
+def _full_steps(problem: Problem, first: Path, tolerance: float) -> Solved:
     """Newton's iteration that never shortens a step: one that has to be may end on a resonant branch far away."""
     return solve(problem, first, tolerance, 0, _LIMIT)
 
 
-def by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
+def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
     nodes = mesh_of(problem, highest_order(problem, tangent), 2)
 
@@ -130,14 +130,14 @@ def by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, toleran
         return attrs.evolve(problem, share=share * problem.share)
 
     share, step = 0.0, _FIRST_SHARE
-    last, before, gap = standing(problem, q, nodes), None, 1.0
+    last, before, gap = _standing(problem, q, nodes), None, 1.0
     while share < 1.0:
         problem.watch()
         step = min(step, 1.0 - share)
         here = part(share + step)
         first = guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)
         try:
-            solved = full_steps(here, first, ROUGH)
+            solved = _full_steps(here, first, ROUGH)
         except ConvergenceError:
             step *= 0.5
             # A large mesh makes small steps dear; none leads round a fold anyway.
@@ -221,7 +221,7 @@ class Recorded:
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
         """The same motion on a mesh; parameters as of ``Neighbour``'s."""
         w, inner = problem.speed, problem.angles(nodes)
-        still = standing(problem, q, nodes)
+        still = _standing(problem, q, nodes)
         return attrs.evolve(
             still,
             q=self._at(self.displacement, nodes / w),
@@ -258,7 +258,7 @@ _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 
 
 @attrs.frozen(eq=False)
-class ForceBranch:
+class _ForceBranch:
     """Points of a branch over the share of the force.
 
     Attributes
@@ -277,7 +277,7 @@ class ForceBranch:
         return self.largest >= 1.0
 
     @classmethod
-    def of(cls, points: Iterable[Point]) -> ForceBranch:
+    def of(cls, points: Iterable[Point]) -> _ForceBranch:
         """Of points that come one by one."""
         largest, folds, crossings = 0.0, False, []
         for before, after in pairwise(points):
@@ -287,7 +287,7 @@ class ForceBranch:
         return cls(largest, folds, tuple(crossings))
 
 
-def force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> ForceBranch:
+def _force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> _ForceBranch:
     """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
 
     Raises
@@ -295,7 +295,7 @@ def force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np
     ConvergenceError
         It has no first point.
     """
-    return ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+    return _ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
 
 
 def force_continuation(
@@ -328,7 +328,7 @@ def force_continuation(
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
     linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
-    equilibrium = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
+    equilibrium = Solved(still, _standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
     first, small = branch.start(equilibrium, 0.0), 0
     try:
         for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
@@ -340,7 +340,7 @@ def force_continuation(
         return
 
 
-def at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
+def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
     """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
     opposite = _reverses(problem) and problem.system.scalars[CAGE] == 0.0
     for before, after in crossings:
@@ -372,7 +372,7 @@ _RATIOS, _LOADS = (1.15, 1.3, 1.6, 0.85, 0.7), (1.5, 2.5)
 _NEAR = (1.02, 1.05, 0.97)
 
 
-def by_homotopy(
+def _by_homotopy(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, lost: bool
 ) -> tuple[Refined, str] | None:
     """The first motion that leads here from another speed or load, and from where; None where none does.
@@ -401,7 +401,7 @@ def by_homotopy(
     return None
 
 
-def from_undamped(
+def _from_undamped(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray, tolerance: float
 ) -> Iterator[Refined]:
     """Motions that the branch from rest leads to without damping, each continued to the damped ring; none of an undamped one.
@@ -418,10 +418,10 @@ def from_undamped(
     still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
     problem.watch()
     with suppress(ConvergenceError):
-        for motion in at_full_force(still, force_branch(still, q, tangent, nodes).crossings, ROUGH):
+        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings, ROUGH):
             problem.watch()
             with suppress(ConvergenceError):
-                yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
+                yield refine(_full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
 
 
 def _at_speed(problem: Problem, ratio: float) -> Problem:
@@ -449,7 +449,7 @@ def _continued_to(
     try:
         begin = directly(far, q, tangent, ROUGH)
     except ConvergenceError:
-        begin = by_force_steps(far, q, tangent, ROUGH)
+        begin = _by_force_steps(far, q, tangent, ROUGH)
     branch = Branch(at, abs(ratio - 1.0), begin.solved.size, ROUGH, MOST)
     points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
     for before, after in pairwise(islice(points, POINTS)):
@@ -537,7 +537,7 @@ def find(
     if near is not None and (stay or near.near_linear):
         followed = _continued(problem, q, tangent, tolerance, highest, near)
         # Far from the linear response there may be other motions: then the search without a neighbour decides.
-        if followed is not None and (stay or not may_coexist(followed, q, tangent)):
+        if followed is not None and (stay or not _may_coexist(followed, q, tangent)):
             return followed
     direct = None
     try:
@@ -545,7 +545,7 @@ def find(
     except ConvergenceError:
         pass
     else:
-        if not may_coexist(direct, q, tangent):
+        if not _may_coexist(direct, q, tangent):
             return direct
     if not can_continue(problem, q, tangent):
         # Each point would take seconds.
@@ -565,7 +565,7 @@ def _continued(
     if first is None:
         return None
     try:
-        solved = full_steps(problem, first, 1e-2 * tolerance)
+        solved = _full_steps(problem, first, 1e-2 * tolerance)
         if np.abs((solved.path.q - first.q) / problem.weight).max() > _STAYS * solved.size:
             return None
         motion = with_multipliers(refine(solved, tolerance), highest, "directly")
@@ -574,7 +574,7 @@ def _continued(
     return None if motion.floquet.verdict == "unstable" else motion
 
 
-def may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
+def _may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether a motion is unstable or so far from its linear response about q (5,) that other ones may exist beside it."""
     return motion.floquet.verdict == "unstable" or not motion.neighbour(q, tangent).near_linear
 
@@ -582,7 +582,7 @@ def may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> b
 def can_continue(problem: Problem, q: np.ndarray, tangent: np.ndarray) -> bool:
     """Whether branches are followed: meshes for the natural frequencies are small, and dashpots in the contacts weak."""
     nodes = mesh_of(problem, highest_order(problem, tangent))
-    return len(nodes) <= MOST and not stiff(problem, standing(problem, q, nodes))
+    return len(nodes) <= MOST and not stiff(problem, _standing(problem, q, nodes))
 
 
 def with_multipliers(refined: Refined, highest: float, how: str, fold: float | None = None) -> PeriodicMotion:
@@ -592,7 +592,7 @@ def with_multipliers(refined: Refined, highest: float, how: str, fold: float | N
 
 def _by_force_steps_only(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
     try:
-        return by_force_steps(problem, q, tangent, tolerance)
+        return _by_force_steps(problem, q, tangent, tolerance)
     except ConvergenceError as why:
         raise ConvergenceError(
             "no motion of the period of the force was found from rest, and it is not looked for along branches: natural "
@@ -607,13 +607,13 @@ def _chosen(
 ) -> PeriodicMotion:
     """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
     highest = highest_order(problem, tangent)
-    lost, branch = None, ForceBranch()
+    lost, branch = None, _ForceBranch()
     try:
-        branch = force_branch(problem, q, tangent, mesh_of(problem, highest))
+        branch = _force_branch(problem, q, tangent, mesh_of(problem, highest))
     except ConvergenceError as why:
         lost = why
     motions: list[PeriodicMotion] = []
-    for refined in at_full_force(problem, branch.crossings, tolerance):
+    for refined in _at_full_force(problem, branch.crossings, tolerance):
         if not any(_alike(refined, motion.refined) for motion in motions):
             motions.append(with_multipliers(refined, highest, "from rest"))
     fold = None if branch.reaches else branch.largest
@@ -626,12 +626,12 @@ def _chosen(
             motions.append(attrs.evolve(direct, fold=fold))
     if not motions:
         try:
-            motions = [with_multipliers(by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
+            motions = [with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
         except ConvergenceError:
             if lost is not None:
                 raise lost from None
     if all(motion.floquet.verdict == "unstable" for motion in motions):
-        for refined in from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
+        for refined in _from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
             if not any(_alike(refined, other_motion.refined) for other_motion in motions):
                 motions.append(with_multipliers(refined, highest, "from no damping", fold))
     if (
@@ -639,7 +639,7 @@ def _chosen(
         and problem.system.scalars[CAGE] == 0.0
         and all(motion.floquet.verdict == "unstable" for motion in motions)
     ):
-        reached = by_homotopy(problem, q, tangent, tolerance, not motions)
+        reached = _by_homotopy(problem, q, tangent, tolerance, not motions)
         if reached is not None and not any(_alike(reached[0], other_motion.refined) for other_motion in motions):
             motions.append(with_multipliers(reached[0], highest, reached[1], fold))
     if not motions:
@@ -651,11 +651,11 @@ def _chosen(
             "what the ring does instead.",
             {"q": q.copy()},
         )
-    first, *coexisting = attractor_first(motions)
+    first, *coexisting = _attractor_first(motions)
     return attrs.evolve(first, coexisting=tuple(coexisting))
 
 
-def attractor_first(motions: list[PeriodicMotion]) -> list[PeriodicMotion]:
+def _attractor_first(motions: list[PeriodicMotion]) -> list[PeriodicMotion]:
     """The same motions, that one first which is taken: the first that is not unstable, else the one that is left slowest."""
     slowest = min(motions, key=lambda motion: motion.floquet.largest)
     first = next((motion for motion in motions if motion.floquet.verdict != "unstable"), slowest)

@@ -48,7 +48,7 @@ def orbit_tables(motions: Sequence[PeriodicMotion]) -> list[Tables]:
 def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
     """Z [N/m] and amplitude [m] of the 1x line of one motion, and what becomes of disturbances."""
     floquet = motion.floquet
-    z, amplitude = first_line(motion.refined.solved)
+    z, amplitude = synchronous_response(motion.refined.solved)
     return {
         "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
         "amplitude_m": amplitude,
@@ -61,7 +61,7 @@ def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
     }
 
 
-def first_line(solved: Solved) -> tuple[complex, float]:
+def synchronous_response(solved: Solved) -> tuple[complex, float]:
     """Z [N/m] along the force and the major semi-axis [m] of the radial motion's 1x line."""
     problem = solved.problem
     angles = 2.0 * np.pi * np.arange(_TABLE_SAMPLES) / _TABLE_SAMPLES
@@ -73,7 +73,7 @@ def first_line(solved: Solved) -> tuple[complex, float]:
     return complex(stiffness(force, line)), float(forward + backward)
 
 
-def coexistence(tables: list[Tables]) -> tuple[str, ...]:
+def _coexistence(tables: list[Tables]) -> tuple[str, ...]:
     """What a user should know where more than one motion exists that a ring can stay on."""
     lasting = [table for table in tables if table["stable"]]
     if len(lasting) < 2:
@@ -143,7 +143,7 @@ def steady(
         "error": refined.error,
         "floquet": {**motion.floquet.to_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": motion.how},
         "orbits": tables,
-        "warnings": warnings(motion, tables, tolerance),
+        "warnings": _warnings(motion, tables, tolerance),
     }
     out = attrs.evolve(record(refined.solved, schedule, counts), solution=motion.neighbour(q, tangent))
     if on_chunk is not None:
@@ -180,9 +180,9 @@ def refuse(system: Ring, schedule: Schedule) -> None:
         raise SceneError.at("integrator.kind", "periodic", "the force does not repeat itself every turn. Use 'newmark'")
 
 
-def warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) -> tuple[str, ...]:
+def _warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) -> tuple[str, ...]:
     """What a user should know of a motion that was hard to find, is not stable or not alone, or not as exact as asked for."""
-    out = list(coexistence(tables))
+    out = list(_coexistence(tables))
     if motion.fold is not None:
         out.append(
             f"no motion grows out of rest: its branch turns back at {100.0 * motion.fold:.3g} % of the force (an internal "
@@ -254,13 +254,13 @@ def starting_orbit(
                 raise
             return StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
     tables = orbit_tables(motion.all)
-    warnings = coexistence(tables)
+    warnings = _coexistence(tables)
     if not tables[0]["stable"]:
         warnings += (
             f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(tables[0])}; no stable one was found, and a real "
             "ring does not stay on it",
         )
-    return StartingOrbit(sampled(motion, period), tables, warnings)
+    return StartingOrbit(_sampled(motion, period), tables, warnings)
 
 
 def _collocated(problem: Problem, orbit: Orbit, highest: float) -> PeriodicMotion:
@@ -270,7 +270,7 @@ def _collocated(problem: Problem, orbit: Orbit, highest: float) -> PeriodicMotio
     return with_multipliers(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
 
 
-def sampled(motion: PeriodicMotion, period: float) -> Orbit:
+def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
     """A motion at equidistant times of a turn."""
     solved = motion.refined.solved
     problem, system = solved.problem, solved.problem.system

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -14,7 +15,7 @@ from raceway.storage.array_cache import kept
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import SuperLU
@@ -25,10 +26,8 @@ class Sector:
 
     Attributes
     ----------
-    even, cosine, sine : (M, 12, 12) float
-        Parts A, B, S of the quadrilaterals' matrices, component by component of their four nodes [N/m].
-    mass : (N,) float
-        Lumped masses of the nodes of one meridian [kg].
+    even, cosine, sine : (M, 12, 12) parts A, B, S of the quadrilaterals' matrices, component by component of their four nodes [N/m]
+    mass : (N,) lumped masses of the nodes of one meridian [kg]
 
     Notes
     -----
@@ -38,22 +37,14 @@ class Sector:
     K(n) = A + B cos(n a) + S sin(n a), where A and B couple r and x among themselves and theta with theta, S the two groups.
     """
 
-    def __init__(
-        self,
-        profile: Profile,
-        divisions: int,
-        young: float,
-        poisson: float,
-        density: float,
-        formulation: str,
-        hourglass: float,
-    ) -> None:
-        half, count = np.pi / divisions, len(profile.points)
+    def __init__(self, body: Revolution) -> None:
+        profile = body.profile
+        half, count = np.pi / body.divisions, len(profile.points)
         r, x = profile.points.T
         c, s = np.cos(half), np.sin(half)
         points = np.concatenate([np.column_stack([x, c * r, -s * r]), np.column_stack([x, c * r, s * r])])
         cells = np.concatenate([profile.quads, profile.quads + count], axis=1)
-        operator = HexOperator(points, cells, young, poisson, density, formulation, hourglass)
+        operator = HexOperator(points, cells, body.young, body.poisson, body.density, body.formulation, body.hourglass)
         # Columns: r, theta, x of the nodes on either side in x, y, z.
         sides = np.stack([_frame(-half)] * 4 + [_frame(half)] * 4)
         elements = operator.element_stiffness(slice(0, len(cells))).reshape(-1, 8, 3, 8, 3)
@@ -125,12 +116,12 @@ def factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
     return splu(matrix, permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A", **_SYMMETRIC)
 
 
-def elimination_order(matrix: csr_matrix) -> np.ndarray:
+def _elimination_order(matrix: csr_matrix) -> np.ndarray:
     """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
     return np.argsort(factorised(matrix, ordered=False).perm_c)
 
 
-def condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
+def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
     """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
 
     Notes
@@ -184,8 +175,7 @@ def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> t
 
     Returns
     -------
-    even, odd : (offsets, s)
-        Of the cosine and of the sine part.
+    even, odd : (offsets, s) of the cosine and of the sine part
 
     Notes
     -----
@@ -259,6 +249,8 @@ def _columns(angle: np.ndarray, load_angle: np.ndarray) -> np.ndarray:
     return np.stack([np.sin(angle) * np.sin(load_angle), np.sin(angle + load_angle), np.cos(angle) * np.cos(load_angle)])
 
 
+#: The code on which the numbers depend; whoever keeps something made of compliances adds its own.
+SOURCES = ("core/revolution", "core/hexahedron")
 #: Hourglass stiffness of "one_point": in the flat elements of a patch ten times more spoils the answer by percents.
 HOURGLASS = 0.005
 #: Solved harmonics that are added up at once.
@@ -267,28 +259,17 @@ _BATCH = 8
 _CONDENSED = 4
 
 
+@attrs.frozen(eq=False)
 class Revolution:
     """A profile swept in equal steps, with its material and seat.
 
-    Parameters
-    ----------
-    profile : Profile
-    divisions : int
-        Elements around the body, N; at least 3.
-    young, poisson, density : float
-        [Pa, -, kg/m3]
-    formulation : str
-        "incompatible", "full" or "one_point", see ``raceway.core.hexahedron.strain``.
-    seat : str or float
-        "clamped" (also for a ring that is tied to a rigid frame, in that frame), "free", or the stiffness of an elastic bed
-        [N/m3], the same in all three directions, on the cylinder of ``profile.seat``.
-    hourglass : float
-        Of "one_point".
-
     Attributes
     ----------
-    mass : float
-        Of the whole body [kg].
+    divisions : elements around the body, N; at least 3
+    young, poisson, density : [Pa, -, kg/m3]
+    formulation : "incompatible", "full" or "one_point", see ``raceway.core.hexahedron.strain``;  hourglass : of "one_point"
+    seat : "clamped" (also for a ring that is tied to a rigid frame, in that frame), "free", or the stiffness of an elastic bed
+        [N/m3], the same in all three directions, on the cylinder of ``profile.seat``
 
     Notes
     -----
@@ -296,44 +277,57 @@ class Revolution:
     masses: the mass-weighted mean of displacement and rotation vanishes.
     """
 
-    def __init__(
-        self,
-        profile: Profile,
-        divisions: int,
-        young: float,
-        poisson: float,
-        density: float,
-        formulation: str = "incompatible",
-        seat: str | float = "clamped",
-        hourglass: float = HOURGLASS,
-    ) -> None:
-        if divisions < 3:
-            raise MeshError(f"a body of revolution needs at least 3 elements around it, not {divisions}")
-        self.profile, self.divisions, self.seat = profile, int(divisions), seat
-        self.sector = Sector(profile, divisions, young, poisson, density, formulation, hourglass)
-        self.mass = float(self.sector.mass.sum() * divisions)
-        self._held = np.zeros(3 * len(profile.points), dtype=bool)
-        self._springs = np.zeros(3 * len(profile.points))
-        if seat == "clamped":
-            self._held[(3 * profile.seat[:, None] + np.arange(3)).ravel()] = True
-            if not len(profile.seat):
+    profile: Profile
+    divisions: int
+    young: float
+    poisson: float
+    density: float = 1.0
+    formulation: str = "incompatible"
+    seat: str | float = "clamped"
+    hourglass: float = HOURGLASS
+    _held: np.ndarray = attrs.field(init=False)
+    _springs: np.ndarray = attrs.field(init=False)
+
+    @_held.default
+    def _held_dofs(self) -> np.ndarray:
+        held = np.zeros(3 * len(self.profile.points), dtype=bool)
+        if self.divisions < 3:
+            raise MeshError(f"a body of revolution needs at least 3 elements around it, not {self.divisions}")
+        if isinstance(self.seat, str) and self.seat not in ("clamped", "free"):
+            raise ValueError(f"seat {self.seat!r} is neither 'clamped', 'free' nor a stiffness in N/m3")
+        if self.seat == "clamped":
+            if not len(self.profile.seat):
                 raise MeshError("a profile without a seat cannot be clamped: seat = 'free'")
-        elif isinstance(seat, str):
-            if seat != "free":
-                raise ValueError(f"seat {seat!r} is neither 'clamped', 'free' nor a stiffness in N/m3")
-        elif seat > 0.0:
-            areas = seat_areas(profile, divisions)
-            for component in range(3):
-                self._springs[3 * profile.seat + component] = seat * areas
-        else:
-            raise MeshError(f"a seat stiffness of {seat:g} N/m3 holds nothing: it must be greater than 0, or 'clamped'")
+            held[(3 * self.profile.seat[:, None] + np.arange(3)).ravel()] = True
+        return held
+
+    @_springs.default
+    def _bed(self) -> np.ndarray:
+        springs = np.zeros(3 * len(self.profile.points))
+        if isinstance(self.seat, str):
+            return springs
+        if not self.seat > 0.0:
+            raise MeshError(f"a seat stiffness of {self.seat:g} N/m3 holds nothing: it must be greater than 0, or 'clamped'")
+        for component in range(3):
+            springs[3 * self.profile.seat + component] = self.seat * seat_areas(self.profile, self.divisions)
+        return springs
+
+    @cached_property
+    def sector(self) -> Sector:
+        """One of the equal sectors."""
+        return Sector(self)
+
+    @property
+    def mass(self) -> float:
+        """Of the whole body [kg]."""
+        return float(self.sector.mass.sum() * self.divisions)
 
     @property
     def elements(self) -> int:
         """Hexahedra that the body stands for."""
         return len(self.profile.quads) * self.divisions
 
-    def harmonic(self, n: int) -> Any:
+    def harmonic(self, n: int) -> csr_matrix:
         """(m, m) csc_matrix, the real symmetric system of harmonic n; rows in the order of ``unknowns`` [N/m]."""
         row = self._places(self.unknowns)
         return self._pencil(row).at(2.0 * np.pi * n / self.divisions)
@@ -354,19 +348,15 @@ class Revolution:
 
         Parameters
         ----------
-        load_dofs, observed_dofs : (k, 2) int
-            Node of the profile and component: 0 r, 1 theta, 2 x; see ``profile.dofs``.  A force and a displacement have the
-            directions r and theta of their own meridian.
-        offsets : (o,) int
-            How many sectors the observed meridian lies after the loaded one, towards +theta; None: 0 to N - 1.
-        harmonics : str
-            "sampled" (error below 1e-8 of the largest compliance of rings that are finest around them, 1e-5 where they
-            are coarsest around them) or "all".
+        load_dofs, observed_dofs : (k, 2) node of the profile and component, 0 r, 1 theta, 2 x, see ``dofs``; forces and displacements
+            have the directions r and theta of their own meridian
+        offsets : (o,) sectors from the loaded meridian to the observed one, towards +theta; None: 0 to N - 1
+        harmonics : "sampled" (error below 1e-8 of the largest compliance of rings that are finest around them, 1e-5 where they are
+            coarsest around them) or "all"
 
         Returns
         -------
-        compliance : (o, observed, loads) float [m/N]
-            Reversing the offset changes the sign where one of the two components is theta and the other is not.
+        compliance : (o, observed, loads) [m/N]; reversing the offset changes the sign where one of both components is theta
         """
         load, observed = _flat(load_dofs), _flat(observed_dofs)
         steps = np.arange(self.divisions) if offsets is None else np.atleast_1d(np.asarray(offsets, dtype=np.int64))
@@ -390,18 +380,46 @@ class Revolution:
                 out += odd[:, part] @ (block * turn).reshape(len(block), -1)
         return out.reshape(len(steps), len(observed), len(load))
 
+    def cached_compliance(
+        self,
+        label: str,
+        load_dofs: np.ndarray,
+        observed_dofs: np.ndarray,
+        offsets: np.ndarray | None = None,
+        harmonics: str = "sampled",
+    ) -> np.ndarray:
+        """``compliance`` [m/N], read-only when it comes from the cache, where ``raceway dev cache`` shows the label."""
+        inputs = {
+            "points": self.profile.points,
+            "quads": self.profile.quads,
+            "seat_nodes": self.profile.seat if self.seat != "free" else None,
+            "divisions": self.divisions,
+            "young": float(self.young),
+            "poisson": float(self.poisson),
+            "loads": np.asarray(load_dofs, dtype=np.int64),
+            "observed": np.asarray(observed_dofs, dtype=np.int64),
+            "offsets": None if offsets is None else np.asarray(offsets, dtype=np.int64),
+            "formulation": self.formulation,
+            "hourglass": self.hourglass if self.formulation == "one_point" else None,
+            "seat": self.seat,
+            "harmonics": harmonics,
+        }
+
+        def make() -> dict[str, np.ndarray]:
+            return {"compliance": self.compliance(load_dofs, observed_dofs, offsets, harmonics)}
+
+        return kept("compliance", label, inputs, SOURCES, make)["compliance"]
+
     def frequencies(self, harmonics: Iterable[int], count: int) -> np.ndarray:
         """Natural frequencies.
 
         Parameters
         ----------
-        harmonics : sequence of int
-        count : int
-            How many of each harmonic, the lowest; those of the rigid motions of a free body (zero) are left out.
+        count : how many of each harmonic, the lowest; those of the rigid motions of a free body (zero) are left out
 
         Returns
         -------
-        frequencies : (len(harmonics), count) float [Hz], ascending
+        frequencies : (len(harmonics), count) [Hz], ascending
         """
         from scipy.sparse import diags_array
         from scipy.sparse.linalg import LinearOperator, eigsh
@@ -424,7 +442,7 @@ class Revolution:
             out.append(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
         return np.array(out)
 
-    def _responses(self, load: np.ndarray, observed: np.ndarray, solved: np.ndarray) -> Any:
+    def _responses(self, load: np.ndarray, observed: np.ndarray, solved: np.ndarray) -> Iterator[np.ndarray]:
         """For each harmonic in turn the (seen, loads) compliance between degrees of freedom 3 node + component [m/N]."""
         both = np.unique(np.concatenate([load, observed]))
         # Condensing costs the cube of the degrees of freedom that stay, solving the number of loads times the whole body.
@@ -441,7 +459,7 @@ class Revolution:
             if rigid is not None and len(rigid[0]):
                 response = self._relieved(matrix, rigid, row, row_load, row_seen)
             elif small:
-                response = condensed(factorised(matrix), retained)[np.ix_(at_seen, at_load)]
+                response = _condensed(factorised(matrix), retained)[np.ix_(at_seen, at_load)]
             else:
                 response = factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
             yield np.where(held, 0.0, response) if held.any() else response
@@ -491,7 +509,7 @@ class Revolution:
     def _order(self, last: np.ndarray) -> np.ndarray:
         """(m,) Unknowns in an order of little fill, those of ``last`` that are not held at the end, ascending."""
         inside = np.setdiff1d(self.unknowns, last)
-        order = inside[elimination_order(self._pencil(self._places(inside)).at(1.0))]
+        order = inside[_elimination_order(self._pencil(self._places(inside)).at(1.0))]
         return np.concatenate([order, last[~self._held[last]]])
 
     def _places(self, order: np.ndarray) -> np.ndarray:
@@ -539,53 +557,6 @@ def _field(r: np.ndarray, theta: np.ndarray, x: np.ndarray) -> np.ndarray:
     return np.column_stack([r, theta, x]).ravel()
 
 
-#: The code on which the numbers depend; whoever keeps something made of compliances adds its own.
-SOURCES = ("core/revolution", "core/hexahedron")
-
-
-def cached_compliance(
-    label: str,
-    profile: Profile,
-    divisions: int,
-    young: float,
-    poisson: float,
-    load_dofs: np.ndarray,
-    observed_dofs: np.ndarray,
-    offsets: np.ndarray | None = None,
-    formulation: str = "incompatible",
-    seat: str | float = "clamped",
-    harmonics: str = "sampled",
-    hourglass: float = HOURGLASS,
-) -> np.ndarray:
-    """``Revolution.compliance`` [m/N], read-only when it comes from the cache.
-
-    Parameters
-    ----------
-    label : in `raceway dev cache`, for instance "inner ring of B7206C, 4 nodes per semi-axis"
-    """
-    inputs = {
-        "points": profile.points,
-        "quads": profile.quads,
-        "seat_nodes": profile.seat if seat != "free" else None,
-        "divisions": divisions,
-        "young": float(young),
-        "poisson": float(poisson),
-        "loads": np.asarray(load_dofs, dtype=np.int64),
-        "observed": np.asarray(observed_dofs, dtype=np.int64),
-        "offsets": None if offsets is None else np.asarray(offsets, dtype=np.int64),
-        "formulation": formulation,
-        "hourglass": hourglass if formulation == "one_point" else None,
-        "seat": seat,
-        "harmonics": harmonics,
-    }
-
-    def make() -> dict[str, np.ndarray]:
-        body = Revolution(profile, divisions, young, poisson, 1.0, formulation, seat, hourglass)
-        return {"compliance": body.compliance(load_dofs, observed_dofs, offsets, harmonics)}
-
-    return kept("compliance", label, inputs, SOURCES, make)["compliance"]
-
-
 #: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
 _DIGITS = 9
 
@@ -596,12 +567,8 @@ class FreeBall:
 
     Attributes
     ----------
-    divisions : sectors around the equator; one is an angle 2 pi / divisions of contact angle
-    latitudes : (n,) float, of the surface nodes [rad], towards the rolling direction
-    offsets : (o,) int, sectors from the loaded to the observed meridian
-    components : of the rows and columns, one after the other: 0 r (outward), 1 theta, 2 x (rolling direction)
-    dimensionless : (o, len(components) n, len(components) n) float, u E R / F
-    elements : hexahedra that the ball stands for
+    latitudes : (n,) of the surface nodes [rad], towards the rolling direction
+    dimensionless : (o, len(components) n, len(components) n) u E R / F, components one after the other
 
     Notes
     -----
@@ -610,63 +577,56 @@ class FreeBall:
     centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.
     """
 
-    divisions: int
     latitudes: np.ndarray
-    offsets: np.ndarray
-    components: tuple[int, ...]
     dimensionless: np.ndarray
-    elements: int
 
     def compliance(self, radius: float, young: float) -> np.ndarray:
         """(o, observed, loads) of a ball of that radius [m] and modulus [Pa], in m/N."""
         return np.asarray(self.dimensionless / (radius * young))
 
 
+@attrs.frozen
+class BallMesh:
+    """Sizes of a ball's elements.
+
+    Attributes
+    ----------
+    divisions : sectors around the equator
+    lateral_step, half_width : distance of the nodes along the rolling direction, and up to where, as arc lengths [m]
+    depth_step, bulk : first layer below the surface, and elements far from it [m]
+    """
+
+    divisions: int
+    lateral_step: float
+    half_width: float
+    depth_step: float
+    bulk: float
+
+    def profile(self, radius: float) -> Profile:
+        """The section of a ball of radius 1 with the sizes of a ball of that radius [m]."""
+        sizes = (self.lateral_step, self.half_width, self.depth_step, self.bulk)
+        return ball_profile(1.0, *(round(length / radius, _DIGITS) for length in sizes))
+
+
 def free_ball(
     radius: float,
     poisson: float,
-    divisions: int,
-    lateral_step: float,
-    half_width: float,
-    depth_step: float,
-    bulk: float,
+    mesh: BallMesh,
     offsets: np.ndarray,
     components: tuple[int, ...] = (0, 2),
     formulation: str = "incompatible",
     harmonics: str = "all",
 ) -> FreeBall:
-    """The floating ball of a mesh, from the cache where it is there.
+    """The floating ball of a radius [m], from the cache where it is there.
 
     Parameters
     ----------
-    radius : float [m]
-    divisions : int
-        Sectors around the equator.
-    lateral_step, half_width : float
-        Distance of the nodes along the rolling direction, and up to where, as arc lengths [m].
-    depth_step, bulk : float
-        First layer below the surface, and elements far from it [m].
-    offsets : (o,) int
-        Sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away.
-    harmonics : str
-        A ball has but some hundred harmonics, and it is coarsest around its equator, where sampling is least exact.
+    offsets : (o,) sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away
+    components : 0 r (outward), 1 theta, 2 x (rolling direction)
+    harmonics : a ball has but some hundred, and it is coarsest around its equator, where sampling is least exact
     """
-    sizes = [round(length / radius, _DIGITS) for length in (lateral_step, half_width, depth_step, bulk)]
-    profile: Profile = ball_profile(1.0, *sizes)
+    profile = mesh.profile(radius)
     degrees = dofs(profile.race, components)
-    steps = np.asarray(offsets, dtype=np.int64)
-    elements = len(profile.quads) * divisions
-    compliance = cached_compliance(
-        f"ball, {divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}",
-        profile,
-        divisions,
-        1.0,
-        poisson,
-        degrees,
-        degrees,
-        steps,
-        formulation,
-        "free",
-        harmonics,
-    )
-    return FreeBall(divisions, profile.angles, steps, tuple(components), compliance, elements)
+    body = Revolution(profile, mesh.divisions, 1.0, poisson, formulation=formulation, seat="free")
+    label = f"ball, {mesh.divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}"
+    return FreeBall(profile.angles, body.cached_compliance(label, degrees, degrees, np.asarray(offsets), harmonics))

@@ -7,17 +7,9 @@ from math import ceil, floor
 import attrs
 import numpy as np
 
-from raceway.core.mesh.hex_mesh import growing
+from raceway.core.mesh.hex_mesh import floats, growing, integers
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.errors import MeshError
-
-
-def _floats(value: object) -> np.ndarray:
-    return np.ascontiguousarray(value, dtype=np.float64)
-
-
-def _integers(value: object) -> np.ndarray:
-    return np.ascontiguousarray(value, dtype=np.int64)
 
 
 @attrs.frozen(eq=False)
@@ -36,11 +28,11 @@ class Profile:
     depth : int, nodes of each line from the surface into the body: node ``race[i] + k``, k < depth, lies k layers below
     """
 
-    points: np.ndarray = attrs.field(converter=_floats)
-    quads: np.ndarray = attrs.field(converter=_integers)
-    race: np.ndarray = attrs.field(converter=_integers)
-    seat: np.ndarray = attrs.field(converter=_integers)
-    angles: np.ndarray = attrs.field(converter=_floats)
+    points: np.ndarray = attrs.field(converter=floats)
+    quads: np.ndarray = attrs.field(converter=integers)
+    race: np.ndarray = attrs.field(converter=integers)
+    seat: np.ndarray = attrs.field(converter=integers)
+    angles: np.ndarray = attrs.field(converter=floats)
     depth: int = 1
 
     def __attrs_post_init__(self) -> None:
@@ -54,7 +46,7 @@ class Profile:
         area = (x[:, 2] - x[:, 0]) * (r[:, 3] - r[:, 1]) - (r[:, 2] - r[:, 0]) * (x[:, 3] - x[:, 1])
         turned = self.quads[:, ::-1] if area.sum() < 0.0 else self.quads
         object.__setattr__(self, "quads", np.ascontiguousarray(turned))
-        corner = corner_areas(self.points, turned)
+        corner = _corner_areas(self.points, turned)
         if not (corner > 0.0).all():
             bad = int(np.argmin(corner.min(axis=1)))
             at = self.points[self.quads[bad]].mean(axis=0)
@@ -64,7 +56,7 @@ class Profile:
             )
 
 
-def corner_areas(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
+def _corner_areas(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
     """(M, 4) Cross products of the edges that meet at each corner [m2]: positive where the corner is convex."""
     p = points[quads]
     onward, back = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
@@ -79,13 +71,12 @@ def dofs(nodes: np.ndarray, components: tuple[int, ...] = (0, 2)) -> np.ndarray:
     return np.concatenate([np.column_stack([nodes, np.full(len(nodes), c)]) for c in components])
 
 
-def mapped(top: np.ndarray, bottom: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _mapped(top: np.ndarray, bottom: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A block of quadrilaterals between two lines.
 
     Parameters
     ----------
-    top, bottom : (m, 2) float, ends of the lines into the body [m]
-    depth : (k,) float from 0 to 1
+    top, bottom : (m, 2) ends of the lines into the body [m];  depth : (k,) from 0 to 1
 
     Returns
     -------
@@ -118,20 +109,11 @@ def graded_profile(
 
     Parameters
     ----------
-    arc_step : float
-        Distance of the race's nodes along the groove [m]; one of them lies at the free contact angle.
-    window : (2,) float
-        Lowest and highest contact angle of the race's nodes [rad], positive at the free contact angle; what runs over the
-        groove's edge is left out.
-    depth_step, bulk : float
-        Size of the first layer below the surface and of the elements far from it [m].
-    growth : float
-        Ratio of neighbouring elements.
-
-    Returns
-    -------
-    profile : Profile
-        ``race`` holds the nodes within the window.
+    arc_step : distance of the race's nodes along the groove [m]; one of them lies at the free contact angle
+    window : lowest and highest contact angle of the nodes in ``race`` [rad], positive at the free contact angle; what runs over
+        the groove's edge is left out
+    depth_step, bulk : size of the first layer below the surface and of the elements far from it [m]
+    growth : ratio of neighbouring elements
     """
     contact, step = shape.sign * shape.contact, arc_step / shape.groove
     edges = _contact_edges(shape)
@@ -189,8 +171,8 @@ def _section(shape: RingShape, angles: np.ndarray, race: slice, depth_step: floa
     for lean in _LEANS:
         seat = _onto(lean * along + (1.0 - lean) * top[:, 0], outline.seat[1:-1, 0])
         bottom = np.column_stack([seat, np.interp(seat, *outline.seat.T)])
-        points, quads = mapped(top[:, ::-1], bottom[:, ::-1], depth)
-        if lean == _LEANS[-1] or corner_areas(points, quads).min() > 0.0:
+        points, quads = _mapped(top[:, ::-1], bottom[:, ::-1], depth)
+        if lean == _LEANS[-1] or _corner_areas(points, quads).min() > 0.0:
             break
     rows = len(depth)
     lines = len(left) + np.arange(len(angles))[:: int(sign)][race]
@@ -233,13 +215,9 @@ def ball_profile(
 
     Parameters
     ----------
-    radius : float [m]
-    lateral_step : float
-        Distance of the nodes along the rolling direction at the equator, as arc length [m]; one lies on the equator.
-    half_width : float
-        Arc length from the equator up to which nodes keep that distance [m]; they are ``race``, from -x to +x.
-    depth_step, bulk : float
-        Size of the first layer below the surface and of the elements far from it [m].
+    lateral_step : distance of the nodes along the rolling direction at the equator, as arc length [m]; one lies on the equator
+    half_width : arc length from the equator up to which nodes keep that distance [m]; they are ``race``, from -x to +x
+    depth_step, bulk : size of the first layer below the surface and of the elements far from it [m]
     """
     count = ceil(half_width / lateral_step - 1e-9)
     fine = lateral_step / radius * np.arange(count + 1)
@@ -252,7 +230,7 @@ def ball_profile(
     axis = radius * np.sin(POLE) * (EVEN * even + (1.0 - EVEN) * latitude / POLE)
     hole = HOLE * radius
     depth = growing(radius - hole, depth_step, bulk, growth) / (radius - hole)
-    points, quads = mapped(top, np.column_stack([np.full(len(axis), hole), axis]), depth)
+    points, quads = _mapped(top, np.column_stack([np.full(len(axis), hole), axis]), depth)
     rows, middle = len(depth), len(north) - 1
     lines = np.arange(middle - count, middle + count + 1)
     return Profile(points, quads, lines * rows, np.empty(0, dtype=np.int64), latitude[lines], rows)

@@ -7,24 +7,7 @@ import numpy as np
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.record import Record
-from raceway.core.ring.kernels.layout import (
-    CAGE,
-    CENTRIFUGAL,
-    COSINE,
-    DAMPING,
-    DIAMETER,
-    LEVER,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    REST_AXIAL,
-    REST_RADIAL,
-    SHIFT,
-    SIDE,
-    SINE,
-    STICK,
-    TILT_ARM,
-    TIME_CONSTANT,
-)
+from raceway.core.ring.kernels import layout
 from raceway.core.ring.system import System
 
 
@@ -46,41 +29,41 @@ def friction_energy(system: System, record: Record) -> FrictionEnergy:
     along u, so no step of a record that keeps every step can give energy.
     """
     n = len(record.time)
-    if system.conservative or system.scalars[STICK] == 0.0:
+    if system.conservative or system.scalars[layout.STICK] == 0.0:
         return FrictionEnergy(np.zeros(n), np.zeros(n))
     slip = record.ball[:, :, 2:4]
-    force = system.scalars[STICK] * (_place(system, record) - slip)
+    force = system.scalars[layout.STICK] * (_place(system, record) - slip)
     lost = np.zeros(n)
     lost[1:] = np.cumsum((force[1:] * np.diff(slip, axis=0)).sum(axis=(1, 2)))
-    return FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[STICK], lost)
+    return FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[layout.STICK], lost)
 
 
 def _place(system: System, record: Record) -> np.ndarray:
     """(n, Z, 2) tangential place of the inner and the outer contact [m]; the slip is the place at which nothing pulls."""
     scalars, table = system.scalars, system.table
-    travelled, rest_radial = scalars[CAGE] * record.time, scalars[REST_RADIAL]
+    travelled, rest_radial = scalars[layout.CAGE] * record.time, scalars[layout.REST_RADIAL]
     if system.spin is not None:
-        travelled = system.spin.cage_angle(scalars[CAGE], record.time)
+        travelled = system.spin.cage_angle(scalars[layout.CAGE], record.time)
         rest_radial = rest_radial + system.spin.grown(system.spin.speed(record.time))[:, None]
-    azimuth = np.arctan2(table[:, SINE], table[:, COSINE]) + travelled[:, None]
+    azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + travelled[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
-    shift = np.broadcast_to(table[:, SHIFT], azimuth.shape)
+    shift = np.broadcast_to(table[:, layout.SHIFT], azimuth.shape)
     if system.spin is not None and system.spin.shift is not None:
-        second = table[:, SIDE] != table[0, SIDE]
-        apart = table[:, SHIFT] - table[second, SHIFT][0]
+        second = table[:, layout.SIDE] != table[0, layout.SIDE]
+        apart = table[:, layout.SHIFT] - table[second, layout.SHIFT][0]
         shift = np.where(second, system.spin.shift(system.spin.speed(record.time))[:, None] + apart, shift)
     x, y, z, tilt_y, tilt_z = (record.displacement[:, k, None] for k in range(5))
-    side, lever = table[:, SIDE], table[:, LEVER]
+    side, lever = table[:, layout.SIDE], table[:, layout.LEVER]
     turn = side * (tilt_y * s - tilt_z * c)
-    axial = scalars[REST_AXIAL] + shift + side * x + scalars[TILT_ARM] * turn
+    axial = scalars[layout.REST_AXIAL] + shift + side * x + scalars[layout.TILT_ARM] * turn
     radial = rest_radial + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
     p, moved = record.ball, system.groove_displacement(record.ball)
-    groove = scalars[OFFSET_INNER] + 0.5 * scalars[DIAMETER]
+    groove = scalars[layout.OFFSET_INNER] + 0.5 * scalars[layout.DIAMETER]
     inner = (
-        scalars[OFFSET_INNER] * np.arctan2(axial + moved[:, :, 0] - p[:, :, 0], radial + moved[:, :, 1] - p[:, :, 1])
+        scalars[layout.OFFSET_INNER] * np.arctan2(axial + moved[:, :, 0] - p[:, :, 0], radial + moved[:, :, 1] - p[:, :, 1])
         - groove * turn
     )
-    outer = scalars[OFFSET_OUTER] * np.arctan2(p[:, :, 0], p[:, :, 1])
+    outer = scalars[layout.OFFSET_OUTER] * np.arctan2(p[:, :, 0], p[:, :, 1])
     return np.stack([inner, outer], axis=2)
 
 
@@ -117,7 +100,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     stored_energy(system.law, tiled, memory, memory.copy(), gap, np.empty((6, n * pairs)), energy)
     q, v = record.displacement, record.velocity
     stored = energy.reshape(n, pairs).sum(axis=1)
-    stored -= (record.ball[:, :, 1] * system.table[:, CENTRIFUGAL]).sum(axis=1)
+    stored -= (record.ball[:, :, 1] * system.table[:, layout.CENTRIFUGAL]).sum(axis=1)
     stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
     if system.condensed:
         stored += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
@@ -128,10 +111,10 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     dt = record.time[1] - record.time[0]
     work = cumulative(np.einsum("ni,ni->n", record.force, v), dt)
     lost = np.einsum("ni,ij,nj->n", v, system.damping, v)
-    if system.scalars[DAMPING] > 0.0:
+    if system.scalars[layout.DAMPING] > 0.0:
         speed = np.gradient(record.gap, dt, axis=0)
-        lost = lost + system.scalars[DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
-    if system.scalars[TIME_CONSTANT] > 0.0:
+        lost = lost + system.scalars[layout.DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
+    if system.scalars[layout.TIME_CONSTANT] > 0.0:
         lost = lost + _lost_in_contacts(system, record, rate(record.gap, dt))
     losses = cumulative(lost, dt) + friction.lost
     total = kinetic + stored - work + losses

@@ -19,29 +19,32 @@ from numba import boolean, float64, int64, void
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, STORED
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
     CUBE,
     LINEAR,
     MATRIX,
+    RESPONSE,
     SETTLE,
+    STATIC,
     VECTOR,
     Balls,
     Constants,
     Contacts,
     Response,
+    StaticState,
 )
 
 
-@jit(boolean(MATRIX, VECTOR))
-def solve(matrix, rhs):
-    """Solve in place by Gaussian elimination with partial pivoting; ``rhs`` becomes the solution.
+@jit(boolean(MATRIX))
+def eliminate(matrix):
+    """Solve in place by Gaussian elimination with partial pivoting: (n, n + k), a system and its k right sides, which become solutions.
 
-    Returns False when a pivot vanishes or is not a number; both arrays are then undefined.
+    Returns False when a pivot vanishes or is not a number; the matrix is then undefined.
     """
-    n = rhs.size
+    n, width = matrix.shape
     for column in range(n):
         pivot, largest = column, abs(matrix[column, column])
         for row in range(column + 1, n):
@@ -50,21 +53,23 @@ def solve(matrix, rhs):
         if not largest > 0.0:
             return False
         if pivot != column:
-            for k in range(column, n):
+            for k in range(column, width):
                 matrix[column, k], matrix[pivot, k] = matrix[pivot, k], matrix[column, k]
-            rhs[column], rhs[pivot] = rhs[pivot], rhs[column]
         inverse = 1.0 / matrix[column, column]
         for row in range(column + 1, n):
             factor = matrix[row, column] * inverse
             if factor != 0.0:
-                for k in range(column + 1, n):
+                for k in range(column + 1, width):
                     matrix[row, k] -= factor * matrix[column, k]
-                rhs[row] -= factor * rhs[column]
     for row in range(n - 1, -1, -1):
-        total = rhs[row]
-        for k in range(row + 1, n):
-            total -= matrix[row, k] * rhs[k]
-        rhs[row] = total / matrix[row, row]
+        inverse = 1.0 / matrix[row, row]
+        for k in range(n, width):
+            matrix[row, k] *= inverse
+        for above in range(row):
+            factor = matrix[above, row]
+            if factor != 0.0:
+                for k in range(n, width):
+                    matrix[above, k] -= factor * matrix[row, k]
     return True
 
 
@@ -119,6 +124,14 @@ def copy_cube(source, target):
                 target[i, j, k] = source[i, j, k]
 
 
+@jit(CONSTANTS(CONSTANTS, float64), allocates=True)
+def at_rest(constants, t):
+    """The constants of balls that stand where they are at a time."""
+    scalars, table = constants.scalars.copy(), constants.table.copy()
+    stop(t, scalars, table)
+    return Constants(scalars, table)
+
+
 CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE, RUN_AWAY = range(5)
 #: Entries of ``report``.
 ITERATIONS, RESIDUAL = range(2)
@@ -127,9 +140,9 @@ _LIMIT = 300
 _SCRATCH, _SCRATCH_END = 8, 14
 
 
-@jit(float64(CONTACTS, CONSTANTS, MATRIX, MATRIX, VECTOR))
-def contact_energy(contacts, constants, ball, work, energy):
-    """Energy [J] stored in all contacts at the gaps in ``work`` and in the bodies, less the work of the centrifugal forces."""
+@jit(float64(CONTACTS, CONSTANTS, LINEAR, VECTOR, MATRIX, MATRIX, VECTOR))
+def _potential_energy(contacts, constants, linear, q, ball, work, energy):
+    """Energy [J] of the contacts at the gaps in ``work``, of the bodies and of the linear stiffness, less the work of all forces."""
     table = constants.table
     stored_energy(contacts.law, contacts.params, contacts.old, contacts.new, work[GAP], work[_SCRATCH:_SCRATCH_END], energy)
     total = 0.0
@@ -138,43 +151,46 @@ def contact_energy(contacts, constants, ball, work, energy):
     for k in range(table.shape[0]):
         if table[k, CENTRIFUGAL] != 0.0:
             total -= table[k, CENTRIFUGAL] * ball[k, 1]
+    for i in range(5):
+        total -= linear.load[i] * q[i]
+        for j in range(5):
+            total += 0.5 * q[i] * linear.stiffness[i, j] * q[j]
     return total
 
 
-@jit(float64(float64, LINEAR, VECTOR))
-def with_linear_parts(energy, linear, q):
-    """An energy [J] and that of the linear stiffness, less the work of the load, at q (5,)."""
-    for i in range(5):
-        energy -= linear.load[i] * q[i]
-        for j in range(5):
-            energy += 0.5 * q[i] * linear.stiffness[i, j] * q[j]
-    return energy
-
-
-@jit(float64(MATRIX, int64))
-def force_scale(work, inner):
+@jit(float64(MATRIX))
+def _force_scale(work):
     """Sum of the inner races' forces and a ten-thousandth of the outer ones' [N]."""
     total = 0.0
     for i in range(work.shape[1]):
-        total += abs(work[CONTACT_FORCE, i]) * (1.0 if i < inner else 1e-4)
+        total += abs(work[CONTACT_FORCE, i]) * (1.0 if i < work.shape[1] // 2 else 1e-4)
     return total
 
 
 @jit(float64(LINEAR, VECTOR, VECTOR, VECTOR, VECTOR))
-def gradient(linear, f, q, scale, out):
-    """out (5,): slope of the potential by the scaled unknowns [N], from the contacts' force f (5,); its largest entry."""
+def _imbalance(linear, f, q, weight, r):
+    """r (5,): forces that are left [N, N m] with those of the contacts f (5,); the largest, by weight (5,), or infinity."""
     norm = 0.0
     for i in range(5):
         total = f[i] - linear.load[i]
         for j in range(5):
             total += linear.stiffness[i, j] * q[j]
-        out[i] = total * scale[i] * linear.free[i]
-        norm = max(norm, abs(out[i]))
+        r[i] = total * linear.free[i]
+        norm = max(norm, abs(r[i]) * weight[i]) if np.isfinite(r[i]) else np.inf
+    return norm
+
+
+@jit(float64(LINEAR, VECTOR, VECTOR, VECTOR, VECTOR))
+def _gradient(linear, f, q, scale, out):
+    """out (5,): slope of the potential by the scaled unknowns [N], from the contacts' force f (5,); its largest entry."""
+    norm = _imbalance(linear, f, q, scale, out)
+    for i in range(5):
+        out[i] *= scale[i]
     return norm
 
 
 @jit(float64(LINEAR, MATRIX, VECTOR, float64, MATRIX))
-def hessian(linear, K, scale, least, H):
+def _hessian(linear, K, scale, least, H):
     """H (5, 5): second derivatives by the scaled unknowns [N/m] from the contacts' K; its largest diagonal entry, or ``least``."""
     trace, free = 0.0, linear.free
     for i in range(5):
@@ -190,7 +206,7 @@ def hessian(linear, K, scale, least, H):
 
 
 @jit(float64(MATRIX, VECTOR, float64, float64, float64, MATRIX, VECTOR))
-def trust_region_step(H, g, norm, trace, radius, factor, step):
+def _trust_region_step(H, g, norm, trace, radius, factor, step):
     """step (5,): Newton's where it stays inside the radius, else of (H + shift) d = -g with |d| = radius; its length."""
     size, shift, low, high = np.inf, 0.0, 0.0, 0.0
     for _ in range(60):
@@ -220,35 +236,48 @@ def trust_region_step(H, g, norm, trace, radius, factor, step):
     return size
 
 
-@jit(float64(MATRIX, VECTOR, VECTOR))
-def predicted_decrease(H, g, step):
-    """How far the quadratic model falls over a step [J]."""
-    predicted = 0.0
+@jit(float64(float64, float64, MATRIX, VECTOR, VECTOR, VECTOR))
+def _decrease_ratio(before, after, H, g, g_new, step):
+    """Fall of the potential from ``before`` to ``after`` [J] over that of the quadratic model over a step."""
+    predicted, slopes = 0.0, 0.0
     for i in range(5):
         total = g[i]
         for j in range(5):
             total += 0.5 * H[i, j] * step[j]
         predicted -= step[i] * total
-    return predicted
-
-
-@jit(float64(float64, float64, float64, VECTOR, VECTOR, VECTOR))
-def decrease_ratio(before, after, predicted, g, g_new, step):
-    """Fall of the potential from ``before`` to ``after`` [J] over the predicted one."""
+        slopes += (g[i] + g_new[i]) * step[i]
+    if not predicted > 0.0:
+        return 0.0
     if predicted <= 1e-13 * (abs(before) + abs(after)):
         # Energies no longer tell the two states apart: the mean of the slopes at both ends of the step does.
-        slopes = 0.0
-        for i in range(5):
-            slopes += (g[i] + g_new[i]) * step[i]
-        return -0.5 * slopes / predicted if predicted > 0.0 else 0.0
-    return (before - after) / predicted if predicted > 0.0 else 0.0
+        return -0.5 * slopes / predicted
+    return (before - after) / predicted
 
 
-@jit(void(VECTOR, VECTOR))
-def copy_vector(source, target):
-    """target (n,) becomes source (n,)."""
-    for i in range(source.size):
-        target[i] = source[i]
+@jit(float64(float64, float64, float64))
+def _next_radius(ratio, radius, size):
+    """Trust radius after a step of length ``size`` that the potential fell over by so much of the predicted decrease."""
+    if ratio < 0.25:
+        return 0.25 * min(radius, size)
+    return 3.0 * radius if ratio > 0.75 and size >= 0.7 * radius else radius
+
+
+@jit(boolean(VECTOR, VECTOR, float64))
+def _runs_away(q, scale, arm):
+    """Whether the ring is a thousand of its arms away: nothing holds it."""
+    away = False
+    for i in range(5):
+        away = away or abs(q[i]) > 1e3 * arm * scale[i]
+    return away
+
+
+@jit(void(STATIC, RESPONSE, STATIC, RESPONSE))
+def _accept(trial, new, state, now):
+    """The state and its response become the trial ones."""
+    for i in range(5):
+        state.q[i], now.f[i] = trial.q[i], new.f[i]
+    copy_matrix(new.K, now.K)
+    copy_matrix(trial.ball, state.ball)
 
 
 @jit(SETTLE, allocates=True)
@@ -267,20 +296,15 @@ def settle(forces, linear, tolerance, t, state, response, report):
     int
         ``CONVERGED``, ``NOT_CONVERGED``, ``BALLS_FAILED``, ``NOT_FINITE`` or ``RUN_AWAY`` (nothing holds the ring).
     """
-    constants, q, ball, work = forces.constants, state.q, state.ball, response.work
-    if constants.scalars[CAGE] != 0.0:
-        constants = Constants(constants.scalars.copy(), constants.table.copy())
-        stop(t, constants.scalars, constants.table)
-    arm = constants.scalars[TILT_ARM]
-    scale = np.ones(5)
-    scale[3] = 1.0 / arm
-    scale[4] = 1.0 / arm
-    still, zeros = np.zeros(5), np.zeros_like(ball)
+    constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work
+    arm, scale = constants.scalars[TILT_ARM], np.ones(5)
+    scale[3], scale[4] = 1.0 / arm, 1.0 / arm
+    still, zeros, trial = np.zeros(5), np.zeros_like(ball), StaticState(np.empty(5), ball.copy(), state.memory)
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), 0.0)
     now = Response(response.f, response.K, np.empty((5, 5)), work)
     new = Response(np.empty(5), np.empty((5, 5)), now.C, work)
-    g, g_new, step, trial = np.zeros(5), np.zeros(5), np.empty(5), np.empty(5)
-    H, factor, ball_new, energies = np.empty((5, 5)), np.empty((5, 5)), ball.copy(), np.empty(work.shape[1])
+    g, g_new, step, energies = np.zeros(5), np.zeros(5), np.empty(5), np.empty(work.shape[1])
+    H, factor = np.empty((5, 5)), np.empty((5, 5))
     radius = 0.05 * (abs(constants.scalars[REST_AXIAL]) + abs(constants.scalars[REST_RADIAL]))
     if radius == 0.0:  # bearings without grooves or clearance
         radius = 1e-3 * arm
@@ -288,58 +312,46 @@ def settle(forces, linear, tolerance, t, state, response, report):
         return BALLS_FAILED
     # What the ring feels counts: under centrifugal force the outer races may carry a million times more, of which only
     # the rounding (a ten-thousandth of the tolerance, 1e-15) remains.
-    inner = work.shape[1] // 2
-    carried, weight = force_scale(work, inner), 0.0
-    potential, relative = np.nan, np.inf
+    carried, weight, potential, relative = _force_scale(work), 0.0, np.nan, np.inf
     for i in range(5):
         weight += abs(linear.load[i]) * scale[i]
     for iteration in range(_LIMIT):
-        norm = gradient(linear, now.f, q, scale, g)
+        norm = _gradient(linear, now.f, q, scale, g)
         relative = norm / max(carried + weight, 1e-300)
         report[ITERATIONS], report[RESIDUAL] = iteration, relative
         if not np.isfinite(norm):
             return NOT_FINITE
-        for i in range(5):
-            if abs(q[i]) > 1e3 * arm * scale[i]:
-                return RUN_AWAY
+        if _runs_away(q, scale, arm):
+            return RUN_AWAY
         if relative <= tolerance:
             return CONVERGED
-        trace = hessian(linear, now.K, scale, norm / radius, H)
-        size = trust_region_step(H, g, norm, trace, radius, factor, step)
+        size = _trust_region_step(H, g, norm, _hessian(linear, now.K, scale, norm / radius, H), radius, factor, step)
         if not np.isfinite(size):
             return NOT_CONVERGED
         for i in range(5):
-            trial[i] = q[i] + step[i] * scale[i]
-        copy_matrix(ball, ball_new)
+            trial.q[i] = q[i] + step[i] * scale[i]
+        copy_matrix(ball, trial.ball)
         if np.isnan(potential):
-            potential = with_linear_parts(contact_energy(contacts, constants, ball, work, energies), linear, q)
-        if forces.system(t, trial, still, Balls(ball_new, 0.0, zeros), contacts, constants, new) != 0:
+            potential = _potential_energy(contacts, constants, linear, q, ball, work, energies)
+        if forces.system(t, trial.q, still, Balls(trial.ball, 0.0, zeros), contacts, constants, new) != 0:
             radius *= 0.25
             if radius < 1e-18:
                 return BALLS_FAILED
             continue
-        carried_new = force_scale(work, inner)
-        if gradient(linear, new.f, trial, scale, g_new) < 0.25 * norm:
-            accepted, potential, radius = True, np.nan, max(radius, 3.0 * size)
+        carried_new = _force_scale(work)
+        if _gradient(linear, new.f, trial.q, scale, g_new) < 0.25 * norm:
+            potential, radius = np.nan, max(radius, 3.0 * size)
         else:
-            energy = with_linear_parts(contact_energy(contacts, constants, ball_new, work, energies), linear, trial)
-            ratio = decrease_ratio(potential, energy, predicted_decrease(H, g, step), g, g_new, step)
-            accepted = ratio > 1e-4
-            if ratio < 0.25:
-                radius = 0.25 * min(radius, size)
-            elif ratio > 0.75 and size >= 0.7 * radius:
-                radius *= 3.0
-            if accepted:
-                potential = energy
-            if radius < 1e-22:
-                # No step helps any more: rounding, where the imbalance is small already.
+            energy = _potential_energy(contacts, constants, linear, trial.q, trial.ball, work, energies)
+            ratio = _decrease_ratio(potential, energy, H, g, g_new, step)
+            radius = _next_radius(ratio, radius, size)
+            if radius < 1e-22:  # no step helps any more: rounding, where the imbalance is small already
                 break
-        if accepted:
-            carried = carried_new
-            copy_vector(trial, q)
-            copy_vector(new.f, now.f)
-            copy_matrix(new.K, now.K)
-            copy_matrix(ball_new, ball)
+            if not ratio > 1e-4:
+                continue
+            potential = energy
+        carried = carried_new
+        _accept(trial, new, state, now)
     return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED
 
 
@@ -350,16 +362,13 @@ _HALVINGS = 30
 @jit(SETTLE, allocates=True)
 def find_root(forces, linear, tolerance, t, state, response, report):
     """Same arguments and result as ``raceway.core.ring.equilibrium.settle``; slips are taken from ``state`` as committed."""
-    constants, q, ball, work = forces.constants, state.q, state.ball, response.work
-    if constants.scalars[CAGE] != 0.0:
-        constants = Constants(constants.scalars.copy(), constants.table.copy())
-        stop(t, constants.scalars, constants.table)
+    constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work
     # No rates; the columns of slips hold the committed ones.
     still, history = np.zeros(5), np.empty_like(ball)
     keep_slips(constants.scalars, ball, history)
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), 0.0)
     now = Response(response.f, response.K, np.empty((5, 5)), work)
-    J, r, step, weight = np.empty((5, 5)), np.empty(5), np.zeros(5), np.ones(5)
+    J, r, step, weight, ones = np.empty((5, 6)), np.empty(5), np.zeros(5), np.ones(5), np.ones(5)
     weight[3] = 1.0 / constants.scalars[TILT_ARM]
     weight[4] = 1.0 / constants.scalars[TILT_ARM]
     before, cuts = np.inf, 0
@@ -371,7 +380,7 @@ def find_root(forces, linear, tolerance, t, state, response, report):
                 scale += abs(work[CONTACT_FORCE, i])
             for i in range(5):
                 scale += abs(linear.load[i]) * weight[i]
-            norm = imbalance(linear, now.f, q, weight, r)
+            norm = _imbalance(linear, now.f, q, weight, r)
         report[ITERATIONS], report[RESIDUAL] = iteration, norm / max(scale, 1e-300)
         if norm <= tolerance * scale:
             return CONVERGED
@@ -384,34 +393,21 @@ def find_root(forces, linear, tolerance, t, state, response, report):
                 q[i] -= step[i]
             continue
         before = norm
-        if not newton_step(linear, now.K, r, J, step):
+        if not _newton_step(linear, now.K, r, ones, J, step):
             return NOT_CONVERGED
         for i in range(5):
             q[i] += step[i]
     return NOT_CONVERGED
 
 
-@jit(float64(LINEAR, VECTOR, VECTOR, VECTOR, VECTOR))
-def imbalance(linear, f, q, weight, r):
-    """r (5,): forces that are left [N, N m]; the largest, by weight (5,), or infinity."""
-    norm = 0.0
+@jit(boolean(LINEAR, MATRIX, VECTOR, VECTOR, MATRIX, VECTOR))
+def _newton_step(linear, K, r, ones, J, step):
+    """step (5,) that the tangent K (5, 5) of the contacts asks for; J (5, 6) is scratch.  False where it is singular."""
+    _hessian(linear, K, ones, 1.0, J)
     for i in range(5):
-        total = f[i] - linear.load[i]
-        for j in range(5):
-            total += linear.stiffness[i, j] * q[j]
-        r[i] = total * linear.free[i]
-        norm = max(norm, abs(r[i]) * weight[i]) if np.isfinite(r[i]) else np.inf
-    return norm
-
-
-@jit(boolean(LINEAR, MATRIX, VECTOR, MATRIX, VECTOR))
-def newton_step(linear, K, r, J, step):
-    """step (5,) that the tangent K (5, 5) of the contacts asks for; J (5, 5) is scratch.  False where it is singular."""
-    free = linear.free
+        J[i, 5] = -r[i]
+    if not eliminate(J):
+        return False
     for i in range(5):
-        step[i] = -r[i]
-        for j in range(5):
-            J[i, j] = (K[i, j] + linear.stiffness[i, j]) * free[i] * free[j]
-        if free[i] == 0.0:
-            J[i, i] = 1.0
-    return solve(J, step)
+        step[i] = J[i, 5]
+    return True

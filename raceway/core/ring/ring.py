@@ -4,28 +4,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import attrs
 import numpy as np
 
+from raceway.core.jit import Kernel
 from raceway.core.record import Motion, Observation, State, check_start
-from raceway.core.ring.kernels.layout import (
-    CAGE,
-    CENTRIFUGAL,
-    DIAMETER,
-    FRICTION,
-    GYROSCOPIC,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OWN_REST_AXIAL,
-    OWN_TILT_ARM,
-    REST_AXIAL,
-    SIDE,
-    TILT_ARM,
-    place,
-    stop,
-)
+from raceway.core.ring.kernels import layout
+from raceway.core.ring.kernels.layout import place, stop
 from raceway.core.signatures import Constants
 from raceway.core.threads import ThreadPool
 
@@ -73,14 +60,14 @@ class SteppedBearing:
 
     size, smooth = 5, False
 
-    def __init__(self, system: Any) -> None:
+    def __init__(self, system: Ring) -> None:
         self.system = system
         self.ball_count: int = system.ball_count
         self.conservative: bool = system.conservative
         self._weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm]) * system.free
         self._ball = self._before = np.zeros((self.ball_count, system.ball_columns))
         self._memory = system.law_state.copy()
-        self._now: Any = None
+        self._now: Evaluation
         self._guess: np.ndarray | None = None
         self._stiffest = np.zeros(5)
         self._damping: np.ndarray = system.damping
@@ -215,18 +202,82 @@ class Growth:
         return cls(np.array([0.0, growth, 0.0, 0.0, 0.0]), np.zeros((balls, 5)))
 
 
-class Spin(Protocol):
-    """A speed that changes, with what of a ring follows it: ``raceway.core.ring.system``."""
+R = TypeVar("R", bound="Ring")
+#: Half the interval over which a phase is differentiated [s]: its rounding then makes 1e-9 of the speed.
+_INTERVAL = 1e-5
 
-    @property
-    def reference(self) -> float: ...
-    @property
-    def shift(self) -> Callable[[np.ndarray], np.ndarray] | None: ...
-    def speed(self, time: np.ndarray) -> np.ndarray: ...
-    def grown(self, speed: np.ndarray) -> np.ndarray: ...
-    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray: ...
-    def at(self, ring: Any, t: float) -> Any: ...
-    def constants(self, ring: Any, speed: float) -> Any: ...
+
+@attrs.frozen(eq=False)
+class ChangingSpeed:
+    """The speed w(t) of the inner ring, and the parts of a system that belong to a reference speed w_r.
+
+    Attributes
+    ----------
+    phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
+    reference : w_r that the system's constants were made for [rad/s]
+    growth : of the inner raceway [m]: at w_r by speed, by its fit at standstill, and what w_r takes from that fit, down to none
+    gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
+    shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
+        where rows stay
+
+    Notes
+    -----
+    Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
+    of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
+    """
+
+    phase: Callable[[np.ndarray], np.ndarray]
+    reference: float
+    growth: tuple[float, float, float]
+    gyroscopic: np.ndarray
+    shift: Callable[[np.ndarray], np.ndarray] | None = None
+    law: Callable[[Any, float], Any] | None = None
+
+    def speed(self, time: np.ndarray) -> np.ndarray:
+        """w (n,) [rad/s] at times (n,) [s] from zero on."""
+        before, after = np.maximum(time - _INTERVAL, 0.0), time + _INTERVAL
+        return np.asarray((self.phase(after) - self.phase(before)) / (after - before))
+
+    def grown(self, speed: np.ndarray) -> np.ndarray:
+        """Growth of the inner raceway (n,) [m] at speeds (n,) [rad/s] beyond that at w_r."""
+        (free, fit, lost), squared = self.growth, (speed / self.reference) ** 2
+        return np.asarray(free * (squared - 1.0) + np.maximum(fit - lost * squared, 0.0) - max(fit - lost, 0.0))
+
+    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
+        """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
+        return np.asarray(cage / self.reference * (self.phase(time) - self.phase(np.zeros(1))))
+
+    def at(self, system: R, t: float) -> R:
+        """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
+        from which balls at the speed of now would have come to their places of now."""
+        now = np.array([t])
+        speed = float(self.speed(now)[0])
+        ring = self.constants(system, speed)
+        if system.scalars[layout.CAGE] != 0.0:
+            ahead = float(self.cage_angle(system.scalars[layout.CAGE], now)[0]) - ring.scalars[layout.CAGE] * t
+            c, s = np.cos(ahead), np.sin(ahead)
+            ring.table[:, layout.COSINE], ring.table[:, layout.SINE] = (
+                system.table[:, layout.COSINE] * c - system.table[:, layout.SINE] * s,
+                system.table[:, layout.SINE] * c + system.table[:, layout.COSINE] * s,
+            )
+        return ring
+
+    def constants(self, system: R, speed: float) -> R:
+        """The system at a steady speed [rad/s]."""
+        ratio = speed / self.reference
+        if self.law is not None:
+            system = self.law(system, speed)
+        scalars, table = system.scalars.copy(), system.table.copy()
+        scalars[layout.REST_RADIAL] += float(self.grown(np.array([speed]))[0])
+        scalars[layout.GYROSCOPIC] *= ratio**2
+        scalars[layout.CAGE] *= ratio
+        table[:, layout.CENTRIFUGAL] *= ratio**2
+        if self.shift is not None:
+            second = table[:, layout.SIDE] != table[0, layout.SIDE]
+            apart = table[second, layout.SHIFT] - table[second, layout.SHIFT][0]
+            table[second, layout.SHIFT] = self.shift(np.array([speed]))[0] + apart
+        damping = system.damping + (ratio - 1.0) * self.gyroscopic
+        return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)
 
 
 @attrs.define(eq=False, kw_only=True)
@@ -252,10 +303,10 @@ class Ring(ABC):
     stiffness: np.ndarray
     free: np.ndarray
     load: np.ndarray
-    force: Any
+    force: Kernel
     force_params: np.ndarray
     law_state: np.ndarray
-    spin: Spin | None = None
+    spin: ChangingSpeed | None = None
     sliding: np.ndarray | None = None
 
     @property
@@ -304,6 +355,8 @@ class Ring(ABC):
         ------
         ConvergenceError
             With the last state and its residual.
+        PluginError
+            An array of another shape.
         """
 
     def stepped(self) -> SteppedSystem:
@@ -331,10 +384,7 @@ class Ring(ABC):
 
     def at_speed(self, t: float) -> Self:
         """With the speed of a time: itself where the speed is steady."""
-        if self.spin is None:
-            return self
-        ring: Self = self.spin.at(self, t)
-        return ring
+        return self if self.spin is None else self.spin.at(self, t)
 
     @property
     def ball_count(self) -> int:
@@ -343,7 +393,7 @@ class Ring(ABC):
     @property
     def arm(self) -> float:
         """Arm of the tilts [m]."""
-        return float(self.scalars[TILT_ARM])
+        return float(self.scalars[layout.TILT_ARM])
 
     def outer_force(self, t: float) -> np.ndarray:
         """(5,) the excitation at a time, without ramp."""
@@ -366,10 +416,10 @@ class Ring(ABC):
     def standing(self, growth: Growth) -> Self:
         """A copy at standstill without a growth of its grooves: the state before mounting, where that is all of it."""
         scalars, table = self.scalars.copy(), self.table.copy()
-        scalars[[GYROSCOPIC, CAGE]] = 0.0
-        scalars[REST_AXIAL : TILT_ARM + 1] -= growth.common
-        table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] -= growth.by_ball
-        table[:, CENTRIFUGAL] = 0.0
+        scalars[[layout.GYROSCOPIC, layout.CAGE]] = 0.0
+        scalars[layout.REST_AXIAL : layout.TILT_ARM + 1] -= growth.common
+        table[:, layout.OWN_REST_AXIAL : layout.OWN_TILT_ARM + 1] -= growth.by_ball
+        table[:, layout.CENTRIFUGAL] = 0.0
         return attrs.evolve(self, scalars=scalars, table=table)
 
     def centre_vectors(
@@ -393,13 +443,15 @@ class Ring(ABC):
         e, direction = self.centre_vectors(q, t, ball)
         inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
         outer = np.arctan2(ball[:, 0], ball[:, 1])
-        turned = self.table[:, SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
-        groove = self.scalars[OFFSET_INNER] + 0.5 * self.scalars[DIAMETER]
-        return np.column_stack([self.scalars[OFFSET_INNER] * inner - groove * turned, self.scalars[OFFSET_OUTER] * outer])
+        turned = self.table[:, layout.SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
+        groove = self.scalars[layout.OFFSET_INNER] + 0.5 * self.scalars[layout.DIAMETER]
+        return np.column_stack(
+            [self.scalars[layout.OFFSET_INNER] * inner - groove * turned, self.scalars[layout.OFFSET_OUTER] * outer]
+        )
 
     def at_standstill(self) -> Self:
         """Without friction and with balls that do not orbit: for periodic motions that a transient may start on."""
-        return self.without(FRICTION, CAGE)
+        return self.without(layout.FRICTION, layout.CAGE)
 
     def reduced(self, matrix: np.ndarray) -> np.ndarray:
         """The part of a (5, 5) matrix that belongs to the unknowns."""
@@ -475,5 +527,5 @@ class Ring(ABC):
 
     def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:
         """What dashpots of the contacts add to their stiffness (5, 5) at an equilibrium, complex: motions exp(j w t), w [rad/s]."""
-        still = self.without(CAGE)
+        still = self.without(layout.CAGE)
         return 1j * frequency * still.damping_at(q, still.evaluate(q, ball=ball))

@@ -2,42 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, TypeVar
-
 import attrs
 import numpy as np
-from numba import types
-from numba.experimental.function_type import _get_wrapper_address
-from numba.extending import typeof_impl
 
+from raceway.core.jit import Kernel, address_of
 from raceway.core.record import check_state
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
-from raceway.core.ring.kernels import CONTACT_FORCE, GAP
-from raceway.core.ring.kernels.layout import (
-    BLOCK,
-    CAGE,
-    CENTRIFUGAL,
-    COSINE,
-    DISTANCE,
-    FIRST,
-    FRICTION,
-    GYROSCOPIC,
-    KNOTS,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OWN_OFFSET_INNER,
-    OWN_OFFSET_OUTER,
-    REST_RADIAL,
-    ROW,
-    SHIFT,
-    SIDE,
-    SINE,
-    are_condensed,
-    elastic_columns,
-    work_rows,
-)
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
+from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
 from raceway.core.ring.viscous_stiffness import viscous_stiffness
 from raceway.core.signatures import (
@@ -50,13 +22,9 @@ from raceway.core.signatures import (
     Forces,
     Linear,
     Response,
-    Rest,
+    StaticState,
 )
 from raceway.errors import ConvergenceError
-
-if TYPE_CHECKING:
-    from raceway.core.ring.ring import Ring
-
 
 #: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
 _SLOW = 1e-4
@@ -77,9 +45,9 @@ class System(Ring):
     reach : (2 Z,) how far from touching the contacts begin to carry [m], which the table's offsets hold
     """
 
-    kernel: Any
-    base_kernel: Any
-    law: Any
+    kernel: Kernel
+    base_kernel: Kernel
+    law: Kernel
     law_params: np.ndarray
     mounted_params: np.ndarray | None = None
     reach: np.ndarray | None = None
@@ -100,7 +68,7 @@ class System(Ring):
     def running(self, law_params: np.ndarray, reach: np.ndarray) -> System:
         """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
         table, before = self.table.copy(), 0.0 if self.reach is None else self.reach
-        table[:, [OWN_OFFSET_INNER, OWN_OFFSET_OUTER]] -= (reach - before).reshape(2, -1).T
+        table[:, [layout.OWN_OFFSET_INNER, layout.OWN_OFFSET_OUTER]] -= (reach - before).reshape(2, -1).T
         mounted = self.law_params if self.mounted_params is None else self.mounted_params
         return attrs.evolve(self, table=table, law_params=law_params, mounted_params=mounted, reach=reach)
 
@@ -151,16 +119,16 @@ class System(Ring):
         if not self.condensed:
             return np.zeros(0)
         centre, _ = self.centre_vectors(q, ball=ball)
-        position = (np.arctan2(centre[:, 0], centre[:, 1]) - self.scalars[FIRST]) / self.scalars[DISTANCE]
-        return np.asarray(np.clip(position, 0.0, self.scalars[KNOTS] - 1.0))
+        position = (np.arctan2(centre[:, 0], centre[:, 1]) - self.scalars[layout.FIRST]) / self.scalars[layout.DISTANCE]
+        return np.asarray(np.clip(position, 0.0, self.scalars[layout.KNOTS] - 1.0))
 
     def between_balls(self) -> tuple[np.ndarray, np.ndarray]:
         """M and M_o (2 Z, 2 Z) between groove centres, axial and radial ball by ball [m/N]; see ``raceway.core.ring.kernels.between``.
 
         Of M_o only the columns of radial forces are known.
         """
-        row, count = int(self.scalars[ROW]), self.ball_count
-        blocks = self.scalars[-BLOCK * row :].reshape(row, BLOCK)
+        row, count = int(self.scalars[layout.ROW]), self.ball_count
+        blocks = self.scalars[-layout.BLOCK * row :].reshape(row, layout.BLOCK)
         both, outer = np.zeros((count, 2, count, 2)), np.zeros((count, 2, count, 2))
         for k in range(count):
             for j in range(k // row * row, k // row * row + row):
@@ -175,7 +143,7 @@ class System(Ring):
             return np.zeros(ball.shape[:-2])
         both, outer = self.between_balls()
         push = np.zeros((self.ball_count, 2))
-        push[:, 1] = self.table[:, CENTRIFUGAL]
+        push[:, 1] = self.table[:, layout.CENTRIFUGAL]
         carried = -(self.groove_displacement(ball).reshape(*ball.shape[:-2], -1) + outer @ push.reshape(-1))
         return 0.5 * np.einsum("...i,ij,...j->...", carried, np.linalg.pinv(both, rcond=1e-12), carried)
 
@@ -201,28 +169,13 @@ class System(Ring):
         t: float = 0.0,
         step: Increment = AT_ONCE,
     ) -> Evaluation:
-        """Contact forces and tangents at displacement q (5,) and velocity v (5,).
-
-        Parameters
-        ----------
-        ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
-        ball_rate : (Z, ``ball_columns``), the rate of a ball is step.gain * ball + ball_rate [m/s]
-        step : since the law's memory was committed
-
-        Raises
-        ------
-        ConvergenceError
-            When the balls find no equilibrium between the races.
-        PluginError
-            An array of another shape: a compiled kernel would write beyond it.
-        """
         check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=step.memory)
         z = self.ball_count
         scalars = self.scalars
         rate = np.zeros((z, self.ball_columns))
         if ball is None:
             # Without a history nothing sticks.
-            ball, scalars = np.zeros((z, self.ball_columns)), self.without(FRICTION).scalars
+            ball, scalars = np.zeros((z, self.ball_columns)), self.without(layout.FRICTION).scalars
         else:
             ball = np.array(ball, dtype=float)
             if not self.conservative:
@@ -253,7 +206,7 @@ class System(Ring):
         stiffness = (
             np.abs(np.diag(self.evaluate(q, ball=ball).stiffness)) / np.array([1.0, 1.0, 1.0, self.arm, self.arm]) ** 2
         )
-        return float(_ROUNDING * (self.scalars[OFFSET_INNER] + self.scalars[OFFSET_OUTER]) * stiffness.max())
+        return float(_ROUNDING * (self.scalars[layout.OFFSET_INNER] + self.scalars[layout.OFFSET_OUTER]) * stiffness.max())
 
     def damping_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Damping of the contacts (5, 5) at an equilibrium that was evaluated, of slow motions: the balls move, too.
@@ -269,30 +222,23 @@ class System(Ring):
         return (self.stiffness_at_rate(q, now, rate) - self.stiffness_at_rate(q, now, -rate)) / (2.0 * rate)
 
     def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:
-        still = self.without(CAGE)
+        still = self.without(layout.CAGE)
         now = still.evaluate(q, ball=ball)
         if not now.damping.any():
             return np.zeros((5, 5), dtype=complex)
-        damping, cage = still.damping_at(q, now), self.scalars[CAGE]
+        damping, cage = still.damping_at(q, now), self.scalars[layout.CAGE]
         return viscous_stiffness(lambda rate: still.stiffness_at_rate(q, now, rate), damping, frequency, cage)
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
-        """Equilibrium under ``load`` from a first guess q (5,): displacement, balls, iterations.
+        """By a trust region on the potential; what has none is added to that equilibrium.
 
         Notes
         -----
         A load that the trust region does not reach at once is raised in steps.  Gyroscopic moments are added to the
         equilibrium without them, all at once or in steps.  Friction is left out: the balls have rolled into place, and
         their slips are set so that no contact carries a tangential force.
-
-        Raises
-        ------
-        ConvergenceError
-            With the last state and its residual.
-        PluginError
-            An array of another shape.
         """
         check_state(self, "System.settle()", q=q, ball=ball)
         base = attrs.evolve(self, kernel=self.base_kernel)
@@ -302,9 +248,9 @@ class System(Ring):
             return q_now, ball_now, total
         from raceway.core.ring.equilibrium import find_root
 
-        frictionless = self.without(FRICTION, CAGE)
+        frictionless = self.without(layout.FRICTION, layout.CAGE)
         guess = np.zeros((self.ball_count, self.ball_columns))
-        if self.scalars[GYROSCOPIC] != 0.0:
+        if self.scalars[layout.GYROSCOPIC] != 0.0:
             q_now, guess, more = frictionless._by_parts(find_root, q_now, None, tolerance, None, (1, 4, 16, 64))
             total += more
         guess = frictionless.evaluate(q_now, ball=guess).ball
@@ -312,7 +258,13 @@ class System(Ring):
         return q_now, guess, total
 
     def _by_parts(
-        self, solver: Any, q: np.ndarray, ball: np.ndarray | None, tolerance: float, load: np.ndarray | None, parts: Any
+        self,
+        solver: Kernel,
+        q: np.ndarray,
+        ball: np.ndarray | None,
+        tolerance: float,
+        load: np.ndarray | None,
+        parts: tuple[int, ...],
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Solve at once, or with a growing part of the load (load given) or of the gyroscopic moment (load None)."""
         total = 0
@@ -324,12 +276,14 @@ class System(Ring):
             for part in range(1, count + 1):
                 scalars, linear = self.scalars.copy(), self.linear
                 if load is None:
-                    scalars[GYROSCOPIC] *= part / count
+                    scalars[layout.GYROSCOPIC] *= part / count
                 else:
                     linear = linear._replace(load=load * (part / count))
                 forces = self.compiled_forces._replace(constants=Constants(scalars, self.table))
                 response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), self._work())
-                status = solver(forces, linear, tolerance, 0.0, Rest(q_now, ball_now, self.law_state), response, report)
+                status = solver(
+                    forces, linear, tolerance, 0.0, StaticState(q_now, ball_now, self.law_state), response, report
+                )
                 total += int(report[ITERATIONS]) + 1
                 if status != CONVERGED:
                     break
@@ -352,136 +306,17 @@ class System(Ring):
         )
 
 
-R = TypeVar("R", bound="Ring")  # ChangingSpeed is a Spin of it
-#: Half the interval over which a phase is differentiated [s]: its rounding then makes 1e-9 of the speed.
-_INTERVAL = 1e-5
-
-
-@attrs.frozen(eq=False)
-class ChangingSpeed:
-    """The speed w(t) of the inner ring, and the parts of a system that belong to a reference speed w_r.
-
-    Attributes
-    ----------
-    phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
-    reference : w_r that the system's constants were made for [rad/s]
-    growth : of the inner raceway [m]: at w_r by speed, by its fit at standstill, and what w_r takes from that fit, down to none
-    gyroscopic : (5, 5) part of the system's damping at w_r that goes with w
-    shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
-        where rows stay
-
-    Notes
-    -----
-    Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
-    of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
-    """
-
-    phase: Callable[[np.ndarray], np.ndarray]
-    reference: float
-    growth: tuple[float, float, float]
-    gyroscopic: np.ndarray
-    shift: Callable[[np.ndarray], np.ndarray] | None = None
-    law: Callable[[Any, float], Any] | None = None
-
-    def speed(self, time: np.ndarray) -> np.ndarray:
-        """w (n,) [rad/s] at times (n,) [s] from zero on."""
-        before, after = np.maximum(time - _INTERVAL, 0.0), time + _INTERVAL
-        return np.asarray((self.phase(after) - self.phase(before)) / (after - before))
-
-    def grown(self, speed: np.ndarray) -> np.ndarray:
-        """Growth of the inner raceway (n,) [m] at speeds (n,) [rad/s] beyond that at w_r."""
-        (free, fit, lost), squared = self.growth, (speed / self.reference) ** 2
-        return np.asarray(free * (squared - 1.0) + np.maximum(fit - lost * squared, 0.0) - max(fit - lost, 0.0))
-
-    def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
-        """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
-        return np.asarray(cage / self.reference * (self.phase(time) - self.phase(np.zeros(1))))
-
-    def at(self, system: R, t: float) -> R:
-        """The system with the constants of one moment; its kernels take a steady speed, so the azimuths at time zero are those
-        from which balls at the speed of now would have come to their places of now."""
-        now = np.array([t])
-        speed = float(self.speed(now)[0])
-        ring = self.constants(system, speed)
-        if system.scalars[CAGE] != 0.0:
-            ahead = float(self.cage_angle(system.scalars[CAGE], now)[0]) - ring.scalars[CAGE] * t
-            c, s = np.cos(ahead), np.sin(ahead)
-            ring.table[:, COSINE], ring.table[:, SINE] = (
-                system.table[:, COSINE] * c - system.table[:, SINE] * s,
-                system.table[:, SINE] * c + system.table[:, COSINE] * s,
-            )
-        return ring
-
-    def constants(self, system: R, speed: float) -> R:
-        """The system at a steady speed [rad/s]."""
-        ratio = speed / self.reference
-        if self.law is not None:
-            system = self.law(system, speed)
-        scalars, table = system.scalars.copy(), system.table.copy()
-        scalars[REST_RADIAL] += float(self.grown(np.array([speed]))[0])
-        scalars[GYROSCOPIC] *= ratio**2
-        scalars[CAGE] *= ratio
-        table[:, CENTRIFUGAL] *= ratio**2
-        if self.shift is not None:
-            second = table[:, SIDE] != table[0, SIDE]
-            apart = table[second, SHIFT] - table[second, SHIFT][0]
-            table[second, SHIFT] = self.shift(np.array([speed]))[0] + apart
-        damping = system.damping + (ratio - 1.0) * self.gyroscopic
-        return attrs.evolve(system, scalars=scalars, table=table, damping=damping, spin=None)
-
-
-class Address(types.WrapperAddressProtocol):
-    """A kernel of one signature, its machine code looked up once; can be called from Python too.
-
-    Notes
-    -----
-    Handing a dispatcher to a compiled loop as a function pointer costs numba some 35 microseconds a call, in which it looks
-    up the machine code by the signature again; an address whose type is at hand costs 3. For a loop of milliseconds that is
-    nothing; a periodic motion is solved for in a few dozen calls of 50 microseconds each.
-    """
-
-    def __init__(self, kernel: Any, pointer: Any) -> None:
-        self.pointer = pointer
-        self._kernel, self._signature = kernel, pointer.signature
-        self._address = _get_wrapper_address(kernel, pointer.signature)
-
-    def __wrapper_address__(self) -> int:
-        return self._address
-
-    def signature(self) -> Any:
-        return self._signature
-
-    def __call__(self, *arguments: Any) -> Any:
-        return self._kernel(*arguments)
-
-
-@typeof_impl.register(Address)
-def _type_of(address: Address, _context: Any) -> Any:
-    """The type that the address was made for; numba would make an equal one anew in every call."""
-    return address.pointer
-
-
-@lru_cache(maxsize=64)
-def _address(kernel: Any, pointer: Any) -> Address:
-    return kernel if isinstance(kernel, Address) else Address(kernel, pointer)
-
-
-def plain(kernel: Any) -> Any:
-    """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
-    return kernel._kernel if isinstance(kernel, Address) else kernel
-
-
 def by_address(system: System) -> System:
     """The same system with its kernels as addresses."""
-    kernel = _address(system.kernel, SYSTEM_POINTER)
+    kernel = address_of(system.kernel, SYSTEM_POINTER)
     # Identity of the two kernels tells whether forces have a potential.
-    base = kernel if system.conservative else _address(system.base_kernel, SYSTEM_POINTER)
+    base = kernel if system.conservative else address_of(system.base_kernel, SYSTEM_POINTER)
     return attrs.evolve(
         system,
         kernel=kernel,
         base_kernel=base,
-        law=_address(system.law, LAW_POINTER),
-        force=_address(system.force, FORCE_POINTER),
+        law=address_of(system.law, LAW_POINTER),
+        force=address_of(system.force, FORCE_POINTER),
     )
 
 

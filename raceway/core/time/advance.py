@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start
+from raceway.core.jit import Kernel
+from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start, unbounded
 from raceway.core.ring.system import System, by_address
 from raceway.core.signatures import Outer, Recording, State, Steps
 from raceway.core.time.compiled import (
@@ -20,14 +21,14 @@ from raceway.core.time.compiled import (
     ROWS,
     UNBOUNDED,
 )
-from raceway.errors import ConvergenceError, RacewayError, StabilityError
+from raceway.errors import ConvergenceError, RacewayError
 
 #: Steps after which progress is reported.
 _CHUNK = 20_000
 
 
 def advance(
-    loop: Any,
+    loop: Kernel,
     system: System,
     start: Motion,
     schedule: Schedule,
@@ -75,10 +76,16 @@ def advance(
             except RacewayError as why:
                 why.state = {**_state(schedule, step, motion, ball), **why.state}
                 raise
+    final = Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy(), memory)
+    return _record(recording, schedule, final)
+
+
+def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
+    counters = recording.counters
     recorded = int(counters[ROWS])
-    rows, probes = rows[:recorded], probes[:recorded]
-    places = [
-        part.reshape(recorded, z, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)
+    rows, probes = recording.rows[:recorded], recording.probes[:recorded]
+    pairs = [
+        part.reshape(recorded, -1, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)
     ]  # positions and, with friction, slips
     return Record(
         time=rows[:, 0],
@@ -87,8 +94,8 @@ def advance(
         force=rows[:, 11:16],
         gap=probes[:, 0],
         contact_force=probes[:, 1],
-        ball=places[0] if len(places) == 1 else np.concatenate(places, axis=2),
-        final=Motion(motion[0].copy(), motion[1].copy(), motion[2].copy(), ball, before, motion[3].copy(), memory),
+        ball=pairs[0] if len(pairs) == 1 else np.concatenate(pairs, axis=2),
+        final=final,
         schedule=schedule,
         counts={
             "steps": schedule.steps,
@@ -101,32 +108,20 @@ def advance(
 
 def _state(schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray) -> dict[str, Any]:
     """What a run that ends early leaves, by name."""
-    return {
-        "t": step * schedule.dt,
-        "q": motion[0].copy(),
-        "v": motion[1].copy(),
-        "a": motion[2].copy(),
-        "ball": ball.copy(),
-    }
+    q, v, a = motion[:3].copy()
+    return {"t": step * schedule.dt, "q": q, "v": v, "a": a, "ball": ball.copy()}
 
 
 def _failure(
     system: System, schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
-    turn = step // schedule.steps_per_turn + 1
-    when = f"after {step - schedule.first} of {schedule.steps} steps (t = {step * schedule.dt:.6g} s, turn {turn})"
-    state = _state(schedule, step, motion, ball)
+    when, state = schedule.when(step - schedule.first), _state(schedule, step, motion, ball)
     if counters[REASON] == UNBOUNDED:
-        limit = None
+        limit = 0.0
         if np.isfinite(motion).all():
             now = system.evaluate(motion[0])
             limit = system.damped_time_step(now.stiffness, now.damping)
-        hint = f"; stable limit of explicit steps there {limit:.3g} s" if limit else ""
-        return StabilityError(
-            f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, "
-            "add damping, or move away from a resonance.",
-            state,
-        )
+        return unbounded(schedule, when, limit, state)
     if counters[REASON] == BALLS:
         return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
     residual = counters[RESIDUAL]

@@ -1,4 +1,4 @@
-"""Compiled time loops; their equations stand in ``raceway.core.time``, the classes with the options in ``raceway.integrators``.
+"""Kernel time loops; their equations stand in ``raceway.core.time``, the classes with the options in ``raceway.integrators``.
 
 Every loop has the signature ``raceway.core.signatures.LOOP``, whose records stand there::
 
@@ -21,11 +21,11 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import Kernel, jit
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, copy_matrix, solve
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest, copy_matrix, eliminate
 from raceway.core.ring.equilibrium import RESIDUAL as LEFT
 from raceway.core.ring.kernels import CONTACT_FORCE as CONTACT_FORCE_ROW
 from raceway.core.ring.kernels import GAP
-from raceway.core.ring.kernels.layout import TILT_ARM, accept_balls, keep_slips, next_balls, stop, work_rows
+from raceway.core.ring.kernels.layout import TILT_ARM, accept_balls, keep_slips, next_balls, work_rows
 from raceway.core.signatures import (
     FORCES,
     LINEAR,
@@ -34,15 +34,14 @@ from raceway.core.signatures import (
     OUTER,
     RECORDING,
     RESPONSE,
-    REST,
     STATE,
+    STATIC,
     VECTOR,
     Balls,
-    Constants,
     Contacts,
     Linear,
     Response,
-    Rest,
+    StaticState,
     record,
 )
 
@@ -64,7 +63,7 @@ def outer_force(outer, t, out):
 
 
 @jit(void(RECORDING, int64, float64, MATRIX, VECTOR, MATRIX, MATRIX), inline=True)
-def note_step(recording, number, t, motion, outer, work, ball):
+def _note_step(recording, number, t, motion, outer, work, ball):
     """Note a step at time t under the outer force (5,), and the extremes in the counters."""
     stride, rows, probes, counters = recording
     n = work.shape[1]
@@ -98,7 +97,7 @@ _HALVINGS = 8
 _NOTHING = 1e-30
 
 
-class Formula(NamedTuple):
+class _Formula(NamedTuple):
     """Numbers of the method, its step [s], and the derivatives of a [1/s^2] and v [1/s] by the displacement at the end."""
 
     am: float
@@ -110,7 +109,7 @@ class Formula(NamedTuple):
     to_v: float
 
 
-class Trial(NamedTuple):
+class _Trial(NamedTuple):
     """The state at the end of a step as it is known, each (5,): q, v, a, forces but for inertia, imbalance."""
 
     q: np.ndarray
@@ -120,12 +119,19 @@ class Trial(NamedTuple):
     residual: np.ndarray
 
 
-FORMULA = record(Formula, *[float64] * 7)
-TRIAL = record(Trial, *[VECTOR] * 5)
+FORMULA = record(_Formula, *[float64] * 7)
+TRIAL = record(_Trial, *[VECTOR] * 5)
+
+
+@jit(FORMULA(VECTOR, float64), inline=True)
+def _formula_of(coefficients, dt):
+    """From am, af, beta, gamma and the step [s]."""
+    beta, gamma = coefficients[2], coefficients[3]
+    return _Formula(coefficients[0], coefficients[1], beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
 
 
 @jit(void(FORMULA, VECTOR, MATRIX, TRIAL), inline=True)
-def differences(formula, free, motion, trial):
+def _differences(formula, free, motion, trial):
     """v and a at the end of the step from q there and the motion (4, 5) at its begin."""
     dt, beta, gamma = formula.dt, formula.beta, formula.gamma
     for i in range(5):
@@ -135,7 +141,7 @@ def differences(formula, free, motion, trial):
 
 
 @jit(types.UniTuple(float64, 3)(FORMULA, LINEAR, MATRIX, TRIAL, RESPONSE, VECTOR, float64), inline=True)
-def imbalance(formula, linear, motion, trial, response, push, arm):
+def _imbalance(formula, linear, motion, trial, response, push, arm):
     """Largest imbalance [N], inertia force and force of all; fills ``net_force`` and ``residual``.  Tilts count by the arm [m]."""
     mass, damping, stiffness, free, load = linear
     q, v, a, net_forces, residual = trial
@@ -159,34 +165,49 @@ def imbalance(formula, linear, motion, trial, response, push, arm):
 
 
 @jit(boolean(FORMULA, LINEAR, RESPONSE, VECTOR, MATRIX, VECTOR), inline=True)
-def newton_step(formula, linear, response, residual, J, dq):
-    """dq (5,) that takes the residual away; J (5, 5) is scratch.  False where the matrix is singular."""
+def _newton_step(formula, linear, response, residual, J, dq):
+    """dq (5,) that takes the residual away; J (5, 6) is scratch.  False where the matrix is singular."""
     mass, damping, stiffness, free, _ = linear
     for i in range(5):
-        dq[i] = -residual[i]
+        J[i, 5] = -residual[i]
         for j in range(5):
             J[i, j] = (
                 (1.0 - formula.am) * formula.to_a * mass[i, j]
                 + (1.0 - formula.af)
                 * (response.K[i, j] + stiffness[i, j] + formula.to_v * (response.C[i, j] + damping[i, j]))
             ) * free[i] * free[j]  # fmt: skip
-    for i in range(5):
         if free[i] == 0.0:
             J[i, i] = 1.0
-    return solve(J, dq)
+    if not eliminate(J):
+        return False
+    for i in range(5):
+        dq[i] = J[i, 5]
+    return True
+
+
+@jit(boolean(TRIAL, MATRIX), inline=True)
+def _commit(trial, motion):
+    """Move the motion (4, 5) to the end of the step; False, and nothing moved, where that is out of all bounds."""
+    for i in range(5):
+        if not abs(trial.q[i]) < 1.0:
+            return False
+    for i in range(5):
+        motion[0, i], motion[1, i], motion[2, i], motion[3, i] = trial.q[i], trial.v[i], trial.a[i], trial.net_force[i]
+    return True
 
 
 @jit(LOOP, allocates=True)
 def implicit(forces, linear, outer, coefficients, steps, state, recording):
     """See ``raceway.core.time.compiled``."""
-    am, af, beta, gamma, tolerance, rounding = (
-        coefficients[0], coefficients[1], coefficients[2], coefficients[3], coefficients[4], coefficients[5],
-    )  # fmt: skip
     dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
-    arm = constants.scalars[TILT_ARM]
-    formula = Formula(am, af, beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
-    trial = Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
-    q, J, dq, push, norm = trial.q, np.empty((5, 5)), np.zeros(5), np.empty(5), np.inf
+    arm, formula, tolerance, rounding = (
+        constants.scalars[TILT_ARM],
+        _formula_of(coefficients, dt),
+        coefficients[4],
+        coefficients[5],
+    )
+    trial = _Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
+    q, J, dq, push, norm = trial.q, np.empty((5, 6)), np.zeros(5), np.empty(5), np.inf
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
@@ -202,12 +223,12 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
         before, halvings, balanced = np.inf, 0, False
         for _ in range(_NEWTON_LIMIT):
-            differences(formula, linear.free, motion, trial)
+            _differences(formula, linear.free, motion, trial)
             counters[EVALUATIONS] += 1.0
             if forces.system(t, q, trial.v, balls, contacts, constants, response) != 0:
                 counters[REASON] = BALLS
                 return step
-            norm, moving, scale = imbalance(formula, linear, motion, trial, response, push, arm)
+            norm, moving, scale = _imbalance(formula, linear, motion, trial, response, push, arm)
             if not np.isfinite(norm):
                 counters[REASON] = UNBOUNDED
                 return step
@@ -223,46 +244,38 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
                     q[i] -= dq[i]
                 continue
             halvings, before = 0, norm
-            if not newton_step(formula, linear, response, trial.residual, J, dq):
+            if not _newton_step(formula, linear, response, trial.residual, J, dq):
                 break
             for i in range(5):
                 q[i] += dq[i]
         if not balanced:
             counters[REASON], counters[RESIDUAL] = NEWTON, norm
             return step
-        for i in range(5):
-            if not abs(q[i]) < 1.0:
-                counters[REASON] = UNBOUNDED
-                return step
-        for i in range(5):
-            motion[0, i], motion[1, i], motion[2, i], motion[3, i] = q[i], trial.v[i], trial.a[i], trial.net_force[i]
+        if not _commit(trial, motion):
+            counters[REASON] = UNBOUNDED
+            return step
         accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
         copy_matrix(contacts.new, state.memory)
-        note_step(recording, number, t, motion, push, work, state.ball)
+        _note_step(recording, number, t, motion, push, work, state.ball)
     return steps.total
 
 
-@jit(boolean(LINEAR, float64, MATRIX), allocates=True)
-def effective_inverse(linear, dt, inverse):
-    """inverse (5, 5) of M + C dt / 2 among the unknowns; False where that is singular."""
+@jit(boolean(LINEAR, float64, MATRIX))
+def _effective_inverse(linear, dt, J):
+    """J (5, 10): (M + C dt / 2) among the unknowns and, behind it, its inverse; False where it is singular."""
     free = linear.free
-    for column in range(5):
-        J, rhs = np.zeros((5, 5)), np.zeros(5)
-        for i in range(5):
-            for j in range(5):
-                J[i, j] = (linear.mass[i, j] + 0.5 * dt * linear.damping[i, j]) * free[i] * free[j]
-            if free[i] == 0.0:
-                J[i, i] = 1.0
-        rhs[column] = free[column]
-        if not solve(J, rhs):
-            return False
-        for i in range(5):
-            inverse[i, column] = rhs[i]
-    return True
+    for i in range(5):
+        for j in range(5):
+            J[i, j] = (linear.mass[i, j] + 0.5 * dt * linear.damping[i, j]) * free[i] * free[j]
+            J[i, 5 + j] = 0.0
+        J[i, 5 + i] = free[i]
+        if free[i] == 0.0:
+            J[i, i] = 1.0
+    return eliminate(J)
 
 
 @jit(void(LINEAR, boolean, VECTOR, VECTOR, VECTOR, VECTOR), inline=True)
-def unbalanced(linear, ground, q, half, push, f):
+def _unbalanced(linear, ground, q, half, push, f):
     """f (5,), at first the contacts' force, becomes the force that accelerates; ``ground``: whether damping or stiffness act."""
     for i in range(5):
         f[i] = linear.load[i] + push[i] - f[i]
@@ -276,13 +289,13 @@ def unbalanced(linear, ground, q, half, push, f):
 
 
 @jit(boolean(MATRIX, VECTOR, VECTOR, VECTOR), inline=True)
-def accelerate(inverse, f, q, a):
-    """a (5,) of the force f (5,); whether it and the displacement q (5,) are bounded."""
+def _accelerate(effective, f, q, a):
+    """a (5,) of the force f (5,), by ``_effective_inverse``; whether it and the displacement q (5,) are bounded."""
     bounded = True
     for i in range(5):
         total = 0.0
         for j in range(5):
-            total += inverse[i, j] * f[j]
+            total += effective[i, 5 + j] * f[j]
         a[i] = total
         if not abs(q[i]) < 1.0 or not np.isfinite(total):
             bounded = False
@@ -300,8 +313,8 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
     next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
-    inverse = np.zeros((5, 5))
-    if not effective_inverse(linear, dt, inverse):
+    effective = np.empty((5, 10))
+    if not _effective_inverse(linear, dt, effective):
         counters[REASON] = NEWTON
         return 0
     # A bearing alone has no linear damping and stiffness at all.
@@ -317,15 +330,15 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
         if forces.system(t, q, guess, balls, contacts, constants, response) != 0:
             counters[REASON] = BALLS
             break
-        unbalanced(linear, ground, q, half, push, response.f)
-        if not accelerate(inverse, response.f, q, a):
+        _unbalanced(linear, ground, q, half, push, response.f)
+        if not _accelerate(effective, response.f, q, a):
             counters[REASON] = UNBOUNDED
             break
         for i in range(5):
             motion[0, i], motion[1, i], motion[2, i] = q[i], half[i] + 0.5 * dt * a[i], a[i]
         accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
         copy_matrix(contacts.new, state.memory)
-        note_step(recording, number, t, motion, push, work, state.ball)
+        _note_step(recording, number, t, motion, push, work, state.ball)
         steps_taken += 1
     if steps_taken > 0:
         for i in range(5):
@@ -335,8 +348,8 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
     return steps_taken
 
 
-@jit(void(OUTER, float64, VECTOR, STATE, VECTOR, REST, VECTOR))
-def extrapolate(outer, t, load, state, push, equilibrium, total):
+@jit(void(OUTER, float64, VECTOR, STATE, VECTOR, STATIC, VECTOR))
+def _extrapolate(outer, t, load, state, push, equilibrium, total):
     """First guess of the next equilibrium, and its load ``total`` (5,): the constant one and ``push`` (5,) at time t."""
     outer_force(outer, t, push)
     for i in range(5):
@@ -345,14 +358,13 @@ def extrapolate(outer, t, load, state, push, equilibrium, total):
     copy_matrix(state.ball, equilibrium.ball)
 
 
-@jit(boolean(FORCES, float64, REST, MATRIX, RESPONSE), allocates=True)
-def remember(forces, t, equilibrium, before, response):
+@jit(boolean(FORCES, float64, STATIC, MATRIX, RESPONSE), allocates=True)
+def _remember(forces, t, equilibrium, before, response):
     """Commit the law's memory of an equilibrium after the balls' places ``before``; False where the balls find no place.
 
     One more evaluation hands it out: no rates, no step of time.
     """
-    constants = Constants(forces.constants.scalars.copy(), forces.constants.table.copy())
-    stop(t, constants.scalars, constants.table)
+    constants = at_rest(forces.constants, t)
     history = np.empty_like(equilibrium.ball)
     keep_slips(constants.scalars, before, history)
     contacts = Contacts(forces.law, forces.law_params, equilibrium.memory, equilibrium.memory.copy(), 0.0)
@@ -365,8 +377,8 @@ def remember(forces, t, equilibrium, before, response):
     return True
 
 
-@jit(void(REST, STATE))
-def accept(equilibrium, state):
+@jit(void(STATIC, STATE))
+def _accept(equilibrium, state):
     """Move the state to an equilibrium; motion[1] is the change over the step."""
     motion, ball, before = state.motion, state.ball, state.ball_before
     for i in range(5):
@@ -377,7 +389,7 @@ def accept(equilibrium, state):
 
 
 @jit(float64(int64))
-def reason_of(status):
+def _reason_of(status):
     """Why a loop ends, of what a solver says."""
     if status == BALLS_FAILED:
         return BALLS
@@ -396,23 +408,23 @@ def quasi_static(solver: Kernel) -> Kernel:
         response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
         report, push, total, still = np.zeros(2), np.empty(5), np.empty(5), state.motion.copy()
         loaded = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
-        equilibrium = Rest(np.empty(5), np.empty_like(state.ball), state.memory)
+        equilibrium = StaticState(np.empty(5), np.empty_like(state.ball), state.memory)
         for step in range(steps.total):
             number = steps.first + step + 1
             t = number * steps.dt
-            extrapolate(outer, t, linear.load, state, push, equilibrium, total)
+            _extrapolate(outer, t, linear.load, state, push, equilibrium, total)
             status = solver(forces, loaded, coefficients[0], t, equilibrium, response, report)
             counters[EVALUATIONS] += report[ITERATIONS] + 1.0
             if status != CONVERGED:
-                counters[REASON], counters[RESIDUAL] = reason_of(status), report[LEFT]
+                counters[REASON], counters[RESIDUAL] = _reason_of(status), report[LEFT]
                 return step
-            if state.memory.shape[1] > 0 and not remember(forces, t, equilibrium, state.ball, response):
+            if state.memory.shape[1] > 0 and not _remember(forces, t, equilibrium, state.ball, response):
                 counters[REASON] = BALLS
                 return step
-            accept(equilibrium, state)
+            _accept(equilibrium, state)
             for i in range(5):
                 still[0, i] = equilibrium.q[i]
-            note_step(recording, number, t, still, push, work, state.ball)
+            _note_step(recording, number, t, still, push, work, state.ball)
         return steps.total
 
     return equilibria

@@ -16,7 +16,7 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.bodies.running import running_pairs
 from raceway.core.contact.damping import stored_energy
-from raceway.core.excitations.harmonic import no_force
+from raceway.core.excitations import no_force
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.orbit import at_rest

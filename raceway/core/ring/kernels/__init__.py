@@ -1,4 +1,4 @@
-"""Compiled systems: internal force and tangents of the inner ring after the balls are condensed out.
+"""Kernel systems: internal force and tangents of the inner ring after the balls are condensed out.
 
 Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records stand there::
 
@@ -21,7 +21,7 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-tangential         the same with gyroscopic moments or friction: no potential;  tangential_rows: rows of ``work`` for it
+tangential         the same with gyroscopic moments or friction: no potential
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
 layout             constants of a model, columns of ``ball``, rows of ``work``; vectors of a ball's meridian plane, its seat on the ring

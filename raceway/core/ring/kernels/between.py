@@ -21,57 +21,19 @@ radial displacement of M_o by a radial force [m/N].
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import (
-    AXIAL_BY_SHIFT,
-    BY_AXIAL,
-    BY_AXIAL_SPEED,
-    BY_OTHER,
-    BY_OWN,
-    BY_RADIAL,
-    BY_RADIAL_SPEED,
-    BY_TURN,
-    CONTACT_FORCE,
-    COUPLE_BY_CENTRE,
-    COUPLE_BY_SHIFT,
-    FORCE,
-    FORCE_BY_CENTRE,
-    FORCE_BY_SPEED,
-    FORCE_BY_TURN,
-    MOVED,
-    RADIAL_BY_SHIFT,
-    STORED,
-)
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import (
-    APPROACH_BY_CENTRE,
-    BALL_CROSS,
-    BALL_TANGENT,
-    BLOCK,
-    BY_Q,
-    BY_V,
-    CARRIED,
-    CENTRIFUGAL,
-    CENTRIFUGAL_MOVED,
-    CURVE,
-    DIRECTION,
-    INVERSE,
-    INVERSE_2,
-    KNOTS,
-    LOCAL,
-    MATRIX_ROWS,
-    MOVED_REST,
-    MOVED_STEP,
-    OWN,
-    RING,
-    ROW,
-    SLOPE,
-    STEP,
-    TILT_ARM,
-    TURNING,
-    VALUES,
-    WEIGHT,
+    PAIR,
+    TENSOR,
     Pair,
+    Tensor,
+    add_products,
+    put_tensor,
     seat_of,
+    tensor_of,
     to_ring,
+    weighted_sum,
 )
 from raceway.core.signatures import MATRIX, VECTOR
 
@@ -79,29 +41,29 @@ from raceway.core.signatures import MATRIX, VECTOR
 @jit(void(VECTOR, MATRIX, MATRIX))
 def centrifugal_displacement(scalars, table, work):
     """d_c = -M_o F_c of every ball."""
-    z, balls = table.shape[0], int(scalars[ROW])
-    start = VALUES + 4 * int(scalars[KNOTS])
+    z, balls = table.shape[0], int(scalars[ring.ROW])
+    start = ring.VALUES + 4 * int(scalars[ring.KNOTS])
     for k in range(z):
-        work[CENTRIFUGAL_MOVED, k] = work[CENTRIFUGAL_MOVED, z + k] = 0.0
+        work[ring.CENTRIFUGAL_MOVED, k] = work[ring.CENTRIFUGAL_MOVED, z + k] = 0.0
         first = (k // balls) * balls
         for j in range(balls):
-            push = table[first + j, CENTRIFUGAL]
+            push = table[first + j, ring.CENTRIFUGAL]
             if push != 0.0:
-                block = start + BLOCK * ((k - j) % balls)
-                work[CENTRIFUGAL_MOVED, k] -= scalars[block + 3] * push
-                work[CENTRIFUGAL_MOVED, z + k] -= scalars[block + 4] * push
+                block = start + ring.BLOCK * ((k - j) % balls)
+                work[ring.CENTRIFUGAL_MOVED, k] -= scalars[block + 3] * push
+                work[ring.CENTRIFUGAL_MOVED, z + k] -= scalars[block + 4] * push
 
 
 @jit(void(VECTOR, MATRIX, int64, int64))
 def _rings_times(scalars, work, source, target):
     """work[target] := M work[source]."""
-    z, balls = work.shape[1] // 2, int(scalars[ROW])
-    start = VALUES + 4 * int(scalars[KNOTS])
+    z, balls = work.shape[1] // 2, int(scalars[ring.ROW])
+    start = ring.VALUES + 4 * int(scalars[ring.KNOTS])
     for k in range(z):
         first = (k // balls) * balls
         axial, radial = 0.0, 0.0
         for j in range(first, first + balls):
-            block = start + BLOCK * (k - j if k >= j else k - j + balls)
+            block = start + ring.BLOCK * (k - j if k >= j else k - j + balls)
             a, r = work[source, j], work[source, z + j]
             axial += scalars[block] * a + scalars[block + 1] * r
             radial += scalars[block + 1] * a + scalars[block + 2] * r
@@ -113,85 +75,78 @@ def forces(scalars, table, work):
     """Forces of the balls on the ring, what is left of d = d_c - M F, and the energy that the rings store."""
     z = table.shape[0]
     for k in range(z):
-        turn = -0.5 * (work[CONTACT_FORCE, k] ** 2 * work[SLOPE, k] + work[CONTACT_FORCE, z + k] ** 2 * work[SLOPE, z + k])
+        turn = -0.5 * (
+            work[rows.CONTACT_FORCE, k] ** 2 * work[ring.SLOPE, k]
+            + work[rows.CONTACT_FORCE, z + k] ** 2 * work[ring.SLOPE, z + k]
+        )
         for c in (k, z + k):
-            work[CARRIED, c] = work[FORCE, c] + turn * work[TURNING, c]
-    _rings_times(scalars, work, CARRIED, MOVED_REST)
+            work[ring.CARRIED, c] = work[rows.FORCE, c] + turn * work[ring.TURNING, c]
+    _rings_times(scalars, work, ring.CARRIED, ring.MOVED_REST)
     for c in range(2 * z):
-        meant = work[CENTRIFUGAL_MOVED, c] - work[MOVED, c]
-        work[MOVED_REST, c] = meant - work[MOVED_REST, c]
+        meant = work[ring.CENTRIFUGAL_MOVED, c] - work[rows.MOVED, c]
+        work[ring.MOVED_REST, c] = meant - work[ring.MOVED_REST, c]
         # Second order in what is left, as of the structural approaches.
-        work[STORED, c] += 0.5 * work[CARRIED, c] * (meant + work[MOVED_REST, c])
+        work[rows.STORED, c] += 0.5 * work[ring.CARRIED, c] * (meant + work[ring.MOVED_REST, c])
 
 
-@jit(types.UniTuple(float64, 4)(MATRIX, int64))
+@jit(PAIR(MATRIX, int64))
+def _by_angle(work, k):
+    """-Q c' of the inner and the outer contact of a ball: change of its structural approaches with the angle of its line [m]."""
+    z = work.shape[1] // 2
+    return Pair(
+        -work[rows.CONTACT_FORCE, k] * work[ring.SLOPE, k], -work[rows.CONTACT_FORCE, z + k] * work[ring.SLOPE, z + k]
+    )
+
+
+@jit(TENSOR(MATRIX, int64))
 def _by_shift(work, k):
-    """Force of a ball by its structural approaches: axial, radial by the inner one, axial, radial by the outer one [N/m]."""
+    """Force of a ball (axial, radial) by its structural approaches (inner, outer) [N/m]."""
     z = work.shape[1] // 2
-    ga, gr = work[TURNING, k], work[TURNING, z + k]
-    di, do = -work[CONTACT_FORCE, k] * work[SLOPE, k], -work[CONTACT_FORCE, z + k] * work[SLOPE, z + k]
-    inner = di * work[BY_OWN, k] + do * work[BY_OTHER, z + k]
-    outer = do * work[BY_OWN, z + k] + di * work[BY_OTHER, k]
-    return (
-        work[AXIAL_BY_SHIFT, k] + inner * ga,
-        work[RADIAL_BY_SHIFT, k] + inner * gr,
-        work[AXIAL_BY_SHIFT, z + k] + outer * ga,
-        work[RADIAL_BY_SHIFT, z + k] + outer * gr,
-    )
+    ga, gr = work[ring.TURNING, k], work[ring.TURNING, z + k]
+    di, do = _by_angle(work, k)
+    inner = di * work[rows.BY_OWN, k] + do * work[rows.BY_OTHER, z + k]
+    outer = do * work[rows.BY_OWN, z + k] + di * work[rows.BY_OTHER, k]
+    w = tensor_of(work, rows.AXIAL_BY_SHIFT, k)
+    return Tensor(w.aa + inner * ga, w.ar + outer * ga, w.ra + inner * gr, w.rr + outer * gr)
 
 
-@jit(types.UniTuple(float64, 2)(VECTOR, MATRIX, int64, float64, float64))
-def _approaches(scalars, work, k, inner, outer):
+@jit(PAIR(VECTOR, MATRIX, int64, PAIR))
+def _approaches(scalars, work, k, approach):
     """(I - C S)^-1 (inner, outer) of one ball."""
-    z = work.shape[1] // 2
-    return (
-        work[INVERSE, k] * inner + work[INVERSE, z + k] * outer,
-        work[INVERSE_2, k] * inner + work[INVERSE_2, z + k] * outer,
-    )
+    m = tensor_of(work, ring.INVERSE, k)
+    return Pair(m.aa * approach.axial + m.ar * approach.radial, m.ra * approach.axial + m.rr * approach.radial)
 
 
-@jit(types.UniTuple(float64, 8)(VECTOR, MATRIX, int64, float64, float64))
+@jit(types.UniTuple(TENSOR, 2)(VECTOR, MATRIX, int64, float64, float64))
 def _by_centre(scalars, work, k, position, speed):
     """Of one ball, structural approaches eliminated, by e times ``position`` and its velocity times ``speed``.
 
     Returns
     -------
-    aa, ar, ra, rr : tangent of its force;  ia, ir, oa, or : derivatives of the inner and outer structural approaches
+    tangent of its force; derivatives (inner, outer) x (axial, radial) of its structural approaches
     """
     z = work.shape[1] // 2
-    ga, gr, cross = work[TURNING, k], work[TURNING, z + k], scalars[BALL_CROSS]
-    di, do = -work[CONTACT_FORCE, k] * work[SLOPE, k], -work[CONTACT_FORCE, z + k] * work[SLOPE, z + k]
-    qia = position * work[BY_AXIAL, k] + speed * work[BY_AXIAL_SPEED, k]
-    qir = position * work[BY_RADIAL, k] + speed * work[BY_RADIAL_SPEED, k]
-    qoa = position * work[BY_AXIAL, z + k] + speed * work[BY_AXIAL_SPEED, z + k]
-    qor = position * work[BY_RADIAL, z + k] + speed * work[BY_RADIAL_SPEED, z + k]
-    ci, co = work[OWN, k], work[OWN, z + k]
-    ia, oa = _approaches(
-        scalars, work, k, ci * qia + cross * qoa - position * di * ga, cross * qia + co * qoa - position * do * ga
-    )
-    ir, orr = _approaches(
-        scalars, work, k, ci * qir + cross * qor - position * di * gr, cross * qir + co * qor - position * do * gr
-    )
-    wai, wri, wao, wro = _by_shift(work, k)
-    half_i, half_o = -0.5 * work[CONTACT_FORCE, k] ** 2, -0.5 * work[CONTACT_FORCE, z + k] ** 2
-    slope = position * (half_i * work[SLOPE, k] + half_o * work[SLOPE, z + k])
-    curve = position * (half_i * work[CURVE, k] + half_o * work[CURVE, z + k])
+    ga, gr, cross = work[ring.TURNING, k], work[ring.TURNING, z + k], scalars[ring.BALL_CROSS]
+    ci, co, (di, do) = work[ring.OWN, k], work[ring.OWN, z + k], _by_angle(work, k)
+    # Contact forces: (axial, radial) x (inner, outer).
+    q = weighted_sum(position, tensor_of(work, rows.BY_AXIAL, k), speed, tensor_of(work, rows.BY_AXIAL_SPEED, k))
+    axial = Pair(ci * q.aa + cross * q.ar - position * di * ga, cross * q.aa + co * q.ar - position * do * ga)
+    radial = Pair(ci * q.ra + cross * q.rr - position * di * gr, cross * q.ra + co * q.rr - position * do * gr)
+    (ia, oa), (ir, orr) = _approaches(scalars, work, k, axial), _approaches(scalars, work, k, radial)
+    half_i, half_o = -0.5 * work[rows.CONTACT_FORCE, k] ** 2, -0.5 * work[rows.CONTACT_FORCE, z + k] ** 2
+    slope = position * (half_i * work[ring.SLOPE, k] + half_o * work[ring.SLOPE, z + k])
+    curve = position * (half_i * work[ring.CURVE, k] + half_o * work[ring.CURVE, z + k])
     haa, har = 2.0 * ga * gr, gr * gr - ga * ga
-    ta, tr = di * qia + do * qoa, di * qir + do * qor
-    aa = position * work[FORCE_BY_CENTRE, k] + speed * work[FORCE_BY_SPEED, k]
-    ar = position * work[FORCE_BY_CENTRE, z + k] + speed * work[FORCE_BY_SPEED, z + k]
-    ra = position * work[FORCE_BY_CENTRE + 1, k] + speed * work[FORCE_BY_SPEED + 1, k]
-    rr = position * work[FORCE_BY_CENTRE + 1, z + k] + speed * work[FORCE_BY_SPEED + 1, z + k]
-    return (
-        aa + curve * ga * ga + slope * haa + ga * ta + wai * ia + wao * oa,
-        ar + curve * ga * gr + slope * har + ga * tr + wai * ir + wao * orr,
-        ra + curve * ga * gr + slope * har + gr * ta + wri * ia + wro * oa,
-        rr + curve * gr * gr - slope * haa + gr * tr + wri * ir + wro * orr,
-        ia,
-        ir,
-        oa,
-        orr,
+    ta, tr = di * q.aa + do * q.ar, di * q.ra + do * q.rr
+    w, f = _by_shift(work, k), tensor_of(work, rows.FORCE_BY_CENTRE, k)
+    f = weighted_sum(position, f, speed, tensor_of(work, rows.FORCE_BY_SPEED, k))
+    tangent = Tensor(
+        f.aa + curve * ga * ga + slope * haa + ga * ta + w.aa * ia + w.ar * oa,
+        f.ar + curve * ga * gr + slope * har + ga * tr + w.aa * ir + w.ar * orr,
+        f.ra + curve * ga * gr + slope * har + gr * ta + w.ra * ia + w.rr * oa,
+        f.rr + curve * gr * gr - slope * haa + gr * tr + w.ra * ir + w.rr * orr,
     )
+    return tangent, Tensor(ia, ir, oa, orr)
 
 
 @jit(boolean(VECTOR, MATRIX, int64, int64))
@@ -202,15 +157,14 @@ def _factorise(scalars, work, first, balls):
     -----
     The matrix is similar to a positive definite one: no pivots are needed.
     """
-    z, n, base = work.shape[1] // 2, 2 * balls, MATRIX_ROWS + 2 * first
-    start = VALUES + 4 * int(scalars[KNOTS])
+    n, base = 2 * balls, ring.MATRIX_ROWS + 2 * first
+    start = ring.VALUES + 4 * int(scalars[ring.KNOTS])
     for i in range(balls):
         k = first + i
-        aa, ar = work[BALL_TANGENT, k], work[BALL_TANGENT, z + k]
-        ra, rr = work[BALL_TANGENT + 1, k], work[BALL_TANGENT + 1, z + k]
+        aa, ar, ra, rr = tensor_of(work, ring.BALL_TANGENT, k)
         row = base + 2 * i
         for j in range(balls):
-            block = start + BLOCK * (i - j if i >= j else i - j + balls)
+            block = start + ring.BLOCK * (i - j if i >= j else i - j + balls)
             maa, mar, mrr = scalars[block], scalars[block + 1], scalars[block + 2]
             work[row, 2 * j], work[row, 2 * j + 1] = aa * maa + ar * mar, aa * mar + ar * mrr
             work[row + 1, 2 * j], work[row + 1, 2 * j + 1] = ra * maa + rr * mar, ra * mar + rr * mrr
@@ -234,7 +188,7 @@ def _gather(work, row, first, balls):
     """The entries of one row of balls, ball by ball, into LOCAL."""
     z = work.shape[1] // 2
     for j in range(balls):
-        work[LOCAL, 2 * j], work[LOCAL, 2 * j + 1] = work[row, first + j], work[row, z + first + j]
+        work[ring.LOCAL, 2 * j], work[ring.LOCAL, 2 * j + 1] = work[row, first + j], work[row, z + first + j]
 
 
 @jit(void(MATRIX, int64, int64, int64))
@@ -242,47 +196,47 @@ def _scatter(work, row, first, balls):
     """The same back."""
     z = work.shape[1] // 2
     for j in range(balls):
-        work[row, first + j], work[row, z + first + j] = work[LOCAL, 2 * j], work[LOCAL, 2 * j + 1]
+        work[row, first + j], work[row, z + first + j] = work[ring.LOCAL, 2 * j], work[ring.LOCAL, 2 * j + 1]
 
 
 @jit(void(VECTOR, MATRIX, int64))
 def _solve(scalars, work, row):
     """work[row] := (1 + A M)^-1 work[row]."""
-    balls = int(scalars[ROW])
+    balls = int(scalars[ring.ROW])
     n = 2 * balls
     for first in range(0, work.shape[1] // 2, balls):
-        base = MATRIX_ROWS + 2 * first
+        base = ring.MATRIX_ROWS + 2 * first
         _gather(work, row, first, balls)
         for i in range(n):
-            total = work[LOCAL, i]
+            total = work[ring.LOCAL, i]
             for j in range(i):
-                total -= work[base + i, j] * work[LOCAL, j]
-            work[LOCAL, i] = total
+                total -= work[base + i, j] * work[ring.LOCAL, j]
+            work[ring.LOCAL, i] = total
         for i in range(n - 1, -1, -1):
-            total = work[LOCAL, i]
+            total = work[ring.LOCAL, i]
             for j in range(i + 1, n):
-                total -= work[base + i, j] * work[LOCAL, j]
-            work[LOCAL, i] = total / work[base + i, i]
+                total -= work[base + i, j] * work[ring.LOCAL, j]
+            work[ring.LOCAL, i] = total / work[base + i, i]
         _scatter(work, row, first, balls)
 
 
 @jit(void(VECTOR, MATRIX, int64))
 def _solve_transposed(scalars, work, row):
     """work[row] := work[row] (1 + A M)^-1."""
-    balls = int(scalars[ROW])
+    balls = int(scalars[ring.ROW])
     n = 2 * balls
     for first in range(0, work.shape[1] // 2, balls):
-        base = MATRIX_ROWS + 2 * first
+        base = ring.MATRIX_ROWS + 2 * first
         _gather(work, row, first, balls)
         for i in range(n):
-            value = work[LOCAL, i] / work[base + i, i]
-            work[LOCAL, i] = value
+            value = work[ring.LOCAL, i] / work[base + i, i]
+            work[ring.LOCAL, i] = value
             for j in range(i + 1, n):
-                work[LOCAL, j] -= value * work[base + i, j]
+                work[ring.LOCAL, j] -= value * work[base + i, j]
         for i in range(n - 1, 0, -1):
-            value = work[LOCAL, i]
+            value = work[ring.LOCAL, i]
             for j in range(i):
-                work[LOCAL, j] -= value * work[base + i, j]
+                work[ring.LOCAL, j] -= value * work[base + i, j]
         _scatter(work, row, first, balls)
 
 
@@ -294,69 +248,64 @@ def step(scalars, table, ball_gain, work):
     -----
     ``STEP`` holds the steps of the structural approaches at fixed d before.
     """
-    z, balls = table.shape[0], int(scalars[ROW])
+    z, balls = table.shape[0], int(scalars[ring.ROW])
     for k in range(z):
-        aa, ar, ra, rr, ia, ir, oa, orr = _by_centre(scalars, work, k, 1.0, ball_gain)
-        work[BALL_TANGENT, k], work[BALL_TANGENT, z + k] = aa, ar
-        work[BALL_TANGENT + 1, k], work[BALL_TANGENT + 1, z + k] = ra, rr
-        work[APPROACH_BY_CENTRE, k], work[APPROACH_BY_CENTRE, z + k] = ia, ir
-        work[APPROACH_BY_CENTRE + 1, k], work[APPROACH_BY_CENTRE + 1, z + k] = oa, orr
-        wai, wri, wao, wro = _by_shift(work, k)
-        da, dr = work[CENTRIFUGAL_MOVED, k] - work[MOVED, k], work[CENTRIFUGAL_MOVED, z + k] - work[MOVED, z + k]
-        work[CARRIED, k] += wai * work[STEP, k] + wao * work[STEP, z + k] + aa * da + ar * dr
-        work[CARRIED, z + k] += wri * work[STEP, k] + wro * work[STEP, z + k] + ra * da + rr * dr
+        tangent, approach = _by_centre(scalars, work, k, 1.0, ball_gain)
+        put_tensor(tangent, work, ring.BALL_TANGENT, k)
+        put_tensor(approach, work, ring.APPROACH_BY_CENTRE, k)
+        w, step_i, step_o = _by_shift(work, k), work[ring.STEP, k], work[ring.STEP, z + k]
+        da = work[ring.CENTRIFUGAL_MOVED, k] - work[rows.MOVED, k]
+        dr = work[ring.CENTRIFUGAL_MOVED, z + k] - work[rows.MOVED, z + k]
+        work[ring.CARRIED, k] += w.aa * step_i + w.ar * step_o + tangent.aa * da + tangent.ar * dr
+        work[ring.CARRIED, z + k] += w.ra * step_i + w.rr * step_o + tangent.ra * da + tangent.rr * dr
     for first in range(0, z, balls):
         if not _factorise(scalars, work, first, balls):
             return False
-    _solve(scalars, work, CARRIED)
-    _rings_times(scalars, work, CARRIED, MOVED_STEP)
+    _solve(scalars, work, ring.CARRIED)
+    _rings_times(scalars, work, ring.CARRIED, ring.MOVED_STEP)
     for c in range(2 * z):
-        work[MOVED_STEP, c] = work[CENTRIFUGAL_MOVED, c] - work[MOVED_STEP, c] - work[MOVED, c]
+        work[ring.MOVED_STEP, c] = work[ring.CENTRIFUGAL_MOVED, c] - work[ring.MOVED_STEP, c] - work[rows.MOVED, c]
     for k in range(z):
-        da, dr = work[MOVED_STEP, k], work[MOVED_STEP, z + k]
-        work[STEP, k] += work[APPROACH_BY_CENTRE, k] * da + work[APPROACH_BY_CENTRE, z + k] * dr
-        work[STEP, z + k] += work[APPROACH_BY_CENTRE + 1, k] * da + work[APPROACH_BY_CENTRE + 1, z + k] * dr
+        da, dr = work[ring.MOVED_STEP, k], work[ring.MOVED_STEP, z + k]
+        approach = tensor_of(work, ring.APPROACH_BY_CENTRE, k)
+        work[ring.STEP, k] += approach.aa * da + approach.ar * dr
+        work[ring.STEP, z + k] += approach.ra * da + approach.rr * dr
     return True
 
 
 @jit(void(VECTOR, MATRIX, float64, MATRIX, MATRIX, MATRIX))
 def reduce_tangents(scalars, table, ball_gain, work, K, C):
     """K and C (5, 5) of balls at fixed d, with d eliminated: A J - A M (1 + A M)^-1 A J."""
-    z, arm, cross = table.shape[0], scalars[TILT_ARM], scalars[BALL_CROSS]
+    z, arm, cross = table.shape[0], scalars[ring.TILT_ARM], scalars[ring.BALL_CROSS]
     rates = 0.0
     for k in range(z):
-        seat = seat_of(k, arm, table, work, DIRECTION)
-        wai, wri, wao, wro = _by_shift(work, k)
+        seat = seat_of(k, arm, table, work, ring.DIRECTION)
+        w, (di, do) = _by_shift(work, k), _by_angle(work, k)
         # By the turn of the section, and of the couple by d.
-        qi, qo = work[BY_TURN, k], work[BY_TURN, z + k]
-        wi, wo = _approaches(scalars, work, k, work[OWN, k] * qi + cross * qo, cross * qi + work[OWN, z + k] * qo)
-        turned = -work[CONTACT_FORCE, k] * work[SLOPE, k] * qi - work[CONTACT_FORCE, z + k] * work[SLOPE, z + k] * qo
-        axial = work[FORCE_BY_TURN, k] + turned * work[TURNING, k] + wai * wi + wao * wo
-        radial = work[FORCE_BY_TURN, z + k] + turned * work[TURNING, z + k] + wri * wi + wro * wo
-        aa, ar, ra, rr, _, _, _, _ = _by_centre(scalars, work, k, 1.0, 0.0)
-        to_ring(seat, Pair(aa, ar), axial, work, BY_Q, k)
-        to_ring(seat, Pair(ra, rr), radial, work, BY_Q, z + k)
-        aa, ar, ra, rr, _, _, _, _ = _by_centre(scalars, work, k, 0.0, 1.0)
-        rates += abs(aa) + abs(rr)
-        to_ring(seat, Pair(aa, ar), 0.0, work, BY_V, k)
-        to_ring(seat, Pair(ra, rr), 0.0, work, BY_V, z + k)
+        qi, qo = work[rows.BY_TURN, k], work[rows.BY_TURN, z + k]
+        turned, approach = (
+            di * qi + do * qo,
+            Pair(work[ring.OWN, k] * qi + cross * qo, cross * qi + work[ring.OWN, z + k] * qo),
+        )
+        wi, wo = _approaches(scalars, work, k, approach)
+        axial = work[rows.FORCE_BY_TURN, k] + turned * work[ring.TURNING, k] + w.aa * wi + w.ar * wo
+        radial = work[rows.FORCE_BY_TURN, z + k] + turned * work[ring.TURNING, z + k] + w.ra * wi + w.rr * wo
+        f, _ = _by_centre(scalars, work, k, 1.0, 0.0)
+        to_ring(seat, Pair(f.aa, f.ar), axial, work, ring.BY_Q, k)
+        to_ring(seat, Pair(f.ra, f.rr), radial, work, ring.BY_Q, z + k)
+        f, _ = _by_centre(scalars, work, k, 0.0, 1.0)
+        rates += abs(f.aa) + abs(f.rr)
+        to_ring(seat, Pair(f.aa, f.ar), 0.0, work, ring.BY_V, k)
+        to_ring(seat, Pair(f.ra, f.rr), 0.0, work, ring.BY_V, z + k)
         for side in range(2):
             d = k + side * z
-            turn = work[COUPLE_BY_CENTRE, d]
-            turn += work[COUPLE_BY_SHIFT, k] * work[APPROACH_BY_CENTRE, d]
-            turn += work[COUPLE_BY_SHIFT, z + k] * work[APPROACH_BY_CENTRE + 1, d]
-            to_ring(seat, Pair(work[BALL_TANGENT, d], work[BALL_TANGENT + 1, d]), turn, work, RING, d)
+            turn = work[rows.COUPLE_BY_CENTRE, d]
+            turn += work[rows.COUPLE_BY_SHIFT, k] * work[ring.APPROACH_BY_CENTRE, d]
+            turn += work[rows.COUPLE_BY_SHIFT, z + k] * work[ring.APPROACH_BY_CENTRE + 1, d]
+            to_ring(seat, Pair(work[ring.BALL_TANGENT, d], work[ring.BALL_TANGENT + 1, d]), turn, work, ring.RING, d)
     for i in range(5):
-        _rings_times(scalars, work, RING + i, WEIGHT + i)
-        _solve_transposed(scalars, work, WEIGHT + i)
-    for i in range(5):
-        for j in range(5):
-            total = 0.0
-            for c in range(2 * z):
-                total += work[WEIGHT + i, c] * work[BY_Q + j, c]
-            K[i, j] -= total
-            if rates != 0.0:
-                total = 0.0
-                for c in range(2 * z):
-                    total += work[WEIGHT + i, c] * work[BY_V + j, c]
-                C[i, j] -= total
+        _rings_times(scalars, work, ring.RING + i, ring.WEIGHT + i)
+        _solve_transposed(scalars, work, ring.WEIGHT + i)
+    add_products(work, ring.BY_Q, -1.0, K)
+    if rates != 0.0:
+        add_products(work, ring.BY_V, -1.0, C)

@@ -16,18 +16,7 @@ from numba import boolean, float64, int64, types, void
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import (
-    AHEAD,
-    CONTACT_FORCE,
-    FORCE_BY_GAP,
-    FORCE_BY_RATE,
-    GAP,
-    GAP_RATE,
-    KERNEL_ROWS,
-    MOVED,
-    MOVED_RATE,
-    WORK_ROWS,
-)
+from raceway.core.ring import kernels as rows
 from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
@@ -83,8 +72,8 @@ def place(t, q, v, constants, work, rows):
 def move_centres(work, centre, velocity):
     """Add to e and its velocity what the rings' elasticity moves the groove centres of condensed bodies by."""
     for c in range(work.shape[1]):
-        work[centre, c] += work[MOVED, c]
-        work[velocity, c] += work[MOVED_RATE, c]
+        work[centre, c] += work[rows.MOVED, c]
+        work[velocity, c] += work[rows.MOVED_RATE, c]
 
 
 @jit(void(float64, VECTOR, MATRIX))
@@ -172,7 +161,7 @@ def ring_tangent(table, arm, work, direction, row, K):
     K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = -ux_c, -ur_cc, -ur_cs, -uu_cs, uu_cc
 
 
-_FIRST = WORK_ROWS + KERNEL_ROWS + 2
+_FIRST = rows.WORK_ROWS + rows.KERNEL_ROWS + 2
 #: Of ``structural``: azimuths, e and its velocity, derivative of the angle by e, compliances with slopes and curvatures, steps
 #: of the structural approaches, inverses, and the size of what is left.
 DIRECTION, CENTRE, SPEED, TURNING, OWN, SLOPE, CURVE, STEP, LAST, INVERSE, INVERSE_2, NORM = range(_FIRST, _FIRST + 12)
@@ -185,8 +174,8 @@ CARRIED, CENTRIFUGAL_MOVED, MOVED_REST, MOVED_STEP, MOVED_LAST, BALL_TANGENT = r
 APPROACH_BY_CENTRE = BALL_TANGENT + 2
 LOCAL = APPROACH_BY_CENTRE + 2
 #: Rows of all that, less a matrix of 2 Z rows behind them.
-ELASTIC_ROWS = LOCAL + 1 - WORK_ROWS
-MATRIX_ROWS = WORK_ROWS + ELASTIC_ROWS
+ELASTIC_ROWS = LOCAL + 1 - rows.WORK_ROWS
+MATRIX_ROWS = rows.WORK_ROWS + ELASTIC_ROWS
 
 
 class Pair(NamedTuple):
@@ -208,6 +197,34 @@ class Tensor(NamedTuple):
 PAIR = types.NamedUniTuple(float64, 2, Pair)
 TENSOR = types.NamedUniTuple(float64, 4, Tensor)
 NOTHING = Pair(0.0, 0.0)
+
+
+@jit(void(TENSOR, MATRIX, int64, int64), inline=True)
+def put_tensor(tensor, work, row, k):
+    """A matrix of ball k into two rows of ``work``, as ``ring_tangent`` reads it."""
+    z = work.shape[1] // 2
+    work[row, k], work[row, z + k] = tensor.aa, tensor.ar
+    work[row + 1, k], work[row + 1, z + k] = tensor.ra, tensor.rr
+
+
+@jit(TENSOR(MATRIX, int64, int64), inline=True)
+def tensor_of(work, row, k):
+    """The matrix of ball k that ``put_tensor`` put into two rows of ``work``."""
+    z = work.shape[1] // 2
+    return Tensor(work[row, k], work[row, z + k], work[row + 1, k], work[row + 1, z + k])
+
+
+@jit(types.UniTuple(float64, 2)(int64, VECTOR, MATRIX), inline=True)
+def offsets_of(k, scalars, table):
+    """Distances of ball k and the inner and the outer groove centre at first touch [m]."""
+    inner = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER]
+    return inner, scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
+
+
+@jit(TENSOR(float64, TENSOR, float64, TENSOR), inline=True)
+def weighted_sum(a, s, b, t):
+    """a S + b T."""
+    return Tensor(a * s.aa + b * t.aa, a * s.ar + b * t.ar, a * s.ra + b * t.ra, a * s.rr + b * t.rr)
 
 
 @jit(TENSOR(TENSOR, TENSOR), inline=True)
@@ -263,14 +280,14 @@ def normal_forces(contacts, scalars, work):
     to touch carries nothing.
     """
     law, params, old, new, dt = contacts
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
-    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    gap, rate, force = work[rows.GAP], work[rows.GAP_RATE], work[rows.CONTACT_FORCE]
+    by_gap, by_rate = work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE]
     tau = scalars[TIME_CONSTANT]
     if tau == 0.0:
         law(gap, rate, params, old, new, dt, force, by_gap, by_rate)
         add_damping(scalars[DAMPING], gap, rate, force, by_gap, by_rate)
         return
-    ahead = work[AHEAD]
+    ahead = work[rows.AHEAD]
     for i in range(gap.size):
         viscous = tau * rate[i]
         ahead[i] = gap[i] + max(viscous, gap[i]) if gap[i] < 0.0 else gap[i]
@@ -317,8 +334,8 @@ def elastic_columns(scalars):
 def work_rows(scalars, table):
     """Rows of ``work`` that a system needs."""
     if not are_condensed(scalars):
-        return WORK_ROWS
-    return WORK_ROWS + ELASTIC_ROWS + 2 * table.shape[0]
+        return rows.WORK_ROWS
+    return rows.WORK_ROWS + ELASTIC_ROWS + 2 * table.shape[0]
 
 
 @jit(int64(VECTOR, MATRIX))
@@ -419,6 +436,17 @@ def to_ring(seat, force, turn, work, row, column):
     work[row, column] = axial
     work[row + 1, column], work[row + 2, column] = force.radial * seat.cosine, force.radial * seat.sine
     work[row + 3, column], work[row + 4, column] = couple * seat.sine, -couple * seat.cosine
+
+
+@jit(void(MATRIX, int64, float64, MATRIX))
+def add_products(work, row, sign, out):
+    """Add sign times WEIGHT^T B, B five rows of ``work`` from ``row`` on, to out (5, 5)."""
+    for i in range(5):
+        for j in range(5):
+            total = 0.0
+            for c in range(work.shape[1]):
+                total += work[WEIGHT + i, c] * work[row + j, c]
+            out[i, j] += sign * total
 
 
 @jit(void(SEAT, float64, PAIR, PAIR, float64, VECTOR, MATRIX))

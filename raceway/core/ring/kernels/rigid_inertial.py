@@ -12,42 +12,25 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import (
-    AXIAL_BY_SHIFT,
-    BY_AXIAL,
-    BY_AXIAL_SPEED,
-    BY_OTHER,
-    BY_OWN,
-    BY_RADIAL,
-    BY_RADIAL_SPEED,
-    CONTACT_FORCE,
-    FORCE,
-    FORCE_BY_CENTRE,
-    FORCE_BY_GAP,
-    FORCE_BY_RATE,
-    FORCE_BY_SPEED,
-    GAP,
-    GAP_RATE,
-    KERNEL_ROWS,
-    RADIAL_BY_SHIFT,
-    SHIFT,
-    SHIFT_RATE,
-    WORK_ROWS,
-)
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import (
-    CENTRIFUGAL,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OUTER_FACTOR,
-    OUTER_SHARE,
-    OWN_OFFSET_INNER,
-    OWN_OFFSET_OUTER,
-    TILT_ARM,
+    NOTHING,
+    TENSOR,
+    Pair,
+    Tensor,
+    less,
+    less_column,
+    less_row,
     move_centres,
     normal_forces,
+    offsets_of,
     place,
+    put_tensor,
     ring_force,
     ring_tangent,
+    row_times_adjugate,
+    times_adjugate,
 )
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
@@ -70,7 +53,7 @@ CARRIED, STIFF, VISCOUS = 9, 5, 7
 def _first_guess(k, scalars, table, ball, work):
     """Begin with ball k where it is, or on its seat."""
     z = table.shape[0]
-    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
+    li, lo = offsets_of(k, scalars, table)
     work[SEARCH, k] = 0.0
     work[DONE, z + k] = 0.0
     if ball[k, 0] * ball[k, 0] + ball[k, 1] * ball[k, 1] > lo * lo:
@@ -78,18 +61,16 @@ def _first_guess(k, scalars, table, ball, work):
     # A guess off the outer race: on its seat there, or, where nothing is known, on the line of the groove centres.
     length = np.sqrt(work[CENTRE, k] * work[CENTRE, k] + work[CENTRE, z + k] * work[CENTRE, z + k])
     if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 and length > li + lo:
-        scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+        scale = (lo + table[k, ring.OUTER_SHARE] * (length - li - lo)) / length
         ball[k, 0], ball[k, 1] = scale * work[CENTRE, k], scale * work[CENTRE, z + k]
     else:
-        ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
+        ball[k, 0], ball[k, 1] = 0.0, lo + (table[k, ring.CENTRIFUGAL] / table[k, ring.OUTER_FACTOR]) ** (2.0 / 3.0)
 
 
 @jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
 def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
-    z = ball.shape[0]
-    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
-    pa, pr = ball[k, 0], ball[k, 1]
+    z, (li, lo), pa, pr = ball.shape[0], offsets_of(k, scalars, table), ball[k, 0], ball[k, 1]
     xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
     so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
     by_so = 1.0 / so
@@ -99,23 +80,41 @@ def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
         by_si = 1.0 / si
         ia, ir = xa * by_si, xr * by_si
     own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
-    rate_i = work[SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
-    rate_o = work[SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
-    gap_i, gap_o = li - si + work[SHIFT, k], lo - so + work[SHIFT, z + k]
+    rate_i = work[rows.SHIFT_RATE, k] - (ia * (work[VELOCITY, k] - own_a) + ir * (work[VELOCITY, z + k] - own_r))
+    rate_o = work[rows.SHIFT_RATE, z + k] - (oa * own_a + orr * own_r)
+    gap_i, gap_o = li - si + work[rows.SHIFT, k], lo - so + work[rows.SHIFT, z + k]
     work[LENGTH, k], work[LENGTH, z + k] = si, so
     work[OUTER, k], work[OUTER, z + k] = oa, orr
     work[INNER, k], work[INNER, z + k] = ia, ir
-    work[GAP, k], work[GAP, z + k], work[GAP_RATE, k], work[GAP_RATE, z + k] = gap_i, gap_o, rate_i, rate_o
+    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
+        gap_i,
+        gap_o,
+        rate_i,
+        rate_o,
+    )
+
+
+@jit(TENSOR(TENSOR, float64, float64, float64, float64), inline=True)
+def _plus(t, na, nr, k, w):
+    """T plus the stiffness of a contact: k along its direction n, its force over its length w across."""
+    return Tensor(
+        t.aa + (k - w) * na * na + w, t.ar + (k - w) * na * nr, t.ra + (k - w) * na * nr, t.rr + (k - w) * nr * nr + w
+    )
 
 
 @jit(boolean(int64, float64, MATRIX, MATRIX, float64, MATRIX), inline=True)
 def _settles(k, lo, table, ball, ball_gain, work):
     """Move ball k by one step of Newton's method on its potential; whether that was the last one."""
     z = table.shape[0]
-    fi, fo, gap_i, gap_o = work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k], work[GAP, k], work[GAP, z + k]
+    fi, fo, gap_i, gap_o = (
+        work[rows.CONTACT_FORCE, k],
+        work[rows.CONTACT_FORCE, z + k],
+        work[rows.GAP, k],
+        work[rows.GAP, z + k],
+    )
     ia, ir, oa, orr = work[INNER, k], work[INNER, z + k], work[OUTER, k], work[OUTER, z + k]
     ga = fo * oa - fi * ia
-    gr = fo * orr - fi * ir - table[k, CENTRIFUGAL]
+    gr = fo * orr - fi * ir - table[k, ring.CENTRIFUGAL]
     if work[SEARCH, k] < 0.0:
         # Beyond the minimum along the last step by more than it began with: go half-way back.
         along = ga * work[STEP, k] + gr * work[STEP, z + k]
@@ -126,13 +125,11 @@ def _settles(k, lo, table, ball, ball_gain, work):
             ball[k, 0] -= work[STEP, k]
             ball[k, 1] -= work[STEP, z + k]
             return False
-    ki = -work[FORCE_BY_GAP, k] - ball_gain * work[FORCE_BY_RATE, k]
-    ko = -work[FORCE_BY_GAP, z + k] - ball_gain * work[FORCE_BY_RATE, z + k]
+    ki = -work[rows.FORCE_BY_GAP, k] - ball_gain * work[rows.FORCE_BY_RATE, k]
+    ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
     by_si = 1.0 / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0
     wi, wo = fi * by_si, fo / work[LENGTH, z + k]
-    haa = (ki - wi) * ia * ia + wi + (ko - wo) * oa * oa + wo
-    har = (ki - wi) * ia * ir + (ko - wo) * oa * orr
-    hrr = (ki - wi) * ir * ir + wi + (ko - wo) * orr * orr + wo
+    haa, har, _, hrr = _plus(_plus(Tensor(0.0, 0.0, 0.0, 0.0), ia, ir, ki, wi), oa, orr, ko, wo)
     det = haa * hrr - har * har
     if not det > 1e-14 * (haa + hrr) * (haa + hrr):
         shift = 1e-7 * (haa + hrr) + 1.0
@@ -152,13 +149,13 @@ def _settles(k, lo, table, ball, ball_gain, work):
     if size <= max(1e-8 * shallow, 1e-14 * lo):
         # One linear correction ends the iteration: what it leaves is of second order.
         inner, outer = ia * sa + ir * sr, oa * sa + orr * sr
-        work[GAP, k], work[GAP, z + k] = gap_i + inner, gap_o - outer
+        work[rows.GAP, k], work[rows.GAP, z + k] = gap_i + inner, gap_o - outer
         ball[k, 0] += sa
         ball[k, 1] += sr
         # Kept for the tangent below, since the law is called again for the balls that still move.
         work[KEPT_FORCE, k], work[KEPT_FORCE, z + k] = max(fi - ki * inner, 0.0), max(fo + ko * outer, 0.0)
-        work[KEPT_BY_GAP, k], work[KEPT_BY_GAP, z + k] = work[FORCE_BY_GAP, k], work[FORCE_BY_GAP, z + k]
-        work[KEPT_BY_RATE, k], work[KEPT_BY_RATE, z + k] = work[FORCE_BY_RATE, k], work[FORCE_BY_RATE, z + k]
+        work[KEPT_BY_GAP, k], work[KEPT_BY_GAP, z + k] = work[rows.FORCE_BY_GAP, k], work[rows.FORCE_BY_GAP, z + k]
+        work[KEPT_BY_RATE, k], work[KEPT_BY_RATE, z + k] = work[rows.FORCE_BY_RATE, k], work[rows.FORCE_BY_RATE, z + k]
         work[KEPT_NORMAL, k], work[KEPT_NORMAL, z + k] = ia - (sa - ia * inner) * by_si, ir - (sr - ir * inner) * by_si
         work[DONE, z + k] = 1.0
         return True
@@ -173,49 +170,43 @@ def _settles(k, lo, table, ball, ball_gain, work):
 def _condense(k, ball_gain, work):
     """Tangents of ball k to the ring, and what elastic bodies ask for; False where there is none."""
     z = work.shape[1] // 2
-    fi, fo = work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k]
-    na, nr = work[KEPT_NORMAL, k], work[KEPT_NORMAL, z + k]
+    fi, fo = work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k]
+    na, nr, oa, orr = work[KEPT_NORMAL, k], work[KEPT_NORMAL, z + k], work[OUTER, k], work[OUTER, z + k]
     elastic, viscous = -work[KEPT_BY_GAP, k], -work[KEPT_BY_RATE, k]
     ki = elastic + ball_gain * viscous
     ko = -work[KEPT_BY_GAP, z + k] - ball_gain * work[KEPT_BY_RATE, z + k]
-    wi, wo = fi / work[LENGTH, k], fo / work[LENGTH, z + k]
-    # A by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
-    eaa, ear, err = (elastic - wi) * na * na + wi, (elastic - wi) * na * nr, (elastic - wi) * nr * nr + wi
-    paa, par, prr = (ki - wi) * na * na + wi, (ki - wi) * na * nr, (ki - wi) * nr * nr + wi
-    haa = paa + (ko - wo) * work[OUTER, k] * work[OUTER, k] + wo
-    har = par + (ko - wo) * work[OUTER, k] * work[OUTER, z + k]
-    hrr = prr + (ko - wo) * work[OUTER, z + k] * work[OUTER, z + k] + wo
-    det = haa * hrr - har * har
+    # E by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
+    wi, wo, none = fi / work[LENGTH, k], fo / work[LENGTH, z + k], Tensor(0.0, 0.0, 0.0, 0.0)
+    e, p, m = _plus(none, na, nr, elastic, wi), _plus(none, na, nr, ki, wi), _plus(none, na, nr, viscous, 0.0)
+    h = _plus(p, oa, orr, ko, wo)
+    det = h.aa * h.rr - h.ar * h.ar
     if not det > 0.0:
         return False
     inverse = 1.0 / det
-    taa, tar = (paa * hrr - par * har) * inverse, (par * haa - paa * har) * inverse
-    tra, trr = (par * hrr - prr * har) * inverse, (prr * haa - par * har) * inverse
-    maa, mar, mrr = viscous * na * na, viscous * na * nr, viscous * nr * nr
-    work[STIFF, k], work[STIFF, z + k] = eaa - taa * eaa - tar * ear, ear - taa * ear - tar * err
-    work[STIFF + 1, k], work[STIFF + 1, z + k] = ear - tra * eaa - trr * ear, err - tra * ear - trr * err
-    work[VISCOUS, k], work[VISCOUS, z + k] = maa - taa * maa - tar * mar, mar - taa * mar - tar * mrr
-    work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = mar - tra * maa - trr * mar, mrr - tra * mar - trr * mrr
-    if work.shape[0] == WORK_ROWS:
+    t = times_adjugate(p, h)
+    t = Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
+    stiffness, damping = less(e, t, e), less(m, t, m)
+    put_tensor(stiffness, work, STIFF, k)
+    put_tensor(damping, work, VISCOUS, k)
+    if work.shape[0] == rows.WORK_ROWS:
         return True
-    for row in range(2):
-        work[FORCE_BY_CENTRE + row, k], work[FORCE_BY_CENTRE + row, z + k] = work[STIFF + row, k], work[STIFF + row, z + k]
-        work[FORCE_BY_SPEED + row, k], work[FORCE_BY_SPEED + row, z + k] = work[VISCOUS + row, k], work[VISCOUS + row, z + k]
+    put_tensor(stiffness, work, rows.FORCE_BY_CENTRE, k)
+    put_tensor(damping, work, rows.FORCE_BY_SPEED, k)
     # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
-    oa, orr = work[OUTER, k], work[OUTER, z + k]
-    gia, gir = ki * (na * hrr - nr * har) * inverse, ki * (nr * haa - na * har) * inverse
-    goa, gor = -ko * (oa * hrr - orr * har) * inverse, -ko * (orr * haa - oa * har) * inverse
-    work[BY_AXIAL, k] = elastic * na - gia * eaa - gir * ear
-    work[BY_RADIAL, k] = elastic * nr - gia * ear - gir * err
-    work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = -goa * eaa - gor * ear, -goa * ear - gor * err
-    work[BY_AXIAL_SPEED, k] = viscous * na - gia * maa - gir * mar
-    work[BY_RADIAL_SPEED, k] = viscous * nr - gia * mar - gir * mrr
-    work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = -goa * maa - gor * mar, -goa * mar - gor * mrr
-    wia, wir, woa, wor = -ki * na, -ki * nr, ko * oa, ko * orr
-    work[BY_OWN, k], work[BY_OTHER, k] = -ki - gia * wia - gir * wir, -gia * woa - gir * wor
-    work[BY_OTHER, z + k], work[BY_OWN, z + k] = -goa * wia - gor * wir, -ko - goa * woa - gor * wor
-    work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = wia - taa * wia - tar * wir, wir - tra * wia - trr * wir
-    work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = -taa * woa - tar * wor, -tra * woa - trr * wor
+    gi, go = row_times_adjugate(Pair(na, nr), h), row_times_adjugate(Pair(oa, orr), h)
+    gi = Pair(ki * gi.axial * inverse, ki * gi.radial * inverse)
+    go = Pair(-ko * go.axial * inverse, -ko * go.radial * inverse)
+    work[rows.BY_AXIAL, k], work[rows.BY_RADIAL, k] = less_row(Pair(elastic * na, elastic * nr), gi, e)
+    work[rows.BY_AXIAL, z + k], work[rows.BY_RADIAL, z + k] = less_row(NOTHING, go, e)
+    work[rows.BY_AXIAL_SPEED, k], work[rows.BY_RADIAL_SPEED, k] = less_row(Pair(viscous * na, viscous * nr), gi, m)
+    work[rows.BY_AXIAL_SPEED, z + k], work[rows.BY_RADIAL_SPEED, z + k] = less_row(NOTHING, go, m)
+    ri, ro = Pair(-ki * na, -ki * nr), Pair(ko * oa, ko * orr)
+    work[rows.BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
+    work[rows.BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
+    work[rows.BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
+    work[rows.BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
+    work[rows.AXIAL_BY_SHIFT, k], work[rows.RADIAL_BY_SHIFT, k] = less_column(ri, t, ri)
+    work[rows.AXIAL_BY_SHIFT, z + k], work[rows.RADIAL_BY_SHIFT, z + k] = less_column(NOTHING, t, ro)
     return True
 
 
@@ -225,8 +216,8 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
-    z, elastic_bodies = table.shape[0], work.shape[0] > WORK_ROWS
-    force = work[CONTACT_FORCE]
+    z, elastic_bodies = table.shape[0], work.shape[0] > rows.WORK_ROWS
+    force = work[rows.CONTACT_FORCE]
     place(t, q, v, constants, work, (DIRECTION, CENTRE, VELOCITY))
     if elastic_bodies:
         move_centres(work, CENTRE, VELOCITY)
@@ -239,7 +230,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
         normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[DONE, z + k] == 0.0:
-                moving -= _settles(k, scalars[OFFSET_OUTER], table, ball, ball_gain, work)
+                moving -= _settles(k, scalars[ring.OFFSET_OUTER], table, ball, ball_gain, work)
         if moving == 0:
             break
     if moving > 0:
@@ -248,20 +239,20 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
         fi, fo = work[KEPT_FORCE, k], work[KEPT_FORCE, z + k]
         force[k], force[z + k] = fi, fo
         work[CARRIED, k], work[CARRIED, z + k] = fi * work[KEPT_NORMAL, k], fi * work[KEPT_NORMAL, z + k]
-    ring_force(table, scalars[TILT_ARM], work, DIRECTION, CARRIED, f)
+    ring_force(table, scalars[ring.TILT_ARM], work, DIRECTION, CARRIED, f)
     if K.size == 0 and not elastic_bodies:
         return 0
     for k in range(z):
         if elastic_bodies:
-            for row in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
+            for row in range(rows.WORK_ROWS, rows.WORK_ROWS + rows.KERNEL_ROWS):
                 work[row, k], work[row, z + k] = 0.0, 0.0
-            work[FORCE, k], work[FORCE, z + k] = work[CARRIED, k], work[CARRIED, z + k]
+            work[rows.FORCE, k], work[rows.FORCE, z + k] = work[CARRIED, k], work[CARRIED, z + k]
         if force[k] == 0.0 and work[KEPT_BY_GAP, k] == 0.0:
             for row in (STIFF, STIFF + 1, VISCOUS, VISCOUS + 1):
                 work[row, k], work[row, z + k] = 0.0, 0.0
         elif not _condense(k, ball_gain, work):
             return 1
     if K.size > 0:
-        ring_tangent(table, scalars[TILT_ARM], work, DIRECTION, STIFF, K)
-        ring_tangent(table, scalars[TILT_ARM], work, DIRECTION, VISCOUS, C)
+        ring_tangent(table, scalars[ring.TILT_ARM], work, DIRECTION, STIFF, K)
+        ring_tangent(table, scalars[ring.TILT_ARM], work, DIRECTION, VISCOUS, C)
     return 0

@@ -11,37 +11,15 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import (
-    AXIAL_BY_SHIFT,
-    BY_AXIAL,
-    BY_AXIAL_SPEED,
-    BY_OTHER,
-    BY_OWN,
-    BY_RADIAL,
-    BY_RADIAL_SPEED,
-    CONTACT_FORCE,
-    FORCE,
-    FORCE_BY_CENTRE,
-    FORCE_BY_GAP,
-    FORCE_BY_RATE,
-    FORCE_BY_SPEED,
-    GAP,
-    GAP_RATE,
-    RADIAL_BY_SHIFT,
-    SHIFT,
-    SHIFT_RATE,
-    WORK_ROWS,
-)
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import (
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OUTER_SHARE,
-    OWN_OFFSET_INNER,
-    OWN_OFFSET_OUTER,
-    TILT_ARM,
+    Tensor,
     move_centres,
     normal_forces,
+    offsets_of,
     place,
+    put_tensor,
     ring_force,
     ring_tangent,
 )
@@ -60,95 +38,86 @@ APPROACH, OUTER = SPEED, LENGTH
 def _share(k, scalars, table, ball, ball_gain, ball_history, work):
     """First guess of ball k: direction and length of its line, and the approach shared as Hertzian contacts share it."""
     z = table.shape[0]
-    li, lo = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER], scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
+    li, lo = offsets_of(k, scalars, table)
     a, r = work[NORMAL, k], work[NORMAL, z + k]
     length = np.sqrt(a * a + r * r)
     inverse = 1.0 / max(length, 1e-300)
     na, nr = a * inverse, r * inverse
     speed = work[VELOCITY, k] * na + work[VELOCITY, z + k] * nr
-    approach = length - li - lo - work[SHIFT, k] - work[SHIFT, z + k]
-    outer = (table[k, OUTER_SHARE] if approach > 0.0 else 0.5) * approach
-    ball_rate = ball_gain * (lo + work[SHIFT, z + k] + outer) + ball_history[k, 0]
-    rate_i, rate_o = ball_rate - speed + work[SHIFT_RATE, k], work[SHIFT_RATE, z + k] - ball_rate
+    approach = length - li - lo - work[rows.SHIFT, k] - work[rows.SHIFT, z + k]
+    outer = (table[k, ring.OUTER_SHARE] if approach > 0.0 else 0.5) * approach
+    ball_rate = ball_gain * (lo + work[rows.SHIFT, z + k] + outer) + ball_history[k, 0]
+    rate_i, rate_o = ball_rate - speed + work[rows.SHIFT_RATE, k], work[rows.SHIFT_RATE, z + k] - ball_rate
     work[NORMAL, k], work[NORMAL, z + k] = na, nr
     work[APPROACH, z + k], work[LENGTH, k] = approach, length
     work[OUTER, z + k] = outer
     work[BRACKET, k], work[BRACKET, z + k] = 0.0, approach
-    work[GAP, k], work[GAP, z + k], work[GAP_RATE, k], work[GAP_RATE, z + k] = outer - approach, -outer, rate_i, rate_o
+    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
+        outer - approach,
+        -outer,
+        rate_i,
+        rate_o,
+    )
 
 
 @jit(boolean(int64, int64, float64, MATRIX), inline=True)
 def _moves(k, z, ball_gain, work):
     """Move ball k by one step of Newton's method inside its bracket; whether it needs another one."""
-    ki = -work[FORCE_BY_GAP, k] - ball_gain * work[FORCE_BY_RATE, k]
-    ko = -work[FORCE_BY_GAP, z + k] - ball_gain * work[FORCE_BY_RATE, z + k]
-    fi, fo, approach, outer = work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k], work[APPROACH, z + k], work[OUTER, z + k]
+    ki = -work[rows.FORCE_BY_GAP, k] - ball_gain * work[rows.FORCE_BY_RATE, k]
+    ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
+    fi, fo, approach, outer = (
+        work[rows.CONTACT_FORCE, k],
+        work[rows.CONTACT_FORCE, z + k],
+        work[APPROACH, z + k],
+        work[OUTER, z + k],
+    )
     stiff, imbalance = ki + ko, fi - fo
     if not approach > 0.0 or not stiff > 0.0 or imbalance == 0.0:
         return False
     step = imbalance / stiff
     if abs(step) <= 1e-8 * approach:
         # A correction this small ends the iteration linearly: what it leaves is of second order.
-        inner = work[GAP, k] + step
+        inner = work[rows.GAP, k] + step
         work[OUTER, z + k] = outer + step
-        work[GAP, k], work[GAP, z + k] = inner, -outer - step
-        work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k] = fi - ki * step, fo + ko * step
+        work[rows.GAP, k], work[rows.GAP, z + k] = inner, -outer - step
+        work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k] = fi - ki * step, fo + ko * step
         return False
     work[BRACKET, k if imbalance > 0.0 else z + k] = outer
     low, high = work[BRACKET, k], work[BRACKET, z + k]
     trial = outer + step if low < outer + step < high else 0.5 * (low + high)
     step = trial - outer
     work[OUTER, z + k] = trial
-    work[GAP, k], work[GAP, z + k] = trial - approach, -trial
-    work[GAP_RATE, k] += ball_gain * step
-    work[GAP_RATE, z + k] -= ball_gain * step
+    work[rows.GAP, k], work[rows.GAP, z + k] = trial - approach, -trial
+    work[rows.GAP_RATE, k] += ball_gain * step
+    work[rows.GAP_RATE, z + k] -= ball_gain * step
     return trial != outer
 
 
 @jit(void(int64, int64, float64, MATRIX), inline=True)
 def _tangents(k, z, ball_gain, work):
-    """Tangents of ball k to the ring."""
-    stiff = (
-        -work[FORCE_BY_GAP, k]
-        - work[FORCE_BY_GAP, z + k]
-        - ball_gain * (work[FORCE_BY_RATE, k] + work[FORCE_BY_RATE, z + k])
-    )
+    """Tangents of ball k to the ring, and for elastic bodies the derivatives of its contact forces: both feel both shifts alike."""
+    by_gap, by_rate = work[rows.FORCE_BY_GAP, k], work[rows.FORCE_BY_RATE, k]
+    ki = -by_gap - ball_gain * by_rate
+    ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
     na, nr = work[NORMAL, k], work[NORMAL, z + k]
-    closed = 1.0 if work[APPROACH, z + k] > 0.0 and stiff > 0.0 else 0.0
-    share = closed * (-work[FORCE_BY_GAP, z + k] - ball_gain * work[FORCE_BY_RATE, z + k]) / max(stiff, 1e-300)
-    across = closed * work[CONTACT_FORCE, k] / max(work[LENGTH, k], 1e-300)
-    along, dashpot = -work[FORCE_BY_GAP, k] * share - across, -work[FORCE_BY_RATE, k] * share
-    work[STIFF, k], work[STIFF, z + k] = along * na * na + across, along * na * nr
-    work[STIFF + 1, k], work[STIFF + 1, z + k] = along * na * nr, along * nr * nr + across
-    work[VISCOUS, k], work[VISCOUS, z + k] = dashpot * na * na, dashpot * na * nr
-    work[VISCOUS + 1, k], work[VISCOUS + 1, z + k] = dashpot * na * nr, dashpot * nr * nr
-
-
-@jit(void(int64, int64, float64, MATRIX), inline=True)
-def _keep_for_bodies(k, z, ball_gain, work):
-    """Derivatives of both contact forces of ball k, which are the same: both feel both shifts alike."""
-    ki, ko = (
-        -work[FORCE_BY_GAP, k] - ball_gain * work[FORCE_BY_RATE, k],
-        -work[FORCE_BY_GAP, z + k] - ball_gain * work[FORCE_BY_RATE, z + k],
-    )
     closed = 1.0 if work[APPROACH, z + k] > 0.0 and ki + ko > 0.0 else 0.0
     share = closed * ko / max(ki + ko, 1e-300)
-    na, nr = work[NORMAL, k], work[NORMAL, z + k]
+    across = closed * work[rows.CONTACT_FORCE, k] / max(work[LENGTH, k], 1e-300)
+    along, dashpot = -by_gap * share - across, -by_rate * share
+    stiffness = Tensor(along * na * na + across, along * na * nr, along * na * nr, along * nr * nr + across)
+    damping = Tensor(dashpot * na * na, dashpot * na * nr, dashpot * na * nr, dashpot * nr * nr)
+    put_tensor(stiffness, work, STIFF, k)
+    put_tensor(damping, work, VISCOUS, k)
+    if work.shape[0] == rows.WORK_ROWS:
+        return
+    put_tensor(stiffness, work, rows.FORCE_BY_CENTRE, k)
+    put_tensor(damping, work, rows.FORCE_BY_SPEED, k)
     for c in (k, z + k):
-        work[BY_AXIAL, c], work[BY_RADIAL, c] = -work[FORCE_BY_GAP, k] * share * na, -work[FORCE_BY_GAP, k] * share * nr
-        work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c] = (
-            -work[FORCE_BY_RATE, k] * share * na,
-            -work[FORCE_BY_RATE, k] * share * nr,
-        )
-        work[BY_OWN, c] = work[BY_OTHER, c] = -ki * share
-        work[AXIAL_BY_SHIFT, c], work[RADIAL_BY_SHIFT, c] = -ki * share * na, -ki * share * nr
-        work[FORCE, c] = work[CARRIED, c]
-    across = closed * work[CONTACT_FORCE, k] / max(work[LENGTH, k], 1e-300)
-    along, dashpot = -work[FORCE_BY_GAP, k] * share - across, -work[FORCE_BY_RATE, k] * share
-    work[FORCE_BY_CENTRE, k], work[FORCE_BY_CENTRE, z + k] = along * na * na + across, along * na * nr
-    work[FORCE_BY_CENTRE + 1, k], work[FORCE_BY_CENTRE + 1, z + k] = along * na * nr, along * nr * nr + across
-    work[FORCE_BY_SPEED, k], work[FORCE_BY_SPEED, z + k] = dashpot * na * na, dashpot * na * nr
-    work[FORCE_BY_SPEED + 1, k], work[FORCE_BY_SPEED + 1, z + k] = dashpot * na * nr, dashpot * nr * nr
+        work[rows.BY_AXIAL, c], work[rows.BY_RADIAL, c] = -by_gap * share * na, -by_gap * share * nr
+        work[rows.BY_AXIAL_SPEED, c], work[rows.BY_RADIAL_SPEED, c] = -by_rate * share * na, -by_rate * share * nr
+        work[rows.BY_OWN, c] = work[rows.BY_OTHER, c] = -ki * share
+        work[rows.AXIAL_BY_SHIFT, c], work[rows.RADIAL_BY_SHIFT, c] = -ki * share * na, -ki * share * nr
+        work[rows.FORCE, c] = work[CARRIED, c]
 
 
 @jit(SYSTEM)
@@ -157,8 +126,8 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
-    z, arm, elastic_bodies = table.shape[0], scalars[TILT_ARM], work.shape[0] > WORK_ROWS
-    force = work[CONTACT_FORCE]
+    z, arm, elastic_bodies = table.shape[0], scalars[ring.TILT_ARM], work.shape[0] > rows.WORK_ROWS
+    force = work[rows.CONTACT_FORCE]
     place(t, q, v, constants, work, (DIRECTION, NORMAL, VELOCITY))
     if elastic_bodies:
         move_centres(work, NORMAL, VELOCITY)
@@ -175,16 +144,16 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     for k in range(z):
         closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
         fi, fo, na, nr = force[k] * closed, force[z + k] * closed, work[NORMAL, k], work[NORMAL, z + k]
-        ball[k, 0] = scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER] + work[SHIFT, z + k] + work[OUTER, z + k]
+        ball[k, 0] = (
+            scalars[ring.OFFSET_OUTER] + table[k, ring.OWN_OFFSET_OUTER] + work[rows.SHIFT, z + k] + work[OUTER, z + k]
+        )
         force[k], force[z + k] = fi, fo
         work[CARRIED, k], work[CARRIED, z + k] = fi * na, fi * nr
     ring_force(table, arm, work, DIRECTION, CARRIED, f)
-    if elastic_bodies:
-        for k in range(z):
-            _keep_for_bodies(k, z, ball_gain, work)
-    if K.size > 0:
+    if elastic_bodies or K.size > 0:
         for k in range(z):
             _tangents(k, z, ball_gain, work)
+    if K.size > 0:
         ring_tangent(table, arm, work, DIRECTION, STIFF, K)
         ring_tangent(table, arm, work, DIRECTION, VISCOUS, C)
     return 1 if moving > 0 else 0

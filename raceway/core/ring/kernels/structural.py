@@ -23,70 +23,25 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import Kernel, jit
-from raceway.core.ring.kernels import (
-    AXIAL_BY_SHIFT,
-    BY_AXIAL,
-    BY_AXIAL_SPEED,
-    BY_OTHER,
-    BY_OWN,
-    BY_RADIAL,
-    BY_RADIAL_SPEED,
-    BY_TURN,
-    CONTACT_FORCE,
-    COUPLE_BY_CENTRE,
-    COUPLE_BY_SHIFT,
-    FORCE_BY_CENTRE,
-    FORCE_BY_SPEED,
-    GAP,
-    MOVED,
-    MOVED_RATE,
-    RADIAL_BY_SHIFT,
-    SHIFT,
-    SHIFT_RATE,
-    STORED,
-)
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
 from raceway.core.ring.kernels.layout import (
-    BALL_CROSS,
-    BY_Q,
-    BY_V,
-    CENTRE,
-    COUPLED,
-    CURVE,
-    DIRECTION,
-    DISTANCE,
-    FIRST,
-    INVERSE,
-    INVERSE_2,
-    KNOTS,
-    LAST,
-    LEVER,
-    MOVED_LAST,
-    MOVED_REST,
-    MOVED_STEP,
-    NORM,
-    OWN,
-    RING,
-    SIDE,
-    SLOPE,
-    SPEED,
-    STEP,
-    TILT_ARM,
-    TURN,
-    TURNING,
-    VALUES,
-    WEIGHT,
     Pair,
     Tensor,
     add_ball,
+    add_products,
     place,
+    put_tensor,
     seat_of,
     slips_end,
+    tensor_of,
     to_ring,
+    weighted_sum,
 )
 from raceway.core.signatures import CONSTANTS, MATRIX, SYSTEM, VECTOR
 
-#: Iterations until it is given up, and answers of ``correct``.
+#: Iterations until it is given up, and answers of ``_correct``.
 ITERATIONS = 60
 GOES_ON, SETTLED, FAILED = range(3)
 
@@ -95,53 +50,55 @@ GOES_ON, SETTLED, FAILED = range(3)
 def _compliances(scalars, work):
     """Angles of the lines of groove centres, with the compliances, their slopes and curvatures there."""
     z = work.shape[1] // 2
-    knots = int(scalars[KNOTS])
+    knots = int(scalars[ring.KNOTS])
     for k in range(z):
-        a, r = work[CENTRE, k] + work[MOVED, k], work[CENTRE, z + k] + work[MOVED, z + k]
+        a, r = work[ring.CENTRE, k] + work[rows.MOVED, k], work[ring.CENTRE, z + k] + work[rows.MOVED, z + k]
         inverse = 1.0 / max(a * a + r * r, 1e-300)
-        work[TURNING, k], work[TURNING, z + k] = r * inverse, -a * inverse
-        x = (np.arctan2(a, r) - scalars[FIRST]) / scalars[DISTANCE]
+        work[ring.TURNING, k], work[ring.TURNING, z + k] = r * inverse, -a * inverse
+        x = (np.arctan2(a, r) - scalars[ring.FIRST]) / scalars[ring.DISTANCE]
         inside = 0.0 < x < knots - 1.0
         x = min(max(x, 0.0), knots - 1.0)
         i = min(int(x), knots - 2)
         u = x - i
         for c in (k, z + k):
-            first = VALUES + i + (0 if c == k else 2 * knots)
+            first = ring.VALUES + i + (0 if c == k else 2 * knots)
             p, q1, m, n = scalars[first], scalars[first + 1], scalars[first + knots], scalars[first + knots + 1]
             a2, a3 = 3.0 * (q1 - p) - 2.0 * m - n, 2.0 * (p - q1) + m + n
-            work[OWN, c] = p + u * (m + u * (a2 + u * a3))
-            work[SLOPE, c] = (m + u * (2.0 * a2 + u * 3.0 * a3)) / scalars[DISTANCE] if inside else 0.0
-            work[CURVE, c] = (2.0 * a2 + 6.0 * a3 * u) / (scalars[DISTANCE] * scalars[DISTANCE]) if inside else 0.0
+            work[ring.OWN, c] = p + u * (m + u * (a2 + u * a3))
+            work[ring.SLOPE, c] = (m + u * (2.0 * a2 + u * 3.0 * a3)) / scalars[ring.DISTANCE] if inside else 0.0
+            work[ring.CURVE, c] = (
+                (2.0 * a2 + 6.0 * a3 * u) / (scalars[ring.DISTANCE] * scalars[ring.DISTANCE]) if inside else 0.0
+            )
 
 
 @jit(void(float64, VECTOR, VECTOR, CONSTANTS, MATRIX))
-def begin(t, q, v, constants, work):
+def _begin(t, q, v, constants, work):
     """Lines of groove centres and the compliances there."""
     scalars, table = constants
-    place(t, q, v, constants, work, (DIRECTION, CENTRE, SPEED))
-    work[NORM, 0] = np.inf
-    if scalars[COUPLED] == 0.0:
+    place(t, q, v, constants, work, (ring.DIRECTION, ring.CENTRE, ring.SPEED))
+    work[ring.NORM, 0] = np.inf
+    if scalars[ring.COUPLED] == 0.0:
         _compliances(scalars, work)
     else:
         centrifugal_displacement(scalars, table, work)
 
 
 @jit(void(VECTOR, MATRIX, float64, MATRIX, MATRIX))
-def shift(scalars, ball, ball_gain, ball_history, work):
+def _shift(scalars, ball, ball_gain, ball_history, work):
     """Hand structural approaches and displacements of groove centres, the last columns of ``ball``, to the rigid kernel."""
     z, first = ball.shape[0], slips_end(scalars, ball)
     for k in range(z):
         for side in range(2):
             w = ball[k, first + side]
-            work[SHIFT, k + side * z] = w
-            work[SHIFT_RATE, k + side * z] = ball_gain * w + ball_history[k, first + side]
-    if scalars[COUPLED] == 0.0:
+            work[rows.SHIFT, k + side * z] = w
+            work[rows.SHIFT_RATE, k + side * z] = ball_gain * w + ball_history[k, first + side]
+    if scalars[ring.COUPLED] == 0.0:
         return
     for k in range(z):
         for c in range(2):
             d = ball[k, first + 2 + c]
-            work[MOVED, k + c * z] = d
-            work[MOVED_RATE, k + c * z] = ball_gain * d + ball_history[k, first + 2 + c]
+            work[rows.MOVED, k + c * z] = d
+            work[rows.MOVED_RATE, k + c * z] = ball_gain * d + ball_history[k, first + 2 + c]
     _compliances(scalars, work)
 
 
@@ -149,7 +106,7 @@ def shift(scalars, ball, ball_gain, ball_history, work):
 def _compliance_times(scalars, work, row, c):
     """Entry c of C x with x = work[row]."""
     z = work.shape[1] // 2
-    return work[OWN, c] * work[row, c] + scalars[BALL_CROSS] * work[row, c + z if c < z else c - z]
+    return work[ring.OWN, c] * work[row, c] + scalars[ring.BALL_CROSS] * work[row, c + z if c < z else c - z]
 
 
 @jit(boolean(VECTOR, MATRIX))
@@ -160,17 +117,21 @@ def _factorise(scalars, work):
     -----
     The matrix is similar to a positive definite one, and close to the identity.
     """
-    z, cross = work.shape[1] // 2, scalars[BALL_CROSS]
+    z, cross = work.shape[1] // 2, scalars[ring.BALL_CROSS]
     for k in range(z):
-        ci, co = work[OWN, k], work[OWN, z + k]
-        sii, sio, soi, soo = work[BY_OWN, k], work[BY_OTHER, k], work[BY_OTHER, z + k], work[BY_OWN, z + k]
+        ci, co = work[ring.OWN, k], work[ring.OWN, z + k]
+        sii, sio, soi, soo = (
+            work[rows.BY_OWN, k],
+            work[rows.BY_OTHER, k],
+            work[rows.BY_OTHER, z + k],
+            work[rows.BY_OWN, z + k],
+        )
         mii, mio = 1.0 - ci * sii - cross * soi, -ci * sio - cross * soo
         moi, moo = -cross * sii - co * soi, 1.0 - cross * sio - co * soo
         det = mii * moo - mio * moi
         if not det > 0.0:
             return False
-        work[INVERSE, k], work[INVERSE, z + k] = moo / det, -mio / det
-        work[INVERSE_2, k], work[INVERSE_2, z + k] = -moi / det, mii / det
+        put_tensor(Tensor(moo / det, -mio / det, -moi / det, mii / det), work, ring.INVERSE, k)
     return True
 
 
@@ -179,9 +140,8 @@ def _solve(work, row):
     """work[row] := (I - C S)^-1 work[row]."""
     z = work.shape[1] // 2
     for k in range(z):
-        a, b = work[row, k], work[row, z + k]
-        work[row, k] = work[INVERSE, k] * a + work[INVERSE, z + k] * b
-        work[row, z + k] = work[INVERSE_2, k] * a + work[INVERSE_2, z + k] * b
+        a, b, m = work[row, k], work[row, z + k], tensor_of(work, ring.INVERSE, k)
+        work[row, k], work[row, z + k] = m.aa * a + m.ar * b, m.ra * a + m.rr * b
 
 
 @jit(void(MATRIX, int64))
@@ -189,9 +149,8 @@ def _solve_transposed(work, row):
     """work[row] := work[row] (I - C S)^-1."""
     z = work.shape[1] // 2
     for k in range(z):
-        a, b = work[row, k], work[row, z + k]
-        work[row, k] = a * work[INVERSE, k] + b * work[INVERSE_2, k]
-        work[row, z + k] = a * work[INVERSE, z + k] + b * work[INVERSE_2, z + k]
+        a, b, m = work[row, k], work[row, z + k], tensor_of(work, ring.INVERSE, k)
+        work[row, k], work[row, z + k] = a * m.aa + b * m.ra, a * m.ar + b * m.rr
 
 
 @jit(types.UniTuple(float64, 2)(int64, VECTOR, MATRIX, MATRIX), inline=True)
@@ -202,12 +161,12 @@ def _rests(first, scalars, ball, work):
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
         w = ball[k, first + side]
-        residual = _compliance_times(scalars, work, CONTACT_FORCE, c) - w
-        work[STEP, c] = residual
+        residual = _compliance_times(scalars, work, rows.CONTACT_FORCE, c) - w
+        work[ring.STEP, c] = residual
         # Second order in what is left: the force times w, less half of what its part C Q would store.
-        work[STORED, c] = 0.5 * work[CONTACT_FORCE, c] * (w - residual)
+        work[rows.STORED, c] = 0.5 * work[rows.CONTACT_FORCE, c] * (w - residual)
         norm = max(norm, abs(residual))
-        deepest = max(deepest, -work[GAP, c])
+        deepest = max(deepest, -work[rows.GAP, c])
     return norm, deepest
 
 
@@ -217,11 +176,11 @@ def _half_way_back(first, coupled, ball, work):
     z = ball.shape[0]
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
-        work[LAST, c] *= 0.5
-        ball[k, first + side] -= work[LAST, c]
+        work[ring.LAST, c] *= 0.5
+        ball[k, first + side] -= work[ring.LAST, c]
         if coupled:
-            work[MOVED_LAST, c] *= 0.5
-            ball[k, first + 2 + side] -= work[MOVED_LAST, c]
+            work[ring.MOVED_LAST, c] *= 0.5
+            ball[k, first + 2 + side] -= work[ring.MOVED_LAST, c]
 
 
 @jit(boolean(int64, boolean, float64, MATRIX, MATRIX), inline=True)
@@ -230,13 +189,13 @@ def _go(first, coupled, deepest, ball, work):
     z, settled = ball.shape[0], True
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
-        ball[k, first + side] += work[STEP, c]
-        work[LAST, c] = work[STEP, c]
-        settled = settled and abs(work[STEP, c]) <= max(1e-8 * -work[GAP, c], 1e-10 * deepest)
+        ball[k, first + side] += work[ring.STEP, c]
+        work[ring.LAST, c] = work[ring.STEP, c]
+        settled = settled and abs(work[ring.STEP, c]) <= max(1e-8 * -work[rows.GAP, c], 1e-10 * deepest)
         if coupled:
-            ball[k, first + 2 + side] += work[MOVED_STEP, c]
-            work[MOVED_LAST, c] = work[MOVED_STEP, c]
-            settled = settled and abs(work[MOVED_STEP, c]) <= 1e-8 * deepest
+            ball[k, first + 2 + side] += work[ring.MOVED_STEP, c]
+            work[ring.MOVED_LAST, c] = work[ring.MOVED_STEP, c]
+            settled = settled and abs(work[ring.MOVED_STEP, c]) <= 1e-8 * deepest
     return settled
 
 
@@ -244,27 +203,24 @@ def _go(first, coupled, deepest, ball, work):
 def _follow_linearly(k, scalars, table, ball_gain, work, f):
     """Forces of ball k and f (5,) after the last step."""
     z = table.shape[0]
-    a, b = work[STEP, k], work[STEP, z + k]
-    inner = work[CONTACT_FORCE, k] + work[BY_OWN, k] * a + work[BY_OTHER, k] * b
-    outer = work[CONTACT_FORCE, z + k] + work[BY_OTHER, z + k] * a + work[BY_OWN, z + k] * b
-    axial = work[AXIAL_BY_SHIFT, k] * a + work[AXIAL_BY_SHIFT, z + k] * b
-    radial = work[RADIAL_BY_SHIFT, k] * a + work[RADIAL_BY_SHIFT, z + k] * b
-    turn = work[COUPLE_BY_SHIFT, k] * a + work[COUPLE_BY_SHIFT, z + k] * b
-    if scalars[COUPLED] != 0.0:
-        da, dr = work[MOVED_STEP, k], work[MOVED_STEP, z + k]
-        inner += (work[BY_AXIAL, k] + ball_gain * work[BY_AXIAL_SPEED, k]) * da
-        inner += (work[BY_RADIAL, k] + ball_gain * work[BY_RADIAL_SPEED, k]) * dr
-        outer += (work[BY_AXIAL, z + k] + ball_gain * work[BY_AXIAL_SPEED, z + k]) * da
-        outer += (work[BY_RADIAL, z + k] + ball_gain * work[BY_RADIAL_SPEED, z + k]) * dr
-        axial += (work[FORCE_BY_CENTRE, k] + ball_gain * work[FORCE_BY_SPEED, k]) * da
-        axial += (work[FORCE_BY_CENTRE, z + k] + ball_gain * work[FORCE_BY_SPEED, z + k]) * dr
-        radial += (work[FORCE_BY_CENTRE + 1, k] + ball_gain * work[FORCE_BY_SPEED + 1, k]) * da
-        radial += (work[FORCE_BY_CENTRE + 1, z + k] + ball_gain * work[FORCE_BY_SPEED + 1, z + k]) * dr
-        turn += work[COUPLE_BY_CENTRE, k] * da + work[COUPLE_BY_CENTRE, z + k] * dr
-    work[CONTACT_FORCE, k], work[CONTACT_FORCE, z + k] = max(inner, 0.0), max(outer, 0.0)
-    axial *= table[k, SIDE]
-    couple = scalars[TILT_ARM] * axial - table[k, LEVER] * radial + table[k, SIDE] * turn
-    cosine, sine = work[DIRECTION, k], work[DIRECTION, z + k]
+    a, b = work[ring.STEP, k], work[ring.STEP, z + k]
+    inner = work[rows.CONTACT_FORCE, k] + work[rows.BY_OWN, k] * a + work[rows.BY_OTHER, k] * b
+    outer = work[rows.CONTACT_FORCE, z + k] + work[rows.BY_OTHER, z + k] * a + work[rows.BY_OWN, z + k] * b
+    w = tensor_of(work, rows.AXIAL_BY_SHIFT, k)
+    axial, radial = w.aa * a + w.ar * b, w.ra * a + w.rr * b
+    turn = work[rows.COUPLE_BY_SHIFT, k] * a + work[rows.COUPLE_BY_SHIFT, z + k] * b
+    if scalars[ring.COUPLED] != 0.0:
+        da, dr = work[ring.MOVED_STEP, k], work[ring.MOVED_STEP, z + k]
+        q, f_d = tensor_of(work, rows.BY_AXIAL, k), tensor_of(work, rows.FORCE_BY_CENTRE, k)
+        q = weighted_sum(1.0, q, ball_gain, tensor_of(work, rows.BY_AXIAL_SPEED, k))
+        f_d = weighted_sum(1.0, f_d, ball_gain, tensor_of(work, rows.FORCE_BY_SPEED, k))
+        inner, outer = inner + q.aa * da + q.ra * dr, outer + q.ar * da + q.rr * dr
+        axial, radial = axial + f_d.aa * da + f_d.ar * dr, radial + f_d.ra * da + f_d.rr * dr
+        turn += work[rows.COUPLE_BY_CENTRE, k] * da + work[rows.COUPLE_BY_CENTRE, z + k] * dr
+    work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k] = max(inner, 0.0), max(outer, 0.0)
+    axial *= table[k, ring.SIDE]
+    couple = scalars[ring.TILT_ARM] * axial - table[k, ring.LEVER] * radial + table[k, ring.SIDE] * turn
+    cosine, sine = work[ring.DIRECTION, k], work[ring.DIRECTION, z + k]
     f[0] += axial
     f[1] += radial * cosine
     f[2] += radial * sine
@@ -273,31 +229,31 @@ def _follow_linearly(k, scalars, table, ball_gain, work, f):
 
 
 @jit(int64(VECTOR, MATRIX, MATRIX, float64, MATRIX, VECTOR))
-def correct(scalars, table, ball, ball_gain, work, f):
+def _correct(scalars, table, ball, ball_gain, work, f):
     """One Newton step on structural approaches and displacements after a rigid kernel; the last one is a linear correction.
 
     Returns
     -------
     int
-        ``GOES_ON``, ``SETTLED`` (forces and f are corrected; ``tangents`` may follow) or ``FAILED``.
+        ``GOES_ON``, ``SETTLED`` (forces and f are corrected; ``_tangents`` may follow) or ``FAILED``.
     """
     z, first = table.shape[0], slips_end(scalars, ball)
-    coupled = scalars[COUPLED] != 0.0
+    coupled = scalars[ring.COUPLED] != 0.0
     norm, deepest = _rests(first, scalars, ball, work)
     if coupled:
         forces(scalars, table, work)
         for c in range(2 * z):
-            norm = max(norm, abs(work[MOVED_REST, c]))
+            norm = max(norm, abs(work[ring.MOVED_REST, c]))
     if not np.isfinite(norm):
         return FAILED
-    if norm > work[NORM, 0] and norm > 1e-9 * deepest:
+    if norm > work[ring.NORM, 0] and norm > 1e-9 * deepest:
         # Worse than before the last step.
         _half_way_back(first, coupled, ball, work)
         return GOES_ON
-    work[NORM, 0] = norm
+    work[ring.NORM, 0] = norm
     if not _factorise(scalars, work):
         return FAILED
-    _solve(work, STEP)
+    _solve(work, ring.STEP)
     if coupled and not step(scalars, table, ball_gain, work):
         return FAILED
     if not _go(first, coupled, deepest, ball, work):
@@ -311,18 +267,18 @@ def correct(scalars, table, ball, ball_gain, work, f):
 def _add_turning(k, arm, table, work, f, K, C):
     """Add what ball k's compliances, which change with the angle, do to the ring: force and tangent."""
     z = table.shape[0]
-    ga, gr = work[TURNING, k], work[TURNING, z + k]
+    ga, gr = work[ring.TURNING, k], work[ring.TURNING, z + k]
     by_angle, twice = 0.0, 0.0
     for c in (k, z + k):
-        half = -0.5 * work[CONTACT_FORCE, c] * work[CONTACT_FORCE, c]
-        by_angle += half * work[SLOPE, c]
-        twice += half * work[CURVE, c]
+        half = -0.5 * work[rows.CONTACT_FORCE, c] * work[rows.CONTACT_FORCE, c]
+        by_angle += half * work[ring.SLOPE, c]
+        twice += half * work[ring.CURVE, c]
     if by_angle == 0.0 and twice == 0.0:
         return
     haa, har = 2.0 * ga * gr, gr * gr - ga * ga
     cross = twice * ga * gr + by_angle * har
     stiffness = Tensor(twice * ga * ga + by_angle * haa, cross, cross, twice * gr * gr - by_angle * haa)
-    seat = seat_of(k, arm, table, work, DIRECTION)
+    seat = seat_of(k, arm, table, work, ring.DIRECTION)
     add_ball(seat, Pair(by_angle * ga, by_angle * gr), stiffness, Tensor(0.0, 0.0, 0.0, 0.0), f, K, C)
 
 
@@ -330,31 +286,34 @@ def _add_turning(k, arm, table, work, f, K, C):
 def _rows_of_ball(k, arm, table, work):
     """Fill the columns of both contacts of ball k in BY_Q, BY_V, TURN and RING; the size of their derivatives by velocity."""
     z, rates = table.shape[0], 0.0
-    ga, gr = work[TURNING, k], work[TURNING, z + k]
-    seat = seat_of(k, arm, table, work, DIRECTION)
+    ga, gr = work[ring.TURNING, k], work[ring.TURNING, z + k]
+    seat = seat_of(k, arm, table, work, ring.DIRECTION)
     for c in (k, z + k):
         opposite = z + k if c == k else k
-        to_ring(seat, Pair(work[BY_AXIAL, c], work[BY_RADIAL, c]), work[BY_TURN, c], work, BY_Q, c)
-        to_ring(seat, Pair(work[BY_AXIAL_SPEED, c], work[BY_RADIAL_SPEED, c]), 0.0, work, BY_V, c)
-        rates += abs(work[BY_AXIAL_SPEED, c]) + abs(work[BY_RADIAL_SPEED, c])
-        d = -work[CONTACT_FORCE, c] * work[SLOPE, c]
-        to_ring(seat, Pair(d * ga, d * gr), 0.0, work, TURN, c)
+        to_ring(seat, Pair(work[rows.BY_AXIAL, c], work[rows.BY_RADIAL, c]), work[rows.BY_TURN, c], work, ring.BY_Q, c)
+        to_ring(seat, Pair(work[rows.BY_AXIAL_SPEED, c], work[rows.BY_RADIAL_SPEED, c]), 0.0, work, ring.BY_V, c)
+        rates += abs(work[rows.BY_AXIAL_SPEED, c]) + abs(work[rows.BY_RADIAL_SPEED, c])
+        d = -work[rows.CONTACT_FORCE, c] * work[ring.SLOPE, c]
+        to_ring(seat, Pair(d * ga, d * gr), 0.0, work, ring.TURN, c)
         # B + D^T S: a shift changes the forces that turn the ring, too.
-        d = d * work[BY_OWN, c] - work[CONTACT_FORCE, opposite] * work[SLOPE, opposite] * work[BY_OTHER, opposite]
-        by_shift = Pair(work[AXIAL_BY_SHIFT, c] + d * ga, work[RADIAL_BY_SHIFT, c] + d * gr)
-        to_ring(seat, by_shift, work[COUPLE_BY_SHIFT, c], work, RING, c)
+        d = (
+            d * work[rows.BY_OWN, c]
+            - work[rows.CONTACT_FORCE, opposite] * work[ring.SLOPE, opposite] * work[rows.BY_OTHER, opposite]
+        )
+        by_shift = Pair(work[rows.AXIAL_BY_SHIFT, c] + d * ga, work[rows.RADIAL_BY_SHIFT, c] + d * gr)
+        to_ring(seat, by_shift, work[rows.COUPLE_BY_SHIFT, c], work, ring.RING, c)
     return rates
 
 
 @jit(void(VECTOR, MATRIX, float64, MATRIX, VECTOR, MATRIX, MATRIX))
-def tangents(scalars, table, ball_gain, work, f, K, C):
+def _tangents(scalars, table, ball_gain, work, f, K, C):
     """Complete f (5,), and K and C (5, 5) where they are asked for, with what the bodies' elasticity adds.
 
     Notes
     -----
     df = K dq + B dw + D^T dQ and dQ = A dq + S dw, w = C Q: dw = (I - C S)^-1 (C A - D) dq, where D holds -Q c' dbeta/dq.
     """
-    z, arm, rates = table.shape[0], scalars[TILT_ARM], 0.0
+    z, arm, rates = table.shape[0], scalars[ring.TILT_ARM], 0.0
     for k in range(z):
         _add_turning(k, arm, table, work, f, K, C)
     if K.size == 0:
@@ -362,22 +321,19 @@ def tangents(scalars, table, ball_gain, work, f, K, C):
     for k in range(z):
         rates += _rows_of_ball(k, arm, table, work)
     for i in range(5):
-        _solve_transposed(work, RING + i)
+        _solve_transposed(work, ring.RING + i)
         for c in range(2 * z):
             # C is symmetric.
-            work[WEIGHT + i, c] = _compliance_times(scalars, work, RING + i, c) + work[TURN + i, c]
+            work[ring.WEIGHT + i, c] = _compliance_times(scalars, work, ring.RING + i, c) + work[ring.TURN + i, c]
     for i in range(5):
         for j in range(5):
             total = 0.0
             for c in range(2 * z):
-                total += work[WEIGHT + i, c] * work[BY_Q + j, c] - work[RING + i, c] * work[TURN + j, c]
+                total += work[ring.WEIGHT + i, c] * work[ring.BY_Q + j, c] - work[ring.RING + i, c] * work[ring.TURN + j, c]
             K[i, j] += total
-            if rates != 0.0:
-                total = 0.0
-                for c in range(2 * z):
-                    total += work[WEIGHT + i, c] * work[BY_V + j, c]
-                C[i, j] += total
-    if scalars[COUPLED] != 0.0:
+    if rates != 0.0:
+        add_products(work, ring.BY_V, 1.0, C)
+    if scalars[ring.COUPLED] != 0.0:
         reduce_tangents(scalars, table, ball_gain, work, K, C)
 
 
@@ -391,15 +347,15 @@ def condensed(rigid: Kernel) -> Kernel:
         ball, ball_gain, ball_history = balls
         scalars, table = constants
         f, K, C, work = response
-        begin(t, q, v, constants, work)
+        _begin(t, q, v, constants, work)
         for _ in range(ITERATIONS):
-            shift(scalars, ball, ball_gain, ball_history, work)
+            _shift(scalars, ball, ball_gain, ball_history, work)
             status = rigid(t, q, v, balls, contacts, constants, response)
             if status != 0:
                 return status
-            answer = correct(scalars, table, ball, ball_gain, work, f)
+            answer = _correct(scalars, table, ball, ball_gain, work, f)
             if answer == SETTLED:
-                tangents(scalars, table, ball_gain, work, f, K, C)
+                _tangents(scalars, table, ball_gain, work, f, K, C)
                 return 0
             if answer != GOES_ON:
                 return 1

@@ -14,54 +14,13 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import (
-    AXIAL_BY_SHIFT,
-    BY_AXIAL,
-    BY_AXIAL_SPEED,
-    BY_OTHER,
-    BY_OWN,
-    BY_RADIAL,
-    BY_RADIAL_SPEED,
-    BY_TURN,
-    CONTACT_FORCE,
-    COUPLE_BY_CENTRE,
-    COUPLE_BY_SHIFT,
-    FORCE,
-    FORCE_BY_CENTRE,
-    FORCE_BY_GAP,
-    FORCE_BY_RATE,
-    FORCE_BY_SPEED,
-    FORCE_BY_TURN,
-    GAP,
-    GAP_RATE,
-    KERNEL_ROWS,
-    RADIAL_BY_SHIFT,
-    SHIFT,
-    SHIFT_RATE,
-    WORK_ROWS,
-)
-from raceway.core.ring.kernels import tangential_rows as row
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import (
-    BALL_OVER_PITCH,
-    CENTRIFUGAL,
-    DIAMETER,
-    FRICTION,
-    GYROSCOPIC,
-    LEVER,
     NOTHING,
-    OFFSET_INNER,
-    OFFSET_OUTER,
-    OUTER_FACTOR,
-    OUTER_SHARE,
     PAIR,
     SEAT,
-    SHARE_INNER,
-    SHARE_OUTER,
-    SIDE,
-    SLIPS,
-    STICK,
     TENSOR,
-    TILT_ARM,
     Pair,
     Seat,
     Tensor,
@@ -73,82 +32,148 @@ from raceway.core.ring.kernels.layout import (
     move_centres,
     normal_forces,
     place,
+    put_tensor,
     row_times_adjugate,
     times_adjugate,
 )
-from raceway.core.ring.kernels.tangential_rows import CONTACT, CONTACTS, Contact, contacts_of
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
+
+#: Rows of ``work`` beyond the law's, 2 Z long: index k is a ball's inner contact or axial component, Z + k its outer contact or
+#: radial component.  Where a row holds two quantities of a ball, the second one begins at Z + k.
+#: Vectors (axial, radial): groove centre e [m] and its velocity [m/s], last step of the ball [m], directions of its contacts.
+CENTRE, VELOCITY, STEP = 5, 6, 7
+INNER, OUTER = 9, 10
+#: Imbalance along the last step [N m], then what a ball is doing.
+SLOPE, STATE = 8, 8
+#: Values of STATE: it moves, it has settled, it lies between the races without forces.
+MOVES, SETTLED, LOOSE = 0.0, 1.0, 2.0
+#: Distance of the ball from the groove's centre [m].
+LENGTH = 11
+#: Of settled balls, since the law is called again for others: normal force [N], its derivatives by gap and gap rate.
+KEPT_FORCE, KEPT_BY_GAP, KEPT_BY_RATE = 12, 13, 14
+#: cos and sin of the azimuth.
+DIRECTION = 16
+#: Tangential force h of a contact [N] with its derivatives by the contact's length [N/m], its angle [N] and its shift [N/m].
+TANGENTIAL, BY_LENGTH, BY_ANGLE, BY_SHIFT = 15, 17, 18, 24
+#: Derivative of the inner h by the outer angle [N], then of the outer h by the inner angle [N].
+BY_OTHER_ANGLE = 19
+#: Couple on the ring's section [N m], then its derivative by the inner length [N].
+COUPLE, COUPLE_BY_LENGTH = 20, 20
+#: Its derivatives by the inner angle, then by the outer angle [N m].
+COUPLE_BY_ANGLE = 21
+#: Its derivative by the section's turn [N m], then that of the inner h [N].
+COUPLE_BY_TURN, BY_TURN = 22, 22
+#: Derivative of the outer h by the inner length [N/m], then the size of the imbalance at the last step [N].
+OUTER_BY_INNER_LENGTH, MERIT = 23, 23
+#: Derivative of the couple by the inner shift [N], then how far the section's turn moves the inner groove [m].
+COUPLE_BY_SHIFT, TURNED = 25, 25
+
+
+class _Contact(NamedTuple):
+    """Direction n of a contact, distance of ball and groove centre [m], normal force [N] and its derivative by that [N/m]."""
+
+    axial: float
+    radial: float
+    length: float
+    force: float
+    stiffness: float
+
+
+CONTACT = types.NamedUniTuple(float64, 5, _Contact)
+#: Inner and outer contact of a ball.
+CONTACTS = types.UniTuple(CONTACT, 2)
+
+
+@jit(CONTACTS(int64, float64, MATRIX), inline=True)
+def _contacts_of(k, ball_gain, work):
+    """Both contacts of ball k as the law has left them."""
+    z = work.shape[1] // 2
+    inner = -work[rows.FORCE_BY_GAP, k] - ball_gain * work[rows.FORCE_BY_RATE, k]
+    outer = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
+    return (
+        _Contact(work[INNER, k], work[INNER, z + k], work[LENGTH, k], work[rows.CONTACT_FORCE, k], inner),
+        _Contact(work[OUTER, k], work[OUTER, z + k], work[LENGTH, z + k], work[rows.CONTACT_FORCE, z + k], outer),
+    )
+
 
 #: Steps after which a ball begins anew; after twice as many its imbalance has to shrink at every step.
 PATIENCE = 60
 
 
 @jit(boolean(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
-def first_guess(k, q, scalars, table, ball, work):
+def _first_guess(k, q, scalars, table, ball, work):
     """Begin with ball k; False where nothing presses it on either race: it then lies midway, without forces."""
     z = table.shape[0]
-    li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
-    ea, er, shift = work[row.CENTRE, k], work[row.CENTRE, z + k], work[SHIFT, z + k]
-    turn = q[3] * work[row.DIRECTION, z + k] - q[4] * work[row.DIRECTION, k]
-    turned = (li + 0.5 * scalars[DIAMETER]) * table[k, SIDE] * turn
+    li, lo = scalars[ring.OFFSET_INNER], scalars[ring.OFFSET_OUTER]
+    ea, er, shift = work[CENTRE, k], work[CENTRE, z + k], work[rows.SHIFT, z + k]
+    turn = q[3] * work[DIRECTION, z + k] - q[4] * work[DIRECTION, k]
+    turned = (li + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
     length = np.sqrt(ea * ea + er * er)
-    room = li + lo + work[SHIFT, k] + shift
-    work[row.TURNED, z + k] = turned
-    work[row.SLOPE, k], work[row.STATE, z + k], work[row.MERIT, z + k] = 0.0, row.MOVES, np.inf
-    work[row.STEP, k], work[row.STEP, z + k] = 0.0, 0.0
+    room = li + lo + work[rows.SHIFT, k] + shift
+    work[TURNED, z + k] = turned
+    work[SLOPE, k], work[STATE, z + k], work[MERIT, z + k] = 0.0, MOVES, np.inf
+    work[STEP, k], work[STEP, z + k] = 0.0, 0.0
     # Of gyroscopic moments alone.
-    work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k] = 0.0, 0.0
-    work[row.COUPLE_BY_ANGLE, z + k], work[row.OUTER_BY_INNER_LENGTH, k] = 0.0, 0.0
-    if table[k, CENTRIFUGAL] == 0.0 and length <= room:
+    work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k] = 0.0, 0.0
+    work[COUPLE_BY_ANGLE, z + k], work[OUTER_BY_INNER_LENGTH, k] = 0.0, 0.0
+    if table[k, ring.CENTRIFUGAL] == 0.0 and length <= room:
         scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
         ball[k, 0], ball[k, 1] = scale * ea, scale * er
-        ball[k, SLIPS], ball[k, SLIPS + 1] = li * angle - turned, lo * angle
-        work[row.STATE, z + k] = row.LOOSE
+        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = li * angle - turned, lo * angle
+        work[STATE, z + k] = LOOSE
         return False
     if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
         if length > li + lo:
-            scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+            scale = (lo + table[k, ring.OUTER_SHARE] * (length - li - lo)) / length
             ball[k, 0], ball[k, 1] = scale * ea, scale * er
         else:
-            seat_outside(k, scalars, table, ball, work)
+            _seat_outside(k, scalars, table, ball, work)
     return True
 
 
 @jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX))
-def seat_outside(k, scalars, table, ball, work):
+def _seat_outside(k, scalars, table, ball, work):
     """Put ball k where its centrifugal force alone holds it, on the outer race, and forget its steps."""
     z = table.shape[0]
-    depth = (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0)
-    ball[k, 0], ball[k, 1] = 0.0, scalars[OFFSET_OUTER] + depth
-    work[row.SLOPE, k], work[row.MERIT, z + k] = 0.0, np.inf
-    work[row.STEP, k], work[row.STEP, z + k] = 0.0, 0.0
+    depth = (table[k, ring.CENTRIFUGAL] / table[k, ring.OUTER_FACTOR]) ** (2.0 / 3.0)
+    ball[k, 0], ball[k, 1] = 0.0, scalars[ring.OFFSET_OUTER] + depth
+    work[SLOPE, k], work[MERIT, z + k] = 0.0, np.inf
+    work[STEP, k], work[STEP, z + k] = 0.0, 0.0
 
 
 @jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def approach(k, scalars, ball, ball_gain, ball_history, work):
+def _approach(k, scalars, ball, ball_gain, ball_history, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
     z = ball.shape[0]
     pa, pr = ball[k, 0], ball[k, 1]
-    xa, xr = work[row.CENTRE, k] - pa, work[row.CENTRE, z + k] - pr
+    xa, xr = work[CENTRE, k] - pa, work[CENTRE, z + k] - pr
     so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
     no_a, no_r = pa / so, pr / so
     ni_a, ni_r = (xa / si, xr / si) if si > 0.0 else (no_a, no_r)
     own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
-    rate_i = -(ni_a * (work[row.VELOCITY, k] - own_a) + ni_r * (work[row.VELOCITY, z + k] - own_r))
+    rate_i = -(ni_a * (work[VELOCITY, k] - own_a) + ni_r * (work[VELOCITY, z + k] - own_r))
     rate_o = -(no_a * own_a + no_r * own_r)
-    gap_i, gap_o = scalars[OFFSET_INNER] - si + work[SHIFT, k], scalars[OFFSET_OUTER] - so + work[SHIFT, z + k]
-    rate_i, rate_o = rate_i + work[SHIFT_RATE, k], rate_o + work[SHIFT_RATE, z + k]
-    work[row.LENGTH, k], work[row.LENGTH, z + k] = si, so
-    work[row.INNER, k], work[row.INNER, z + k] = ni_a, ni_r
-    work[row.OUTER, k], work[row.OUTER, z + k] = no_a, no_r
-    work[GAP, k], work[GAP, z + k], work[GAP_RATE, k], work[GAP_RATE, z + k] = gap_i, gap_o, rate_i, rate_o
+    gap_i, gap_o = (
+        scalars[ring.OFFSET_INNER] - si + work[rows.SHIFT, k],
+        scalars[ring.OFFSET_OUTER] - so + work[rows.SHIFT, z + k],
+    )
+    rate_i, rate_o = rate_i + work[rows.SHIFT_RATE, k], rate_o + work[rows.SHIFT_RATE, z + k]
+    work[LENGTH, k], work[LENGTH, z + k] = si, so
+    work[INNER, k], work[INNER, z + k] = ni_a, ni_r
+    work[OUTER, k], work[OUTER, z + k] = no_a, no_r
+    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
+        gap_i,
+        gap_o,
+        rate_i,
+        rate_o,
+    )
 
 
 @jit(TENSOR(CONTACT, int64, MATRIX), inline=True)
-def contact_matrix(contact, c, work):
+def _contact_matrix(contact, c, work):
     """d(f n + h t)/dx of contact c for x = s n."""
     k, f = contact.stiffness, contact.force
-    h, h_s, h_a = work[row.TANGENTIAL, c], work[row.BY_LENGTH, c], work[row.BY_ANGLE, c]
+    h, h_s, h_a = work[TANGENTIAL, c], work[BY_LENGTH, c], work[BY_ANGLE, c]
     w = 1.0 / contact.length if contact.length > 0.0 else 0.0
     na, nr = contact.axial, contact.radial
     ta, tr = nr, -na
@@ -173,10 +198,10 @@ def _newton_step(k, contacts, ra, rr, longest, work):
     inner, outer = contacts
     ti_a, ti_r, to_a, to_r = inner.radial, -inner.axial, outer.radial, -outer.axial
     wi, wo = (1.0 / inner.length if inner.length > 0.0 else 0.0), 1.0 / outer.length
-    cross_i, cross_o = work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k]
-    grows = work[row.OUTER_BY_INNER_LENGTH, k]
+    cross_i, cross_o = work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k]
+    grows = work[OUTER_BY_INNER_LENGTH, k]
     oi_a, oi_r = cross_o * ti_a * wi + grows * inner.axial, cross_o * ti_r * wi + grows * inner.radial
-    gi, go = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
+    gi, go = _contact_matrix(inner, k, work), _contact_matrix(outer, z + k, work)
     jaa = -gi.aa - go.aa + cross_i * ti_a * to_a * wo + to_a * oi_a
     jar = -gi.ar - go.ar + cross_i * ti_a * to_r * wo + to_a * oi_r
     jra = -gi.ra - go.ra + cross_i * ti_r * to_a * wo + to_r * oi_a
@@ -194,7 +219,7 @@ def _newton_step(k, contacts, ra, rr, longest, work):
 
 
 @jit(boolean(int64, int64, CONTACTS, float64, MATRIX, MATRIX, MATRIX), inline=True)
-def settles(k, attempt, contacts, lo, table, ball, work):
+def _settles(k, attempt, contacts, lo, table, ball, work):
     """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order.
 
     Notes
@@ -205,35 +230,35 @@ def settles(k, attempt, contacts, lo, table, ball, work):
     """
     z = table.shape[0]
     inner, outer = contacts
-    hi, ho = work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k]
+    hi, ho = work[TANGENTIAL, k], work[TANGENTIAL, z + k]
     ra = inner.force * inner.axial + hi * inner.radial - outer.force * outer.axial - ho * outer.radial
     rr = inner.force * inner.radial - hi * inner.axial - outer.force * outer.radial + ho * outer.axial
-    rr += table[k, CENTRIFUGAL]
+    rr += table[k, ring.CENTRIFUGAL]
     size = np.sqrt(ra * ra + rr * rr)
-    da, dr, slope = work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k]
+    da, dr, slope = work[STEP, k], work[STEP, z + k], work[SLOPE, k]
     too_far = slope > 0.0 and -(ra * da + rr * dr) > 0.9 * slope
     if attempt > 2 * PATIENCE and np.sqrt(da * da + dr * dr) > 1e-13:
         # Twice in circles: descend at every step instead.
-        too_far = size > 0.9999 * work[row.MERIT, z + k]
+        too_far = size > 0.9999 * work[MERIT, z + k]
     if too_far:
         # Beyond the balance along the last step by more than it began with: go half-way back.
         da, dr = 0.5 * da, 0.5 * dr
-        work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k] = da, dr, 0.5 * slope
+        work[STEP, k], work[STEP, z + k], work[SLOPE, k] = da, dr, 0.5 * slope
         ball[k, 0] -= da
         ball[k, 1] -= dr
         return False
     da, dr = _newton_step(k, contacts, ra, rr, 0.2 * lo, work)
     ball[k, 0] += da
     ball[k, 1] += dr
-    work[row.STEP, k], work[row.STEP, z + k], work[row.SLOPE, k] = da, dr, ra * da + rr * dr
-    work[row.MERIT, z + k] = size
-    if not np.sqrt(da * da + dr * dr) <= 1e-10 * max(-work[GAP, k], -work[GAP, z + k], 1e-12):
+    work[STEP, k], work[STEP, z + k], work[SLOPE, k] = da, dr, ra * da + rr * dr
+    work[MERIT, z + k] = size
+    if not np.sqrt(da * da + dr * dr) <= 1e-10 * max(-work[rows.GAP, k], -work[rows.GAP, z + k], 1e-12):
         return False
-    # Forces and tangents are kept from before this step, which ``add_settled`` adds to the forces.
-    work[row.KEPT_FORCE, k], work[row.KEPT_FORCE, z + k] = inner.force, outer.force
-    work[row.KEPT_BY_GAP, k], work[row.KEPT_BY_GAP, z + k] = work[FORCE_BY_GAP, k], work[FORCE_BY_GAP, z + k]
-    work[row.KEPT_BY_RATE, k], work[row.KEPT_BY_RATE, z + k] = work[FORCE_BY_RATE, k], work[FORCE_BY_RATE, z + k]
-    work[row.STATE, z + k] = row.SETTLED
+    # Forces and tangents are kept from before this step, which ``_add_settled`` adds to the forces.
+    work[KEPT_FORCE, k], work[KEPT_FORCE, z + k] = inner.force, outer.force
+    work[KEPT_BY_GAP, k], work[KEPT_BY_GAP, z + k] = work[rows.FORCE_BY_GAP, k], work[rows.FORCE_BY_GAP, z + k]
+    work[KEPT_BY_RATE, k], work[KEPT_BY_RATE, z + k] = work[rows.FORCE_BY_RATE, k], work[rows.FORCE_BY_RATE, z + k]
+    work[STATE, z + k] = SETTLED
     return True
 
 
@@ -241,7 +266,7 @@ def settles(k, attempt, contacts, lo, table, ball, work):
 _ANGLE_STEP = 1e-5
 
 
-class Rolling(NamedTuple):
+class _Rolling(NamedTuple):
     """A ball that rolls without spin on the outer race: its axis beta, and that race's part of the speeds' ratio."""
 
     tangent: float
@@ -250,7 +275,7 @@ class Rolling(NamedTuple):
     outer: float
 
 
-_ROLLING = types.NamedUniTuple(float64, 4, Rolling)
+_ROLLING = types.NamedUniTuple(float64, 4, _Rolling)
 
 
 @jit(_ROLLING(float64, float64), inline=True)
@@ -259,7 +284,7 @@ def _rolling(outer, ratio):
     sine, cosine = np.sin(outer), np.cos(outer)
     beta = np.arctan2(sine, cosine + ratio)
     tangent = np.tan(beta)
-    return Rolling(tangent, np.sin(beta), np.cos(beta), (cosine + tangent * sine) / (1.0 + ratio * cosine))
+    return _Rolling(tangent, np.sin(beta), np.cos(beta), (cosine + tangent * sine) / (1.0 + ratio * cosine))
 
 
 @jit(float64(float64, _ROLLING, float64, float64), inline=True)
@@ -277,7 +302,7 @@ def gyroscopic_moment(inner, outer, ratio, scale):
 
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
-def add_gyroscopic(k, contacts, scalars, work):
+def _add_gyroscopic(k, contacts, scalars, work):
     """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
 
     Notes
@@ -291,11 +316,11 @@ def add_gyroscopic(k, contacts, scalars, work):
     Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
     """
     z = work.shape[1] // 2
-    diameter, ratio, scale = scalars[DIAMETER], scalars[BALL_OVER_PITCH], scalars[GYROSCOPIC]
-    groove = scalars[OFFSET_INNER] + 0.5 * diameter
+    diameter, ratio, scale = scalars[ring.DIAMETER], scalars[ring.BALL_OVER_PITCH], scalars[ring.GYROSCOPIC]
+    groove = scalars[ring.OFFSET_INNER] + 0.5 * diameter
     force, stiffness = contacts[0].force, contacts[0].stiffness
     inner, outer = np.arctan2(contacts[0].axial, contacts[0].radial), np.arctan2(contacts[1].axial, contacts[1].radial)
-    share_i, share_o = scalars[SHARE_INNER] / diameter, scalars[SHARE_OUTER] / diameter
+    share_i, share_o = scalars[ring.SHARE_INNER] / diameter, scalars[ring.SHARE_OUTER] / diameter
     here, step = _rolling(outer, ratio), _ANGLE_STEP
     moment = _moment(inner, here, ratio, scale)
     by_i = (_moment(inner + step, here, ratio, scale) - _moment(inner - step, here, ratio, scale)) / (2.0 * step)
@@ -307,23 +332,23 @@ def add_gyroscopic(k, contacts, scalars, work):
         sign = 1.0 if moment > 0.0 else -1.0
         carried, grows = sign * force, sign * stiffness
         share_i, share_o = 0.0, 2.0 / diameter
-        work[row.TANGENTIAL, z + k] += carried
-    work[row.TANGENTIAL, k] -= carried
-    work[row.BY_LENGTH, k] -= grows
-    work[row.BY_SHIFT, k] += grows
-    work[row.COUPLE_BY_SHIFT, k] -= groove * grows
-    work[row.BY_ANGLE, k] -= share_i * by_i
-    work[row.TANGENTIAL, z + k] -= share_o * moment
-    work[row.BY_ANGLE, z + k] -= share_o * by_o
-    work[row.BY_OTHER_ANGLE, k], work[row.BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
-    work[row.OUTER_BY_INNER_LENGTH, k] = grows
-    work[row.COUPLE, k] += groove * carried
-    work[row.COUPLE_BY_LENGTH, z + k] += groove * grows
-    work[row.COUPLE_BY_ANGLE, k] += groove * share_i * by_i
-    work[row.COUPLE_BY_ANGLE, z + k] = groove * share_i * by_o
+        work[TANGENTIAL, z + k] += carried
+    work[TANGENTIAL, k] -= carried
+    work[BY_LENGTH, k] -= grows
+    work[BY_SHIFT, k] += grows
+    work[COUPLE_BY_SHIFT, k] -= groove * grows
+    work[BY_ANGLE, k] -= share_i * by_i
+    work[TANGENTIAL, z + k] -= share_o * moment
+    work[BY_ANGLE, z + k] -= share_o * by_o
+    work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
+    work[OUTER_BY_INNER_LENGTH, k] = grows
+    work[COUPLE, k] += groove * carried
+    work[COUPLE_BY_LENGTH, z + k] += groove * grows
+    work[COUPLE_BY_ANGLE, k] += groove * share_i * by_i
+    work[COUPLE_BY_ANGLE, z + k] = groove * share_i * by_o
 
 
-class Grip(NamedTuple):
+class _Grip(NamedTuple):
     """Tangential force of a contact [N], its derivatives by angle (zero where it slides), length and shift, and u [m]."""
 
     force: float
@@ -333,7 +358,7 @@ class Grip(NamedTuple):
     stretch: float
 
 
-_GRIP = types.NamedUniTuple(float64, 5, Grip)
+_GRIP = types.NamedUniTuple(float64, 5, _Grip)
 
 
 @jit(_GRIP(CONTACT, float64, float64, float64, float64), inline=True)
@@ -342,25 +367,25 @@ def _grip(contact, reach, stretch, mu, stick):
     lever = reach / contact.length if contact.length > 0.0 else 1.0
     tau, limit = stick * stretch * lever, mu * contact.force
     if abs(tau) <= limit:
-        return Grip(tau, stick * reach * lever, -tau * lever / reach, 0.0, stretch)
+        return _Grip(tau, stick * reach * lever, -tau * lever / reach, 0.0, stretch)
     sign = 1.0 if tau > 0.0 else -1.0
     by_shift = -sign * mu * contact.stiffness
-    return Grip(sign * limit, 0.0, -by_shift, by_shift, sign * limit / (stick * lever))
+    return _Grip(sign * limit, 0.0, -by_shift, by_shift, sign * limit / (stick * lever))
 
 
 @jit(void(int64, MATRIX), inline=True)
-def roll(k, work):
+def _roll(k, work):
     """No tangential forces of ball k and no couple."""
     z = work.shape[1] // 2
-    work[row.TANGENTIAL, k], work[row.BY_ANGLE, k], work[row.BY_LENGTH, k], work[row.BY_SHIFT, k] = 0.0, 0.0, 0.0, 0.0
+    work[TANGENTIAL, k], work[BY_ANGLE, k], work[BY_LENGTH, k], work[BY_SHIFT, k] = 0.0, 0.0, 0.0, 0.0
     o = z + k
-    work[row.TANGENTIAL, o], work[row.BY_ANGLE, o], work[row.BY_LENGTH, o], work[row.BY_SHIFT, o] = 0.0, 0.0, 0.0, 0.0
-    work[row.COUPLE, k], work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k] = 0.0, 0.0, 0.0
-    work[row.BY_TURN, o], work[row.COUPLE_BY_LENGTH, o], work[row.COUPLE_BY_SHIFT, k] = 0.0, 0.0, 0.0
+    work[TANGENTIAL, o], work[BY_ANGLE, o], work[BY_LENGTH, o], work[BY_SHIFT, o] = 0.0, 0.0, 0.0, 0.0
+    work[COUPLE, k], work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k] = 0.0, 0.0, 0.0
+    work[BY_TURN, o], work[COUPLE_BY_LENGTH, o], work[COUPLE_BY_SHIFT, k] = 0.0, 0.0, 0.0
 
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
-def rub(k, contacts, scalars, ball, ball_history, work):
+def _rub(k, contacts, scalars, ball, ball_history, work):
     """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``.
 
     Notes
@@ -371,39 +396,39 @@ def rub(k, contacts, scalars, ball, ball_history, work):
     gained. A ball does not roll in this plane, so sticking contacts add a tangential stiffness that rolling balls do not
     have. The couple on the section is -r k_t u.
     """
-    z, mu, stick = work.shape[1] // 2, scalars[FRICTION], scalars[STICK]
-    li, lo = scalars[OFFSET_INNER], scalars[OFFSET_OUTER]
+    z, mu, stick = work.shape[1] // 2, scalars[ring.FRICTION], scalars[ring.STICK]
+    li, lo = scalars[ring.OFFSET_INNER], scalars[ring.OFFSET_OUTER]
     inner, outer = contacts
-    at_i = li * np.arctan2(inner.axial, inner.radial) - work[row.TURNED, z + k]
+    at_i = li * np.arctan2(inner.axial, inner.radial) - work[TURNED, z + k]
     at_o = lo * np.arctan2(outer.axial, outer.radial)
-    gi = _grip(inner, li, at_i - ball_history[k, SLIPS], mu, stick)
-    go = _grip(outer, lo, at_o - ball_history[k, SLIPS + 1], mu, stick)
-    ball[k, SLIPS], ball[k, SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
-    work[row.TANGENTIAL, k], work[row.TANGENTIAL, z + k] = gi.force, go.force
-    work[row.BY_ANGLE, k], work[row.BY_ANGLE, z + k] = gi.by_angle, go.by_angle
-    work[row.BY_LENGTH, k], work[row.BY_LENGTH, z + k] = gi.by_length, go.by_length
-    work[row.BY_SHIFT, k], work[row.BY_SHIFT, z + k] = gi.by_shift, go.by_shift
+    gi = _grip(inner, li, at_i - ball_history[k, ring.SLIPS], mu, stick)
+    go = _grip(outer, lo, at_o - ball_history[k, ring.SLIPS + 1], mu, stick)
+    ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
+    work[TANGENTIAL, k], work[TANGENTIAL, z + k] = gi.force, go.force
+    work[BY_ANGLE, k], work[BY_ANGLE, z + k] = gi.by_angle, go.by_angle
+    work[BY_LENGTH, k], work[BY_LENGTH, z + k] = gi.by_length, go.by_length
+    work[BY_SHIFT, k], work[BY_SHIFT, z + k] = gi.by_shift, go.by_shift
     _couple(k, inner, gi, scalars, work)
 
 
 @jit(void(int64, CONTACT, _GRIP, VECTOR, MATRIX), inline=True)
 def _couple(k, contact, grip, scalars, work):
     """What the grip of the inner contact does to the section, and turning the section to the grip."""
-    z, stick, reach = work.shape[1] // 2, scalars[STICK], scalars[OFFSET_INNER]
-    groove = reach + 0.5 * scalars[DIAMETER]
+    z, stick, reach = work.shape[1] // 2, scalars[ring.STICK], scalars[ring.OFFSET_INNER]
+    groove = reach + 0.5 * scalars[ring.DIAMETER]
     lever = reach / contact.length if contact.length > 0.0 else 1.0
-    work[row.COUPLE, k] = -groove * stick * grip.stretch
+    work[COUPLE, k] = -groove * stick * grip.stretch
     if grip.by_angle != 0.0:
-        work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k] = -groove * stick * reach, groove * groove * stick
-        work[row.BY_TURN, z + k], work[row.COUPLE_BY_LENGTH, z + k] = -stick * groove * lever, 0.0
-        work[row.COUPLE_BY_SHIFT, k] = 0.0
+        work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k] = -groove * stick * reach, groove * groove * stick
+        work[BY_TURN, z + k], work[COUPLE_BY_LENGTH, z + k] = -stick * groove * lever, 0.0
+        work[COUPLE_BY_SHIFT, k] = 0.0
     else:
-        work[row.COUPLE_BY_ANGLE, k], work[row.COUPLE_BY_TURN, k], work[row.BY_TURN, z + k] = 0.0, 0.0, 0.0
-        work[row.COUPLE_BY_LENGTH, z + k] = -groove * (grip.by_length / lever + grip.force / reach)
-        work[row.COUPLE_BY_SHIFT, k] = -groove * grip.by_shift / lever
+        work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k], work[BY_TURN, z + k] = 0.0, 0.0, 0.0
+        work[COUPLE_BY_LENGTH, z + k] = -groove * (grip.by_length / lever + grip.force / reach)
+        work[COUPLE_BY_SHIFT, k] = -groove * grip.by_shift / lever
 
 
-class Balance(NamedTuple):
+class _Balance(NamedTuple):
     """A settled ball, linearised: E, P, X and J, M the damping by the velocity of e.
 
     by_turn : derivative of the ball's force by the turn of its section [N]
@@ -422,7 +447,7 @@ class Balance(NamedTuple):
     by_turn: Pair
 
 
-BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), Balance)
+BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), _Balance)
 
 
 @jit(BALANCE(int64, CONTACTS, MATRIX), inline=True)
@@ -430,62 +455,60 @@ def _linearised(k, contacts, work):
     """Ball k at its balance."""
     z = work.shape[1] // 2
     inner, outer = contacts
-    elastic, viscous = -work[FORCE_BY_GAP, k], -work[FORCE_BY_RATE, k]
+    elastic, viscous = -work[rows.FORCE_BY_GAP, k], -work[rows.FORCE_BY_RATE, k]
     na, nr, to_a, to_r = inner.axial, inner.radial, outer.radial, -outer.axial
     wi, wo = 1.0 / inner.length, 1.0 / outer.length
     # Inner and outer tangential force by the angle, the outer one also by the length, of the other contact.
-    cross_o, grows = work[row.BY_OTHER_ANGLE, z + k], work[row.OUTER_BY_INNER_LENGTH, k]
-    ii_a, ii_r = work[row.BY_OTHER_ANGLE, k] * nr, work[row.BY_OTHER_ANGLE, k] * -na
+    cross_o, grows = work[BY_OTHER_ANGLE, z + k], work[OUTER_BY_INNER_LENGTH, k]
+    ii_a, ii_r = work[BY_OTHER_ANGLE, k] * nr, work[BY_OTHER_ANGLE, k] * -na
     oi_a, oi_r = cross_o * nr * wi + grows * na, cross_o * -na * wi + grows * nr
-    e = contact_matrix(Contact(na, nr, inner.length, inner.force, elastic), k, work)
-    g, o = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
+    e = _contact_matrix(_Contact(na, nr, inner.length, inner.force, elastic), k, work)
+    g, o = _contact_matrix(inner, k, work), _contact_matrix(outer, z + k, work)
     p = Tensor(-g.aa + ii_a * to_a * wo, -g.ar + ii_a * to_r * wo, -g.ra + ii_r * to_a * wo, -g.rr + ii_r * to_r * wo)
     j = Tensor(p.aa - o.aa + to_a * oi_a, p.ar - o.ar + to_a * oi_r, p.ra - o.ra + to_r * oi_a, p.rr - o.rr + to_r * oi_r)
     x = Tensor(e.aa - to_a * oi_a, e.ar - to_a * oi_r, e.ra - to_r * oi_a, e.rr - to_r * oi_r)
     m = Tensor(viscous * na**2, viscous * na * nr, viscous * na * nr, viscous * nr**2)
-    turn = work[row.BY_TURN, z + k]
-    return Balance(e, p, x, j, m, Pair(turn * nr, turn * -na))
+    turn = work[BY_TURN, z + k]
+    return _Balance(e, p, x, j, m, Pair(turn * nr, turn * -na))
 
 
 @jit(boolean(int64, float64, SEAT, MATRIX, VECTOR, MATRIX, MATRIX), inline=True)
-def add_settled(k, ball_gain, seat, work, f, K, C):
+def _add_settled(k, ball_gain, seat, work, f, K, C):
     """Add ball k to f (5,), K and C (5, 5), and keep for elastic bodies what they ask for; False where J has no inverse."""
     z = work.shape[1] // 2
-    contacts = contacts_of(k, ball_gain, work)
+    contacts = _contacts_of(k, ball_gain, work)
     inner, outer = contacts
     # Forces are those before the ball's last step: with what that changes they are off by its square.
-    b, h, da, dr = _linearised(k, contacts, work), work[row.TANGENTIAL, k], work[row.STEP, k], work[row.STEP, z + k]
+    b, h, da, dr = _linearised(k, contacts, work), work[TANGENTIAL, k], work[STEP, k], work[STEP, z + k]
     force = Pair(
         inner.force * inner.axial + h * inner.radial + b.p.aa * da + b.p.ar * dr,
         inner.force * inner.radial + h * -inner.axial + b.p.ra * da + b.p.rr * dr,
     )
     lost, gained = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
-    work[CONTACT_FORCE, k] = max(inner.force - inner.stiffness * lost, 0.0)
-    work[CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * gained, 0.0)
+    work[rows.CONTACT_FORCE, k] = max(inner.force - inner.stiffness * lost, 0.0)
+    work[rows.CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * gained, 0.0)
     det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
     if det == 0.0:
         return False
     t = times_adjugate(b.p, b.j)
     t = Tensor(t.aa / det, t.ar / det, t.ra / det, t.rr / det)
     # The couple by e, and by the ball's place; turning the section moves both forces alike.
-    stretch, angle = work[row.COUPLE_BY_LENGTH, z + k], work[row.COUPLE_BY_ANGLE, k] * (1.0 / inner.length)
+    stretch, angle = work[COUPLE_BY_LENGTH, z + k], work[COUPLE_BY_ANGLE, k] * (1.0 / inner.length)
     by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial + angle * -inner.axial)
-    angle = work[row.COUPLE_BY_ANGLE, z + k] * (1.0 / outer.length)
+    angle = work[COUPLE_BY_ANGLE, z + k] * (1.0 / outer.length)
     by_place = Pair(angle * outer.radial - by_e.axial, angle * -outer.axial - by_e.radial)
-    u, couple = row_times_adjugate(by_place, b.j), work[row.COUPLE, k] + by_place.axial * da + by_place.radial * dr
+    u, couple = row_times_adjugate(by_place, b.j), work[COUPLE, k] + by_place.axial * da + by_place.radial * dr
     u = Pair(u.axial / det, u.radial / det)
     force_by_turn, couple_by_centre = less_column(b.by_turn, t, b.by_turn), less_row(by_e, u, b.x)
-    couple_by_turn = work[row.COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
+    couple_by_turn = work[COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
     add_couple(seat, couple, force_by_turn, couple_by_centre, couple_by_turn, f, K)
     by_centre, by_speed = less(b.e, t, b.x), less(b.m, t, b.m)
-    if work.shape[0] > WORK_ROWS:
-        work[FORCE, k], work[FORCE, z + k] = force
-        work[FORCE_BY_CENTRE, k], work[FORCE_BY_CENTRE, z + k] = by_centre.aa, by_centre.ar
-        work[FORCE_BY_CENTRE + 1, k], work[FORCE_BY_CENTRE + 1, z + k] = by_centre.ra, by_centre.rr
-        work[FORCE_BY_SPEED, k], work[FORCE_BY_SPEED, z + k] = by_speed.aa, by_speed.ar
-        work[FORCE_BY_SPEED + 1, k], work[FORCE_BY_SPEED + 1, z + k] = by_speed.ra, by_speed.rr
-        work[FORCE_BY_TURN, k], work[FORCE_BY_TURN, z + k] = force_by_turn
-        work[COUPLE_BY_CENTRE, k], work[COUPLE_BY_CENTRE, z + k] = couple_by_centre
+    if work.shape[0] > rows.WORK_ROWS:
+        work[rows.FORCE, k], work[rows.FORCE, z + k] = force
+        put_tensor(by_centre, work, rows.FORCE_BY_CENTRE, k)
+        put_tensor(by_speed, work, rows.FORCE_BY_SPEED, k)
+        work[rows.FORCE_BY_TURN, k], work[rows.FORCE_BY_TURN, z + k] = force_by_turn
+        work[rows.COUPLE_BY_CENTRE, k], work[rows.COUPLE_BY_CENTRE, z + k] = couple_by_centre
         _keep_for_bodies(k, contacts, b, t, u, work)
     add_ball(seat, force, by_centre, by_speed, f, K, C)
     return True
@@ -504,26 +527,26 @@ def _keep_for_bodies(k, contacts, b, t, u, work):
     (na, nr, _, _, ki), (oa, orr, _, _, ko) = contacts
     gi, go = row_times_adjugate(Pair(na, nr), b.j), row_times_adjugate(Pair(oa, orr), b.j)
     gi, go = Pair(-ki * gi.axial / det, -ki * gi.radial / det), Pair(ko * go.axial / det, ko * go.radial / det)
-    elastic, viscous = -work[FORCE_BY_GAP, k], -work[FORCE_BY_RATE, k]
-    work[BY_AXIAL, k], work[BY_RADIAL, k] = less_row(Pair(elastic * na, elastic * nr), gi, b.x)
-    work[BY_AXIAL, z + k], work[BY_RADIAL, z + k] = less_row(NOTHING, go, b.x)
-    work[BY_AXIAL_SPEED, k], work[BY_RADIAL_SPEED, k] = less_row(Pair(viscous * na, viscous * nr), gi, b.m)
-    work[BY_AXIAL_SPEED, z + k], work[BY_RADIAL_SPEED, z + k] = less_row(NOTHING, go, b.m)
+    elastic, viscous = -work[rows.FORCE_BY_GAP, k], -work[rows.FORCE_BY_RATE, k]
+    work[rows.BY_AXIAL, k], work[rows.BY_RADIAL, k] = less_row(Pair(elastic * na, elastic * nr), gi, b.x)
+    work[rows.BY_AXIAL, z + k], work[rows.BY_RADIAL, z + k] = less_row(NOTHING, go, b.x)
+    work[rows.BY_AXIAL_SPEED, k], work[rows.BY_RADIAL_SPEED, k] = less_row(Pair(viscous * na, viscous * nr), gi, b.m)
+    work[rows.BY_AXIAL_SPEED, z + k], work[rows.BY_RADIAL_SPEED, z + k] = less_row(NOTHING, go, b.m)
     # The ring's force and R by the inner shift, R by the outer one.
-    hi, ho, grows = work[row.BY_SHIFT, k], work[row.BY_SHIFT, z + k], work[row.OUTER_BY_INNER_LENGTH, k]
+    hi, ho, grows = work[BY_SHIFT, k], work[BY_SHIFT, z + k], work[OUTER_BY_INNER_LENGTH, k]
     by_shift = Pair(-ki * na + hi * nr, -ki * nr + hi * -na)
     ri = Pair(by_shift.axial + grows * orr, by_shift.radial + grows * -oa)
     ro = Pair(ko * oa - ho * orr, ko * orr - ho * -oa)
-    work[BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
-    work[BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
-    work[BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
-    work[BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
-    work[BY_TURN, k] = -gi.axial * b.by_turn.axial - gi.radial * b.by_turn.radial
-    work[BY_TURN, z + k] = -go.axial * b.by_turn.axial - go.radial * b.by_turn.radial
-    work[AXIAL_BY_SHIFT, k], work[RADIAL_BY_SHIFT, k] = less_column(by_shift, t, ri)
-    work[AXIAL_BY_SHIFT, z + k], work[RADIAL_BY_SHIFT, z + k] = less_column(NOTHING, t, ro)
-    work[COUPLE_BY_SHIFT, k] = work[row.COUPLE_BY_SHIFT, k] - u.axial * ri.axial - u.radial * ri.radial
-    work[COUPLE_BY_SHIFT, z + k] = -u.axial * ro.axial - u.radial * ro.radial
+    work[rows.BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
+    work[rows.BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
+    work[rows.BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
+    work[rows.BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
+    work[rows.BY_TURN, k] = -gi.axial * b.by_turn.axial - gi.radial * b.by_turn.radial
+    work[rows.BY_TURN, z + k] = -go.axial * b.by_turn.axial - go.radial * b.by_turn.radial
+    work[rows.AXIAL_BY_SHIFT, k], work[rows.RADIAL_BY_SHIFT, k] = less_column(by_shift, t, ri)
+    work[rows.AXIAL_BY_SHIFT, z + k], work[rows.RADIAL_BY_SHIFT, z + k] = less_column(NOTHING, t, ro)
+    work[rows.COUPLE_BY_SHIFT, k] = work[COUPLE_BY_SHIFT, k] - u.axial * ri.axial - u.radial * ri.radial
+    work[rows.COUPLE_BY_SHIFT, z + k] = -u.axial * ro.axial - u.radial * ro.radial
 
 
 _ITERATIONS = 300
@@ -535,33 +558,33 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
     ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
-    force = work[CONTACT_FORCE]
-    by_gap, by_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
-    elastic_bodies = work.shape[0] > WORK_ROWS
+    force = work[rows.CONTACT_FORCE]
+    by_gap, by_rate = work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE]
+    elastic_bodies = work.shape[0] > rows.WORK_ROWS
     z = table.shape[0]
-    place(t, q, v, constants, work, (row.DIRECTION, row.CENTRE, row.VELOCITY))
+    place(t, q, v, constants, work, (DIRECTION, CENTRE, VELOCITY))
     if elastic_bodies:
-        move_centres(work, row.CENTRE, row.VELOCITY)
+        move_centres(work, CENTRE, VELOCITY)
     moving = 0
     for k in range(z):
-        moving += first_guess(k, q, scalars, table, ball, work)
+        moving += _first_guess(k, q, scalars, table, ball, work)
     for attempt in range(_ITERATIONS):
         for k in range(z):
-            if attempt == PATIENCE and work[row.STATE, z + k] == row.MOVES:
+            if attempt == PATIENCE and work[STATE, z + k] == MOVES:
                 # Forces without a potential can lead in circles: once more from the seat on the outer race.
-                seat_outside(k, scalars, table, ball, work)
-            approach(k, scalars, ball, ball_gain, ball_history, work)
+                _seat_outside(k, scalars, table, ball, work)
+            _approach(k, scalars, ball, ball_gain, ball_history, work)
         normal_forces(contacts, scalars, work)
         for k in range(z):
-            if work[row.STATE, z + k] == row.MOVES:
-                sides = contacts_of(k, ball_gain, work)
-                if scalars[FRICTION] != 0.0:
-                    rub(k, sides, scalars, ball, ball_history, work)
+            if work[STATE, z + k] == MOVES:
+                sides = _contacts_of(k, ball_gain, work)
+                if scalars[ring.FRICTION] != 0.0:
+                    _rub(k, sides, scalars, ball, ball_history, work)
                 else:
-                    roll(k, work)
-                if scalars[GYROSCOPIC] != 0.0:
-                    add_gyroscopic(k, sides, scalars, work)
-                moving -= settles(k, attempt, sides, scalars[OFFSET_OUTER], table, ball, work)
+                    _roll(k, work)
+                if scalars[ring.GYROSCOPIC] != 0.0:
+                    _add_gyroscopic(k, sides, scalars, work)
+                moving -= _settles(k, attempt, sides, scalars[ring.OFFSET_OUTER], table, ball, work)
         if moving == 0:
             break
     if moving > 0:
@@ -569,16 +592,22 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
     f[:], K[:], C[:] = 0.0, 0.0, 0.0
     for k in range(z):
         if elastic_bodies:
-            for i in range(WORK_ROWS, WORK_ROWS + KERNEL_ROWS):
+            for i in range(rows.WORK_ROWS, rows.WORK_ROWS + rows.KERNEL_ROWS):
                 work[i, k], work[i, z + k] = 0.0, 0.0
-        if work[row.STATE, z + k] == row.LOOSE:
+        if work[STATE, z + k] == LOOSE:
             force[k], force[z + k] = 0.0, 0.0
             continue
         for c in (k, z + k):
-            force[c], by_gap[c], by_rate[c] = work[row.KEPT_FORCE, c], work[row.KEPT_BY_GAP, c], work[row.KEPT_BY_RATE, c]
+            force[c], by_gap[c], by_rate[c] = work[KEPT_FORCE, c], work[KEPT_BY_GAP, c], work[KEPT_BY_RATE, c]
         if force[k] == 0.0 and by_gap[k] == 0.0:
             continue
-        seat = Seat(work[row.DIRECTION, k], work[row.DIRECTION, z + k], scalars[TILT_ARM], table[k, SIDE], table[k, LEVER])
-        if not add_settled(k, ball_gain, seat, work, f, K, C):
+        seat = Seat(
+            work[DIRECTION, k],
+            work[DIRECTION, z + k],
+            scalars[ring.TILT_ARM],
+            table[k, ring.SIDE],
+            table[k, ring.LEVER],
+        )
+        if not _add_settled(k, ball_gain, seat, work, f, K, C):
             return 1
     return 0
