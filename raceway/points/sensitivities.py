@@ -37,7 +37,7 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
-from raceway.scene.inputs import as_scene
+from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 
