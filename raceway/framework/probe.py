@@ -45,11 +45,11 @@ def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signatu
         raise PluginError(f"{label}: {why}") from why
     except (Exception, SystemExit) as why:  # a third party's own code
         raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
-    check_compiled(kernel, label, signature, name)
+    _check_compiled(kernel, label, signature, name)
     return kernel
 
 
-def check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:
+def _check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:
     """Refuse what ``kernel()`` returned unless it is compiled for a signature; parameters as ``plugin_kernel``.
 
     Raises
@@ -121,7 +121,7 @@ def probe_law(
     who = _who("contact law", "contact_law", law, distribution)
     n = len(state)
     _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
-    check_compiled(kernel, who, LAW, "LAW")
+    _check_compiled(kernel, who, LAW, "LAW")
     state = np.ascontiguousarray(state, dtype=float)
     _probe_alone(kernel, params, state, who)  # first: what lies behind all rows may be anything
     for gap in (*_GAPS, *(-depth for depth in depths)):
@@ -195,7 +195,7 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
         return
     who = _who("excitation", "excitation", excitation, distribution)
     _check_array(params, who, "parameters()", "(k,)", (None,))
-    check_compiled(kernel, who, FORCE, "FORCE")
+    _check_compiled(kernel, who, FORCE, "FORCE")
     for part in (0.0, 0.13, 0.5, 3.7):
         out = np.full(5, _MARK)
         where = f"at t = {part * period:g} s"

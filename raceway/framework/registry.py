@@ -30,7 +30,7 @@ from raceway.framework.sources import chosen_entry_points, foreign_words, import
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins", "raceway.studies")
+_BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins", "raceway.studies")
 
 
 @attrs.frozen
@@ -75,7 +75,7 @@ class Registry:
             self.manager.enable_tracing()
         self.entries: dict[tuple[str, str], list[Entry]] = {}
         self.faults: list[Fault] = []
-        for module in BUILT_IN:
+        for module in _BUILT_IN:
             self._register(import_module(module), module, "raceway", _version())
         if third_party:
             points, missing = chosen_entry_points()

@@ -51,7 +51,7 @@ class Decisions:
 
 
 #: Name of what repeats itself, for ``make_plan``'s ``force``.
-OTHER_TURNS = "other turns"
+_OTHER_TURNS = "other turns"
 
 
 @attrs.frozen
@@ -147,7 +147,7 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     repeats = repeats and problem.excitation.period_s is not None and "phase" not in identifier.method.needs
     steady = integrator.method.steady
     once = (steady or not integrator.method.inertial) and repeats and turns > 1
-    if once and OTHER_TURNS not in parts.force:
+    if once and _OTHER_TURNS not in parts.force:
         motion = "the steady motion" if steady else "a series of equilibria without memory"
         parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats itself every turn")
         turns = 1

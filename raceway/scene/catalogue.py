@@ -229,7 +229,7 @@ def _inferred(name: object, tables: ReadTables) -> Tables | None:
 
 
 @attrs.frozen
-class NamedMaterial:
+class _NamedMaterial:
     """young [Pa], poisson, density [kg/m3], thermal_expansion [1/K]; title and source."""
 
     name: str
@@ -242,10 +242,10 @@ class NamedMaterial:
 
 
 @cache
-def materials() -> dict[str, NamedMaterial]:
+def materials() -> dict[str, _NamedMaterial]:
     """All by name."""
     text = files("raceway").joinpath("data/materials.toml").read_text(encoding="utf-8")
-    return {name: NamedMaterial(name, **row) for name, row in tomllib.loads(text).items()}
+    return {name: _NamedMaterial(name, **row) for name, row in tomllib.loads(text).items()}
 
 
 def with_material(table: Tables, path: str, preset: Tables) -> Tables:

@@ -98,7 +98,7 @@ def without(tables: ReadTables, key: str) -> Tables:
 #: Tables of plug-ins that are attributes of the scene themselves.
 _PLUGINS = ("excitation", "bodies")
 #: Tables of numerical settings: the answer must not depend on them.
-SETTINGS = ("integrator", "identifier", "mesh")
+_SETTINGS = ("integrator", "identifier", "mesh")
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
@@ -122,7 +122,7 @@ def continuous_keys(scene: Scene) -> list[Key]:
 
     Keys that are left out and have no default number are not there.
     """
-    tables = [name for name in (*TABLES, *_PLUGINS) if name not in SETTINGS]
+    tables = [name for name in (*TABLES, *_PLUGINS) if name not in _SETTINGS]
     return [key for name in tables for key in _numbers(getattr(scene, name), name)]
 
 
@@ -138,7 +138,7 @@ def key_of(scene: Scene, path: str) -> Key:
     if path in keys:
         return keys[path]
     table = path.partition(".")[0]
-    if table in SETTINGS:
+    if table in _SETTINGS:
         raise SceneError.at(path, None, f"is a setting of a method: the answer must not depend on [{table}]")
     value = _value(scene, path)
     if isinstance(value, bool | str):

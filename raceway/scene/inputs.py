@@ -139,7 +139,7 @@ def as_given(source: Any) -> Given:
     if isinstance(source, Mapping):
         return Given(tidy(source))
     if isinstance(source, str) and _is_text(source):
-        return Given(tidy(parse_toml(source, "scene")))
+        return Given(tidy(_parse_toml(source, "scene")))
     if isinstance(source, str | os.PathLike):
         path = Path(os.fsdecode(source))
         if isinstance(source, str) and not path.suffix and not os.path.exists(path):
@@ -320,10 +320,10 @@ def read_toml(path: str | Path) -> Tables:
         raise SceneError.at(str(path), None, f"no such file{hint}") from None
     except (OSError, UnicodeDecodeError) as why:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
-    return parse_toml(text, str(path))
+    return _parse_toml(text, str(path))
 
 
-def parse_toml(text: str, name: str) -> Tables:
+def _parse_toml(text: str, name: str) -> Tables:
     """The tables of a TOML text; ``name`` says in messages where it came from.
 
     Raises

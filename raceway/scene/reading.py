@@ -122,7 +122,7 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     table = _with_rows(table, mistakes)
     name = table.get("preset")
     if name is None:
-        return with_materials(table, {}, mistakes)
+        return _with_materials(table, {}, mistakes)
     try:
         values = preset(name)
     except SceneError as error:
@@ -133,10 +133,10 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
         merged["contact_angle_deg"] = 0.0
     if "contact_angle_deg" in table and "radial_clearance" not in table:
         merged.pop("radial_clearance", None)
-    return with_materials(merged, values, mistakes)
+    return _with_materials(merged, values, mistakes)
 
 
-def with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
+def _with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
     """The table [bearing] or [mounting] with the numbers of named materials, and those of the preset below what the user says."""
     resolved = dict(table)
     for part in ("rings", "balls", "shaft_material", "housing_material"):
@@ -223,7 +223,7 @@ def scene_from_dict(
     if "bearing" in plain:
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
-        plain["mounting"] = with_materials(plain["mounting"], {}, mistakes, "mounting")
+        plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
     parts: Tables = {}
     known_parts = {} if known_parts is None else known_parts
 

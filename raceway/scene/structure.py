@@ -121,7 +121,7 @@ _LISTS = (tuple[float, float], tuple[float, ...], tuple[tuple[float, float], ...
 _MEASURED = (float, float | None, *_LISTS, *_WORDS)
 
 
-def without_units(value: object, attribute: Any) -> Any:
+def _without_units(value: object, attribute: Any) -> Any:
     """A key's value with the numbers that are text in the key's own unit.
 
     Raises
@@ -160,7 +160,7 @@ def table_without_units(table: Tables, cls: type) -> Tables:
             result[key] = [table_without_units(each, row_class) if isinstance(each, dict) else each for each in value]
         elif isinstance(value, str | list | tuple):
             with suppress(ValueError):
-                result[key] = without_units(value, field)
+                result[key] = _without_units(value, field)
     return result
 
 
@@ -208,7 +208,7 @@ def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
             raise ValueError(attribute.metadata["no_list"])
         if table_of_list(attribute.type) is not None and not isinstance(value, list | tuple):
             raise ValueError(f"must be a list of tables, not {_kind(value)}")
-        result = converter.structure(without_units(value, attribute), attribute.type)
+        result = converter.structure(_without_units(value, attribute), attribute.type)
         if attribute.validator is not None:
             attribute.validator(None, attribute, result)
         return result

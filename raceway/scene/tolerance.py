@@ -45,7 +45,7 @@ _BALLS = {
 }  # fmt: skip
 
 
-def ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, float]]:
+def _ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, float]]:
     """Path -> how far the number at it may lie below and above the scene's [m].
 
     Parameters
@@ -130,7 +130,7 @@ def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tup
     tolerances: dict[str, Tolerance] = {}
     for path, text in pairs:
         if path in NAMES:
-            ranges = ranges_of(scene, path, str(text).strip())
+            ranges = _ranges_of(scene, path, str(text).strip())
             of_text = [_checked(scene, key_of(scene, fit), str(text), *ends) for fit, ends in ranges.items()]
         else:
             of_text = [_tolerance(scene, key_of(scene, path), str(text))]

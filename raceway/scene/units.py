@@ -16,14 +16,14 @@ import attrs
 from raceway.framework.options import nearest
 
 #: Powers of metre, kilogram, second, radian and kelvin.
-Dimension = tuple[int, int, int, int, int]
+_Dimension = tuple[int, int, int, int, int]
 
 
 @attrs.frozen
 class Unit:
     """``factor`` times pi to the power ``pi`` of the SI unit of this dimension: products of decimals are exact, pi is kept apart."""
 
-    dimension: Dimension
+    dimension: _Dimension
     factor: Fraction = Fraction(1)
     pi: int = 0
 

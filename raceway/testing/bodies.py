@@ -1,6 +1,6 @@
 """The conformance suite of kinds of bodies.
 
-Bodies are built for their own ``example_scene()``, or for a ball bearing, and for that scene with more asked for (``EXTRAS``): what
+Bodies are built for their own ``example_scene()``, or for a ball bearing, and for that scene with more asked for (``_EXTRAS``): what
 bodies do not compute, they must refuse.
 """
 
@@ -85,7 +85,7 @@ def _passes(model: Model, equilibrium: Equilibrium, _plain: np.ndarray) -> bool:
 #: What a plain scene has none of.
 PLAIN: Changes = {"kinematics": {"ball_inertia": False}}
 #: What a scene may ask for beyond a plain one: changed keys, and how a bearing shows them.
-EXTRAS: dict[str, tuple[Changes, Shows]] = {
+_EXTRAS: dict[str, tuple[Changes, Shows]] = {
     "free tilts": (
         {"supports": {"tilt": "free"}, "rotor": {"mass": 1.0, "transverse_inertia": 1e-3}},
         lambda model, _equilibrium, _plain: bool(model.system.free[3:].all()),
@@ -146,7 +146,7 @@ def scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Regis
     return attrs.evolve(scene, bodies=bodies, source={**scene.source, "bodies": {"kind": bodies.name}})
 
 
-def is_key(scene: Scene, path: str) -> bool:
+def _is_key(scene: Scene, path: str) -> bool:
     """Whether a path names a key, or a table, of the scene."""
     table, _, key = path.partition(".")
     if table not in (*TABLES, *PLUGIN_TABLES):
@@ -203,13 +203,13 @@ class BodiesSuite(Suite):
     def test_faults(self, bodies: BodiesKind) -> str:
         registry, refused = registry_with(bodies), []
         with _nothing_built():
-            for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in EXTRAS.items()}}.items():
+            for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in _EXTRAS.items()}}.items():
                 scene = scene_of(bodies, changes, registry)
                 faults = bodies.faults(scene)
                 require(isinstance(faults, list), f"{word}: faults() returns {type(faults).__name__}, not a list")
                 for fault in faults:
                     require(isinstance(fault, Mistake), f"{word}: faults() holds {fault!r}, which is no Mistake")
-                    require(is_key(scene, fault.path), f"{word}: `{fault.path}` is no key of a scene")
+                    require(_is_key(scene, fault.path), f"{word}: `{fault.path}` is no key of a scene")
                     require(len(fault.message) > 20, f"{word}: '{fault.message}' names no reason and no remedy")
                 require(changes or not faults, f"its example is refused: {'; '.join(map(str, faults))}")
                 refused += [word] if faults else []
@@ -237,7 +237,7 @@ class BodiesSuite(Suite):
             twice = sorted({name for name in names if names.count(name) > 1})
             require(not twice, f"{', '.join(twice)} is decided twice")
             for path, why in bodies.unused(scene):
-                require(is_key(scene, path) and why, f"unused() names `{path}`, which is no key, or gives no reason")
+                require(_is_key(scene, path) and why, f"unused() names `{path}`, which is no key, or gives no reason")
             cost = bodies.cost(problem, balls, motion, parts)
         require(isinstance(cost, Cost), f"cost() returns {type(cost).__name__}, not Cost")
         require(0.0 < cost.seconds < np.inf, f"cost().seconds = {cost.seconds} is no time")
@@ -364,7 +364,7 @@ class BodiesSuite(Suite):
     def test_refused_or_computed(self, bodies: BodiesKind) -> str:
         registry, computed = registry_with(bodies), []
         plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
-        for word, (changes, shows) in EXTRAS.items():
+        for word, (changes, shows) in _EXTRAS.items():
             scene = scene_of(bodies, changes, registry)
             if _refused(scene) or not bodies.traits(scene).resultants:
                 continue

@@ -48,7 +48,7 @@ def exponents(unit: str) -> tuple[float, ...]:
     return tuple(total.tolist())
 
 
-def scale_of(unit: str, length: float, force: float, time: float) -> float:
+def _scale_of(unit: str, length: float, force: float, time: float) -> float:
     """The factor by which a value in this unit changes when lengths, forces and times are multiplied."""
     return float(np.prod(np.power((length, force, time), exponents(unit))))
 
@@ -93,7 +93,7 @@ def _pairs_of(law: ContactLaw, n: int, nodal: bool = False) -> ContactPairs:
 
 
 @attrs.define(eq=False)
-class Driven:
+class _Driven:
     """A law with its parameters for n contacts, called with fresh outputs."""
 
     law: ContactLaw
@@ -120,13 +120,13 @@ class Driven:
         return force, d_gap, d_rate, new
 
 
-def drive(law: ContactLaw, n: int, nodal: bool = False, pairs: ContactPairs | None = None) -> Driven:
+def drive(law: ContactLaw, n: int, nodal: bool = False, pairs: ContactPairs | None = None) -> _Driven:
     """A law built for n example contacts, or for others."""
     params = law.build(_pairs_of(law, n, nodal) if pairs is None else pairs)
-    return Driven(law, law.kernel(), np.ascontiguousarray(params, dtype=float))
+    return _Driven(law, law.kernel(), np.ascontiguousarray(params, dtype=float))
 
 
-def _along(driven: Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+def _along(driven: _Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Forces (steps, n) along paths, from memory at rest, and the memory (n, m) at their end."""
     from raceway.testing.systems import along_path
 
@@ -323,7 +323,7 @@ class ContactLawSuite(Suite):
             results = driven(gap, rate)
             require(all(np.isfinite(r).all() for r in results), f"results of {n} contacts are not all finite")
             if n > 1:
-                turned = Driven(law, driven.kernel, np.ascontiguousarray(driven.params[::-1]))
+                turned = _Driven(law, driven.kernel, np.ascontiguousarray(driven.params[::-1]))
                 back = turned(gap[::-1], rate[::-1])
                 same = all(np.array_equal(a, b[::-1]) for a, b in zip(results, back, strict=True))
                 require(same, "the order of the contacts changes their results")
@@ -373,14 +373,14 @@ class ContactLawSuite(Suite):
         for field in attrs.fields(type(law)):
             value = getattr(law, field.name)
             if isinstance(value, float):
-                options[field.name] = value * scale_of(field.metadata.get("unit", ""), length, force, time)
+                options[field.name] = value * _scale_of(field.metadata.get("unit", ""), length, force, time)
         try:
             instance: Any = law  # a contract is no attrs class to mypy
             scaled_law = attrs.evolve(instance, **options)
         except ValueError as why:
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = _pairs_of(law, 64)
-        factors = {name: scale_of(unit, length, force, time) for name, unit in _PAIR_UNITS.items()}
+        factors = {name: _scale_of(unit, length, force, time) for name, unit in _PAIR_UNITS.items()}
         scaled = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
         gap, rate = self._random(7, (20, 64), 0.3)
         forces, _ = _along(drive(law, 64, pairs=pairs), gap, rate, 1e-5)
@@ -399,6 +399,6 @@ class ContactLawSuite(Suite):
         rng = np.random.default_rng(seed)
         return rng.uniform(-self.depth, outside * self.depth, size), rng.uniform(-self.speed, self.speed, size)
 
-    def _reached(self, driven: Driven) -> np.ndarray:
+    def _reached(self, driven: _Driven) -> np.ndarray:
         """Memory (n, m) after a random history of contact and separation."""
         return _along(driven, *self._random(7, (20, driven.n), 0.3), 1e-5)[1]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 #: Relative difference of real numbers that a text of ten figures may make.
-TEN_FIGURES = 1e-10
+_TEN_FIGURES = 1e-10
 
 
 def same(a: Any, b: Any, relative: float = 0.0) -> bool:
@@ -75,7 +75,7 @@ class FormatSuite(Suite):
                 path = Path(folder) / f"content{suffix}"
                 form.write(path, content)
                 require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `{path.name}`")
-                equal = same(form.read(path), content, TEN_FIGURES)
+                equal = same(form.read(path), content, _TEN_FIGURES)
                 require(equal, f"`{path.name}` is read back different from what was written")
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
@@ -188,7 +188,7 @@ _BATCHES, _AHEAD = 400, 100
 
 
 @attrs.frozen
-class Doubling:
+class _Doubling:
     """Work that doubles numbers; it refuses the batch that holds ``refused`` and breaks at the one that holds ``broken``."""
 
     refused: int | None = None
@@ -224,7 +224,7 @@ class ExecutorSuite(Suite):
     @duty("every batch is answered once, by what the work returned; batches are taken as they are needed")
     def test_answers(self, executor: Executor) -> None:
         source, answers, ahead = _Source(_BATCHES), dict[int, Any](), None
-        for number, answer in executor.compute(Doubling(refused=11), source):
+        for number, answer in executor.compute(_Doubling(refused=11), source):
             ahead = source.count if ahead is None else ahead
             require(number not in answers, f"batch {number} is answered twice")
             answers[number] = answer
@@ -236,15 +236,15 @@ class ExecutorSuite(Suite):
 
     @duty("no batches, no answers; what the work raises passes through; closing stops it")
     def test_ends(self, executor: Executor) -> None:
-        require(not list(executor.compute(Doubling(), _Source(0))), "answers without a batch")
+        require(not list(executor.compute(_Doubling(), _Source(0))), "answers without a batch")
         try:
-            list(executor.compute(Doubling(broken=6), _Source(8)))
+            list(executor.compute(_Doubling(broken=6), _Source(8)))
         except ArithmeticError as why:
             require("work itself" in str(why), f"another exception passes through: {why}")
         else:
             require(False, "an exception of the work is swallowed")
         source = _Source(_BATCHES)
-        answers = executor.compute(Doubling(), source)
+        answers = executor.compute(_Doubling(), source)
         next(answers)
         getattr(answers, "close", lambda: None)()
         require(source.count <= _AHEAD, f"closing takes all {source.count} batches")

@@ -164,7 +164,7 @@ def dynamic_stiffness(frequency: float = FREQUENCY) -> complex:
     return complex(STIFFNESS - MASS * w**2, DAMPING * w)
 
 
-def synthetic_record(
+def _synthetic_record(
     turns: float = 8.0, sense: int = 1, direction: float = 0.0, frequency: float = FREQUENCY, mean: float = 0.0,
     drift: float = 0.0, harmonics: float = 0.0, noise: float = 0.0, seed: int = 1,
 ) -> Record:  # fmt: skip
@@ -218,7 +218,7 @@ def model_of(sense: int = 1, direction: float = 0.0) -> Model:
     return cast("Model", SimpleNamespace(system=system, excitation=excitation, mass_used=MASS, scene=scene))
 
 
-def equilibrium_at_rest() -> Equilibrium:
+def _equilibrium_at_rest() -> Equilibrium:
     """An equilibrium without displacement."""
     matrices = ("stiffness", "stiffness_rows_held", "damping", "damping_rows_held")
     parts = {name: np.zeros((5, 5)) for name in matrices}
@@ -290,18 +290,18 @@ class IdentifierSuite(Suite):
     def test_input_untouched(self, identifier: Identifier) -> None:
         records = self._records(identifier, {})
         before = [(r.displacement.copy(), r.force.copy()) for r in records]
-        identifier.identify(records, equilibrium_at_rest(), model_of())
+        identifier.identify(records, _equilibrium_at_rest(), model_of())
         for record, (x, f) in zip(records, before, strict=True):
             require(np.array_equal(record.displacement, x) and np.array_equal(record.force, f), "a record was changed")
 
     def _records(self, identifier: Identifier, spoilt: Tables) -> list[Record]:
         if "speeds" in identifier.needs:
-            return [synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
-        return [synthetic_record(**spoilt)] if "record" in identifier.needs else []
+            return [_synthetic_record(frequency=r * FREQUENCY, seed=k, **spoilt) for k, r in enumerate(_SPEEDS)]
+        return [_synthetic_record(**spoilt)] if "record" in identifier.needs else []
 
     def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: float) -> Identification:
         records = self._records(identifier, {"sense": sense, "direction": direction, **spoilt})
-        return identifier.identify(records, equilibrium_at_rest(), model_of(sense, direction))
+        return identifier.identify(records, _equilibrium_at_rest(), model_of(sense, direction))
 
     def _recovers(self, identifier: Identifier, tolerance: float, **spoilt: float) -> str:
         if spoilt and not identifier.needs & {"record", "speeds"}:

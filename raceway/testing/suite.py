@@ -49,7 +49,7 @@ T = TypeVar("T")
 LIMIT_S, LIMIT_BYTES = 300.0, 8 * 2**30
 
 
-class Died(Exception):
+class _Died(Exception):
     """How the child ended without an answer, in words."""
 
 
@@ -213,7 +213,7 @@ class Suite:
         status, message = PASSED, ""
         try:
             message = apart(lambda: self._notes(method.check)) if self.apart else self._notes(method.check)
-        except (ConformityError, Died) as why:
+        except (ConformityError, _Died) as why:
             status, message = FAILED, str(why)
         try:
             reason = self.expected().get(name)
@@ -294,7 +294,7 @@ def apart(work: Callable[[], T]) -> T:
 
     Raises
     ------
-    Died
+    _Died
         It ended by a signal or an exit of its own, or was stopped.
     """
     _import_compiler()
@@ -314,10 +314,10 @@ def apart(work: Callable[[], T]) -> T:
             os.killpg(child, signal.SIGKILL)
         _, status = os.waitpid(child, 0)
     if late:
-        raise Died(f"died: it had not ended after {LIMIT_S:g} s")
+        raise _Died(f"died: it had not ended after {LIMIT_S:g} s")
     if not answer:
         code = os.waitstatus_to_exitcode(status)
-        raise Died(f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}")
+        raise _Died(f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}")
     answered, result = pickle.loads(answer)
     if answered:
         return result

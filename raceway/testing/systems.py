@@ -80,7 +80,7 @@ def along_x(t, params, out):
 
 
 @jit(SYSTEM)
-def one_contact(t, q, v, balls, contacts, constants, response):
+def _one_contact(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``."""
     law, law_params, law_old, law_new, dt = contacts
     scalars, _ = constants
@@ -105,7 +105,7 @@ def one_contact(t, q, v, balls, contacts, constants, response):
 
 
 @jit(LAW)
-def counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+def _counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     """Hertz in the first contact; in the second, which is open, the "force" says how often its memory was committed."""
     for i in range(gap.size):
         approach = max(-gap[i], 0.0)
@@ -138,8 +138,8 @@ def require_no_allocation(call: Callable[[int], object]) -> None:
 
 
 def counting_system() -> System:
-    """``contact_system`` with the law ``counting``."""
-    return attrs.evolve(contact_system(), law=counting, law_state=np.zeros((2, 1)))
+    """``contact_system`` with the law ``_counting``."""
+    return attrs.evolve(contact_system(), law=_counting, law_state=np.zeros((2, 1)))
 
 
 def _system(free: list[float], **parts: Any) -> System:
@@ -149,7 +149,7 @@ def _system(free: list[float], **parts: Any) -> System:
     scalars[CLEARANCE] = parts.pop("clearance", 0.0)
     zero = np.zeros((5, 5))
     usual = {
-        "kernel": one_contact, "base_kernel": one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
+        "kernel": _one_contact, "base_kernel": _one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
         "scalars": scalars, "table": np.zeros((1, COLUMNS)), "mass": MASS * np.eye(5), "damping": zero,
         "stiffness": zero, "free": np.array(free), "load": np.zeros(5), "force": no_force, "force_params": np.zeros(1),
     }  # fmt: skip
