@@ -108,7 +108,7 @@ def test_a_window_whose_halves_differ_by_more_than_it_sees_is_not_believed():
     def unresolved(halves, orbit=None, settled=True, friction=0.3):
         scene_of = attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=friction))
         simulation = SimpleNamespace(start=SimpleNamespace(orbit=orbit, settled=settled))
-        return _unresolved(SimpleNamespace(scene=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
+        return _unresolved(SimpleNamespace(problem=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
 
     assert unresolved(4.0) and unresolved(None) and not unresolved(2.0)
     assert unresolved(4.0, orbit=object()), "with friction the orbit of the start is none"

@@ -254,22 +254,20 @@ class Film:
 
         from raceway.core.contact.film import REGIMES
 
-        thickness, reduction = self.thickness(pairs), self._reduction(pairs)
-        lambdas = (
-            thickness.minimum / self.roughness if self.roughness is not None else np.full_like(thickness.minimum, np.nan)
-        )
+        films, reduction = self.thickness(pairs), self._reduction(pairs)
+        lambdas = films.minimum / self.roughness if self.roughness is not None else np.full_like(films.minimum, np.nan)
         columns = {
-            "film_central_m": thickness.central,
-            "film_minimum_m": thickness.minimum,
-            "film_isothermal_m": thickness.central / reduction,
+            "film_central_m": films.central,
+            "film_minimum_m": films.minimum,
+            "film_isothermal_m": films.central / reduction,
             "film_thermal_reduction": reduction,
             "film_parameter": lambdas,
-            "film_regime": np.array(REGIMES)[thickness.regime],
+            "film_regime": np.array(REGIMES)[films.regime],
             "entraining_speed_m_per_s": np.asarray(pairs.entraining_speed),
         }
         table: Tables = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
         table |= {"inlet_heating": self.inlet_heating, "temperature_viscosity_per_k": self.beta}
-        return LawReport(columns, table, (*self._heated(pairs), *_doubts(thickness), *self._rough(lambdas)))
+        return LawReport(columns, table, (*self._heated(pairs), *_doubts(films), *self._rough(lambdas)))
 
     def _heated(self, pairs: ContactPairs) -> list[str]:
         """A sentence where the heat of the inlet decides the film, from speed and viscosity."""

@@ -68,7 +68,7 @@ def solve_equilibrium(
 
 
 def _refuse_no_load(model: Model) -> None:
-    loaded = np.any(model.system.load * model.system.free) or model.scene.bearing.preloaded
+    loaded = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
     if not loaded and model.system.free[0] > 0.0:
         raise ConvergenceError(
             "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
@@ -108,7 +108,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
 
 def _seating(model: Model, inner: np.ndarray) -> list[str]:
     """Rows that lift off, and rows with a loaded ball at half its free contact angle or less; those with a clearance run at any."""
-    bearing, warnings = model.scene.bearing, list[str]()
+    bearing, warnings = model.problem.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
         least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), model.problem.free_angles[k]
@@ -123,14 +123,14 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
 
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
-    warnings, scene = _seating(model, inner), model.scene
-    if any(scene.load.moment) and scene.supports.tilt == "locked":
+    warnings, problem = _seating(model, inner), model.problem
+    if any(problem.load.moment) and problem.supports.tilt == "locked":
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
-    if scene.contact.friction > 0.0 and model.traits.every_node:
+    if problem.contact.friction > 0.0 and model.traits.every_node:
         warnings.append(
             "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
         )
-    elif scene.contact.friction > 0.0:
+    elif problem.contact.friction > 0.0:
         warnings.append(
             "friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have"
         )
@@ -157,7 +157,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
     law = report_of(model, equilibrium)
     for name, values in {} if law is None else law.columns.items():
         columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
-    several = len(model.scene.bearing.rows) > 1
+    several = len(model.problem.bearing.rows) > 1
     rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
     peaks = np.concatenate([columns["peak_pressure_inner_pa"], columns["peak_pressure_outer_pa"]])
     return {
@@ -166,8 +166,8 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         "damping": equilibrium.damping.tolist(),
         "stiffness_rows_held": None if model.system.sliding is None else equilibrium.stiffness_rows_held.tolist(),
         "damping_rows_held": None if model.system.sliding is None else equilibrium.damping_rows_held.tolist(),
-        "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.scene.supports.tilt),
-        "free_contact_angle_deg": degrees(model.scene.bearing.contact_angle),
+        "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.problem.supports.tilt),
+        "free_contact_angle_deg": degrees(model.problem.bearing.contact_angle),
         **largest_contacts(equilibrium.contact_force, peaks, "largest"),
         "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
         "law": None if law is None else dict(law.table),
@@ -235,10 +235,10 @@ def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cont
 
 def ball_pass_table(model: Model, equilibrium: Equilibrium) -> Tables:
     """The table ``ball_pass`` of result.json: multiples of the shaft's speed, a row each, and Hz where the shaft turns."""
-    speed = model.scene.spin_speed / (2.0 * pi)
+    speed = model.problem.spin_speed / (2.0 * pi)
     cosine = np.cos(0.5 * (np.abs(equilibrium.angle_inner) + np.abs(equilibrium.angle_outer)))
     rows = []
-    for k, b in enumerate(model.scene.bearing.of_rows):
+    for k, b in enumerate(model.problem.bearing.of_rows):
         loaded = (model.basis.row == k) & np.isfinite(cosine)  # by both races
         a = acos(float(cosine[loaded].mean())) if loaded.any() else b.contact_angle
         times = ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, a)

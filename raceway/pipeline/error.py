@@ -184,7 +184,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
     ----------
     second_steps : steps a turn of the second run; None: chosen here
     """
-    model, method, first = run.model, run.model.scene.integrator.method, run.motion
+    model, method, first = run.model, run.model.problem.integrator.method, run.motion
     if method.steady:
         return Part(first.whole.counts.get("error"), Estimate.OF_INTEGRATOR()), None
     if model.traits.every_node:
@@ -257,7 +257,7 @@ def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> b
 
 def _sampling(run: Identified) -> Part:
     """Of a series of equilibria, by a second one with more of them."""
-    tolerance = getattr(run.model.scene.integrator.method, "tolerance", 0.0)
+    tolerance = getattr(run.model.problem.integrator.method, "tolerance", 0.0)
     steps = run.motion.steps_per_turn
     count = more_equilibria(steps)
     if not fits(run.model.plan.turns, count, run.model.system.ball_count, inertial=False):
@@ -305,10 +305,10 @@ def _finer_value(run: Identified, count: int) -> complex:
 
 def _transient(run: Identified, step: Part) -> Part:
     model, value, spread = run.model, run.value, run.identification.spread
-    method = model.scene.integrator.method
+    method = model.problem.integrator.method
     if method.steady:
         return Part(0.0, Estimate.STEADY())
-    memory = not model.system.conservative or model.scene.contact.law.state_size > 0
+    memory = not model.system.conservative or model.problem.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, Estimate.EQUILIBRIA())
     if model.problem.compared_with_steady:
@@ -344,12 +344,12 @@ def _unresolved(model: Model, simulation: Simulation, clean: Clean, leakage: flo
     What began on no stable orbit may be on its way from one motion to another.  What began on none at all may beat with 1x:
     then the halves of the turns are further apart than the window over all turns accounts for.
     """
-    start, scene = simulation.start, model.scene
+    start, problem = simulation.start, model.problem
     if not start.settled:
         return True
-    if start.orbit is not None and scene.contact.friction == 0.0 and scene.contact.law.state_size == 0:
+    if start.orbit is not None and problem.contact.friction == 0.0 and problem.contact.law.state_size == 0:
         return False
-    if not scene.integrator.method.inertial:
+    if not problem.integrator.method.inertial:
         return False
     return clean.halves is None or clean.halves > _RIGHT * leakage
 
@@ -369,7 +369,7 @@ def _from_other_start(run: Identified, reference: Run, transient: Part) -> Part:
 def _identification(run: Identified) -> Part:
     window = run.identification.window
     if window is None:
-        return Part(None, Estimate.NOT_BY_IDENTIFIER(kind=run.model.scene.identifier.kind))
+        return Part(None, Estimate.NOT_BY_IDENTIFIER(kind=run.model.problem.identifier.kind))
     if not run.several_speeds:
         return Part(window, Estimate.TWO_FITS())
     try:

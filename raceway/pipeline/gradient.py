@@ -110,7 +110,7 @@ class SteadyOrbit:
         if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
             why = "balls that orbit pass at another frequency than the force: no motion repeats itself every turn"
             raise SceneError.at("kinematics.orbiting", True, why)
-        tolerance = float(getattr(model.scene.integrator.method, "tolerance", _TOLERANCE))
+        tolerance = float(getattr(model.problem.integrator.method, "tolerance", _TOLERANCE))
         return cls(model, find(problem, q, equilibrium.stiffness_rows_held, min(tolerance, _TOLERANCE)))
 
     @property
@@ -263,7 +263,7 @@ class Gradients:
         traits = self.model.traits
         if not (traits.compiled and traits.resultants):
             why = "surface points open and close one by one: their forces have no derivative. Take contact.discretisation = 'resultant'"
-            raise SceneError.at("bodies.kind", self.model.scene.bodies.name, f"{why} on rigid or condensed bodies")
+            raise SceneError.at("bodies.kind", self.model.problem.bodies.name, f"{why} on rigid or condensed bodies")
 
     @cached_property
     def orbit(self) -> SteadyOrbit | None:
@@ -310,7 +310,7 @@ def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) ->
         if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
             numbers[C.symbol] = damping
     numbers |= _at_rest(equilibrium, equilibrium)
-    if (follows := tilts_follow(equilibrium.stiffness, model.scene.supports.tilt)) is not None:
+    if (follows := tilts_follow(equilibrium.stiffness, model.problem.supports.tilt)) is not None:
         numbers[KYY_TILTS_FOLLOW.symbol] = follows
     return {name: numbers[name] for name in DIFFERENTIABLE if name in numbers}
 
@@ -325,7 +325,7 @@ def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:
     inner, outer = equilibrium.contact_force.reshape(2, -1).max(axis=1).tolist()
     return {
         **{symbol: quantity.words for symbol, quantity in DIFFERENTIABLE.items()},
-        KYY_TILTS_FOLLOW.symbol: f"radial, {tilt_words(model.scene.supports.tilt)}: tilts follow, x and z held",
+        KYY_TILTS_FOLLOW.symbol: f"radial, {tilt_words(model.problem.supports.tilt)}: tilts follow, x and z held",
         LARGEST_BALL_LOAD.symbol: f"static, {race_words(race_of(inner, outer))}; the larger of both",
     }
 
@@ -337,7 +337,7 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
     if motion is not None:
         slopes |= {quantity.symbol: getattr(motion, quantity.name) for quantity in (K, C, AMPLITUDE)}
     slopes |= _at_rest(equilibrium, statics)
-    if (tilt := model.scene.supports.tilt) != "locked":
+    if (tilt := model.problem.supports.tilt) != "locked":
         by = float(statics.key.path == "supports.tilt")
         slopes[KYY_TILTS_FOLLOW.symbol] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
     return slopes

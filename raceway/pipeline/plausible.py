@@ -111,7 +111,7 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
         bearing.refuse_impossible(model, force[k])
         for text in bearing.edge_warnings(model, inner[k], outer[k], force[k]):
             beyond.setdefault(text.split(" reaches ")[0], text)
-    b = model.scene.bearing
+    b = model.problem.bearing
     if b.radial_clearance is None and b.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
         warnings.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
     return (*warnings, *(f"during a turn {text}" for text in beyond.values()))
@@ -145,7 +145,7 @@ def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
     """
     z, rows = model.system.ball_count, []
     load, angle, push = equilibrium.contact_force[:z], equilibrium.angle_inner, model.system.table[:, CENTRIFUGAL]
-    for row in range(len(model.scene.bearing.rows)):
+    for row in range(len(model.problem.bearing.rows)):
         balls = model.basis.row == row
         axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
         if axial < _SLIDING * push[balls].sum():
@@ -189,7 +189,7 @@ def model_spread(
     if bound < NEGLIGIBLE:
         return _table([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
-    kinematics, tilt = model.scene.kinematics, model.scene.supports.tilt
+    kinematics, tilt = model.problem.kinematics, model.problem.supports.tilt
     default = {key: getattr(kinematics, key) for key in values}
     rows: list[tuple[Tables, Tables]] = []
     for combination in product(*([default[key], *values[key]] for key in values)):
@@ -289,7 +289,7 @@ def _secant(
     """Relative change of K by another model with its equilibrium, or None; and how, or why not."""
     if identification is None:
         return None, "the scene is static"
-    method, identifier, period = model.scene.integrator.method, model.scene.identifier.method, model.excitation.period_s
+    method, identifier, period = model.problem.integrator.method, model.problem.identifier.method, model.excitation.period_s
     if "speeds" in identifier.needs:
         return None, "not estimated: it is fitted over several speeds"
     if "record" not in identifier.needs:
@@ -298,9 +298,9 @@ def _secant(
         def of_equilibrium(variant: Model, state: Equilibrium) -> float:
             return float((identifier.identify([], state, variant).equivalent_stiffness - k) / abs(k))
 
-        return of_equilibrium, f"identifier '{model.scene.identifier.kind}' at each equilibrium"
+        return of_equilibrium, f"identifier '{model.problem.identifier.kind}' at each equilibrium"
     turn = None if simulation is None or period is None else last_turn(simulation.whole, period)
-    if model.scene.contact.friction > 0.0 or turn is None:
+    if model.problem.contact.friction > 0.0 or turn is None:
         return None, "not estimated: with friction, or without whole turns, there is no steady orbit to compare with"
     half = np.fft.rfft(turn.displacement, axis=0)[: _ORBIT_TIMES // 2 + 1] / len(turn.displacement)
     first = _ORBIT_TIMES * np.fft.irfft(half, _ORBIT_TIMES, axis=0)

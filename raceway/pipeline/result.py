@@ -89,7 +89,7 @@ class Result(Shown):
     @property
     def kyy_tilts_follow(self) -> float | None:
         """Radial stiffness with tilts that follow, x and z held [N/m]; None where ``supports.tilt`` is "locked"."""
-        return tilts_follow(self.stiffness, self.model.scene.supports.tilt)
+        return tilts_follow(self.stiffness, self.model.problem.supports.tilt)
 
     @property
     def damping(self) -> np.ndarray:
@@ -317,7 +317,7 @@ class Result(Shown):
             **nested(IDENTIFIED, self)["identification"],
             "damping_origin": damping_origin(self.model.scene),
             "band": self.band,
-            "tilt": self.model.scene.supports.tilt,
+            "tilt": self.model.problem.supports.tilt,
             "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
             "series": [
                 {"speed_rpm": speed * 30.0 / math.pi, **_complex(value), "error": error}
@@ -394,7 +394,7 @@ def _identified_facts(result: Result) -> list[Fact]:
     z, band, total = result.identification, result.band, result.error["total"]
     if z is None:
         return []
-    speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.scene.supports.tilt)}"
+    speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
     damping = C.fact(result)
     if band is not None:
         remark = "both ends of the band of time constants; all else is the low end's"

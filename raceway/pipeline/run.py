@@ -196,7 +196,7 @@ def _answer(model: Model, equilibrium: Equilibrium, motions: list[Simulation], a
     for motion in motions:
         refuse_impossible(motion.model, equilibrium, motion.whole)
     records = [motion.record for motion in motions]
-    identification = model.scene.identifier.method.identify(records, equilibrium, model)
+    identification = model.problem.identifier.method.identify(records, equilibrium, model)
     if not np.isfinite(identification.dynamic_stiffness):
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
     identified = Identified(model, equilibrium, motions, identification, allowance.check)
@@ -214,12 +214,12 @@ def _motions(
     model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool
 ) -> list[Simulation]:
     """The motions that the identifier needs; a similar scene's is followed where it is one by the same integrator."""
-    needs = model.scene.identifier.method.needs
+    needs = model.problem.identifier.method.needs
     if "speeds" in needs:
         return simulate_speeds(model, progress)
     if "record" not in needs:
         return []
-    same = near is not None and near.model.scene.integrator.kind == model.scene.integrator.kind
+    same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
     return [simulate(model, equilibrium, progress, near=near.simulation if near is not None and same else None, stay=stay)]
 
 
@@ -246,12 +246,12 @@ def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: T
 
 def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
     """1x to 3x, and the ball-pass lines of orbiting balls, in the turns that identification uses."""
-    if simulation is None or model.excitation.period_s is None or "speeds" in model.scene.identifier.method.needs:
+    if simulation is None or model.excitation.period_s is None or model.problem.several_speeds:
         return []
     frequency = model.excitation.frequency_hz
     frequencies = {f"{k}x": k * frequency for k in (1, 2, 3)}
-    if model.scene.kinematics.orbiting:
-        passing = model.geometry.ball_count * model.geometry.cage_speed(model.scene.spin_speed) / (2.0 * np.pi)
+    if model.problem.kinematics.orbiting:
+        passing = model.geometry.ball_count * model.geometry.cage_speed(model.problem.spin_speed) / (2.0 * np.pi)
         frequencies |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, frequencies)
 
@@ -270,7 +270,7 @@ def _work(motions: list[Simulation]) -> Tables:
 def _stability(motions: list[Simulation]) -> Tables:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
     drifts = [drift for drift in map(_drift, motions) if drift is not None]
-    rubbing = [_friction(motion) for motion in motions if motion.model.scene.contact.friction > 0.0]
+    rubbing = [_friction(motion) for motion in motions if motion.model.problem.contact.friction > 0.0]
     energies = [motion.whole.energies for motion in motions if motion.whole.energies]
     limits = [motion.critical_time_step for motion in motions if motion.critical_time_step is not None]
     counts = [motion.whole.counts for motion in motions]
@@ -296,16 +296,16 @@ def _friction(motion: Simulation) -> float:
 
 def _drift(motion: Simulation) -> float | None:
     """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
-    model, scene = motion.model, motion.model.scene
+    model, problem = motion.model, motion.model.problem
     if motion.whole.energies:
         return drift(motion.whole.energies)
     if not model.traits.resultants:
         return None  # the energy that points store does not follow from the gap of the pair
-    law = scene.contact.law
+    law = problem.contact.law
     potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
     # What changes the speed of the balls does work, too.
-    steady = motion.start.kind != "ramp" and not scene.kinematics.orbiting and model.system.spin is None
-    if not (potential and steady and scene.integrator.method.inertial):
+    steady = motion.start.kind != "ramp" and not problem.kinematics.orbiting and model.system.spin is None
+    if not (potential and steady and problem.integrator.method.inertial):
         return None
     ring = compiled(model.system)
     return None if ring is None else energy_balance(ring, motion.whole).drift

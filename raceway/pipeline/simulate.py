@@ -117,7 +117,7 @@ def simulate(
     ConvergenceError, StabilityError
         A failed integration, or an explicit step above its stable limit.
     """
-    method, turns = model.scene.integrator.method, model.plan.turns
+    method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
     start = start or chosen_start(model, equilibrium, watch)
@@ -130,7 +130,7 @@ def simulate(
     motion = _motion(model, equilibrium, start, schedule.dt)
     if near is not None:
         motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
-    label = f"{model.scene.integrator.kind}, {schedule.steps} steps"
+    label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
     record = integrate(method, model.system, motion, schedule, progress)
     used = turns - ceil(ramp)
@@ -142,9 +142,9 @@ def simulate(
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
     """A motion for each of the identifier's ``speeds_rpm`` of the whirl; spin and force stay the same."""
-    motions, force = [], model.scene.excitation
-    kinematics = attrs.evolve(model.scene.kinematics, spin_speed_rpm=model.scene.spin_speed * 30.0 / np.pi)
-    for speed in model.scene.identifier.method.speeds_rpm:
+    motions, force = [], model.problem.excitation
+    kinematics = attrs.evolve(model.problem.kinematics, spin_speed_rpm=model.problem.spin_speed * 30.0 / np.pi)
+    for speed in model.problem.identifier.method.speeds_rpm:
         rpm = float(speed)
         excitation = at_whirl(force, rpm)
         scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
@@ -155,12 +155,12 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
 
 def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
-    scene, method = model.scene, model.scene.integrator.method
+    problem, method = model.problem, model.problem.integrator.method
     if method.steady:
         return Start("static")
-    kind = "ramp" if model.problem.ramped else scene.integrator.start
+    kind = "ramp" if model.problem.ramped else problem.integrator.start
     start = _orbit_start(model, equilibrium, watch) if kind == "orbit" and method.inertial else Start(kind)
-    return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if scene.contact.friction > 0.0 else start
+    return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if problem.contact.friction > 0.0 else start
 
 
 def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) -> Start:
@@ -193,8 +193,8 @@ def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, wa
         return Start("orbit", search.orbit)
     # Orbits of another motion than that of the scene are stated in warnings only.
     differences = {
-        "without friction": model.scene.contact.friction > 0.0,
-        "with balls that do not orbit": model.scene.kinematics.orbiting,
+        "without friction": model.problem.contact.friction > 0.0,
+        "with balls that do not orbit": model.problem.kinematics.orbiting,
         "at its first speed": model.excitation.period_s is None,
     }
     prefix = ", ".join(words for words, differs in differences.items() if differs)
@@ -208,14 +208,14 @@ def _step_warnings(
     model: Model, equilibrium: Equilibrium, period: float, steps_per_turn: int, critical: float | None
 ) -> tuple[str, ...]:
     """Refuse explicit steps above the stable limit; warn of those near to it."""
-    scene, dt = model.scene, period / steps_per_turn
-    if scene.integrator.method.implicit or critical is None:
+    problem, dt = model.problem, period / steps_per_turn
+    if problem.integrator.method.implicit or critical is None:
         return ()
     if dt >= critical:
         least = int(period / (SAFETY * critical)) + 1
         raise StabilityError(
             f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
-            f"'{scene.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
+            f"'{problem.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
             {"q": equilibrium.displacement, "ball": equilibrium.ball},
         )
     if dt > SAFETY * critical * (1.0 + 1e-9):
@@ -232,7 +232,7 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
         equilibrium.displacement,
         equilibrium.ball,
         model.system.at_speed(0.0),
-        model.scene.integrator.method,
+        model.problem.integrator.method,
     )
     if method.steady:
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
@@ -247,7 +247,7 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
 
 
 def _ramp_turns(model: Model) -> float:
-    return ramp_turns(model.scene.excitation) or 2.0 * model.plan.turns / 3.0
+    return ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
 
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
@@ -258,10 +258,10 @@ def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) 
 
 
 def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
-    steps = model.scene.integrator.steps_per_turn
+    steps = model.problem.integrator.steps_per_turn
     if isinstance(steps, int):
         return steps
-    if model.scene.integrator.method.implicit or critical is None:
+    if model.problem.integrator.method.implicit or critical is None:
         return STEPS_PER_TURN
     return stable_steps_per_turn(period, critical)
 

@@ -100,7 +100,7 @@ def _direction_of(model: Model, key: Key) -> Direction:
     NoDerivative
         There is none, with the reason.
     """
-    solves = model.scene.bearing.preloaded or renews(model.scene.contact.law)
+    solves = model.problem.bearing.preloaded or renews(model.problem.contact.law)
     step, multiples = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solves else (_model_step(key, _TWO), (-1, 1))
     system, slopes, bends = surrogate(model.system), {}, False
     _scene(model, key, -step)  # a key at the end of its range is refused, whatever it does

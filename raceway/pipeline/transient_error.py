@@ -47,7 +47,6 @@ from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
-from raceway.planning.resolve import resolve
 from raceway.plugins.identifiers import Tangent, whole_turns
 from raceway.storage.tables import Tables
 
@@ -96,11 +95,11 @@ class Identified:
 
     @property
     def several_speeds(self) -> bool:
-        return "speeds" in self.model.scene.identifier.method.needs
+        return self.model.problem.several_speeds
 
     def identify(self, records: list[Record]) -> complex:
         """Z [N/m] by the scene's identifier."""
-        return self.model.scene.identifier.method.identify(records, self.equilibrium, self.model).dynamic_stiffness
+        return self.model.problem.identifier.method.identify(records, self.equilibrium, self.model).dynamic_stiffness
 
 
 def settled_value(run: Identified) -> complex | None:
@@ -154,7 +153,7 @@ def without_free_vibration(motion: Simulation) -> Clean | None:
         values = [_windowed(record, end, frequency) for end in ends] if half >= 2 * per_turn else []
         halves = abs(values[0] - values[1]) if values else None
         return Clean(value, _lasting(motion, record, value), Estimate.LEAKAGE(), halves)
-    if len(motion.whole.time) <= per_turn or not motion.model.scene.integrator.method.inertial:
+    if len(motion.whole.time) <= per_turn or not motion.model.problem.integrator.method.inertial:
         return None
     return Clean(_closed(motion, per_turn), 0j, Estimate.OPEN_TURN())
 
@@ -224,7 +223,7 @@ class Run:
         clean, model = without_free_vibration(motion), motion.model
         if clean is not None:
             return cls(clean.value, motion.steps_per_turn)
-        identification = model.scene.identifier.method.identify([motion.record], motion.equilibrium, model)
+        identification = model.problem.identifier.method.identify([motion.record], motion.equilibrium, model)
         return cls(identification.dynamic_stiffness, motion.steps_per_turn)
 
 
@@ -240,7 +239,7 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
     ConvergenceError, StabilityError
         No other start gives a motion.
     """
-    kinds = (_OTHERS if motion.model.scene.integrator.method.inertial else _SERIES)[motion.start.kind]
+    kinds = (_OTHERS if motion.model.problem.integrator.method.inertial else _SERIES)[motion.start.kind]
     if not motion.start.settled:
         kinds = tuple(kind for kind in kinds if kind != "orbit")  # searched for in vain
     failure: ConvergenceError | StabilityError | None = None
@@ -258,11 +257,11 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
 
 def _started_by(model: Model, kind: str) -> Model:
     """The same scene with another start."""
-    scene, excitation = model.scene, model.scene.excitation
+    problem, excitation = model.problem, model.problem.excitation
     if ramp_turns(excitation) > 0.0:
         excitation = attrs.evolve(excitation, ramp_turns=0.0)
-    scene = attrs.evolve(scene, excitation=excitation, integrator=attrs.evolve(scene.integrator, start=kind))
-    return attrs.evolve(model, problem=resolve(scene))
+    problem = problem.changed(excitation=excitation, integrator=attrs.evolve(problem.integrator, start=kind))
+    return attrs.evolve(model, problem=problem)
 
 
 def start_warnings(model: Model, error: Tables) -> list[str]:

@@ -95,7 +95,7 @@ _EXTRAS: dict[str, tuple[Changes, Shows]] = {
     ),
     "a pair of rows": (
         {"bearing": {"arrangement": "DB", "row_distance": 0.02}},
-        lambda model, _equilibrium, _plain: model.system.ball_count == 2 * model.scene.bearing.ball_count,
+        lambda model, _equilibrium, _plain: model.system.ball_count == 2 * model.problem.bearing.ball_count,
     ),
     "an expanded inner ring": ({"kinematics": {"radial_expansion": 1e-6}}, _moves),
     "a soft seat": ({"supports": {"outer_seat": 1e13}}, _moves),
@@ -394,7 +394,7 @@ def _carried(model: Model, equilibrium: Equilibrium) -> str:
     z, azimuth = model.system.ball_count, model.azimuth
     load = np.where(equilibrium.contact_force[:z] > 0.0, equilibrium.contact_force[:z], 0.0)
     angle = np.nan_to_num(equilibrium.angle_inner)
-    side = np.array([side for side, _ in model.scene.bearing.rows])[model.basis.row]
+    side = np.array([side for side, _ in model.problem.bearing.rows])[model.basis.row]
     radial = load * np.cos(angle)
     total = np.array([side @ (load * np.sin(angle)), radial @ np.cos(azimuth), radial @ np.sin(azimuth)])
     residual = (total - model.system.load[:3]) * model.system.free[:3]

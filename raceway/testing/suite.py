@@ -317,7 +317,9 @@ def apart(work: Callable[[], T]) -> T:
         raise _Died(f"died: it had not ended after {LIMIT_S:g} s")
     if not answer:
         code = os.waitstatus_to_exitcode(status)
-        raise _Died(f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}")
+        raise _Died(
+            f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}"
+        )
     answered, result = pickle.loads(answer)
     if answered:
         return result

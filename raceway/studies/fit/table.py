@@ -271,7 +271,7 @@ class _TableResiduals:
         """Definitions of measured numbers whose names may mean another quantity to the reader."""
         answer = self._answers[0]
         words = definitions(answer.model, answer.equilibrium)
-        names = ["largest_ball_load", *(["kyy"] if answer.model.scene.supports.tilt != "locked" else [])]
+        names = ["largest_ball_load", *(["kyy"] if answer.model.problem.supports.tilt != "locked" else [])]
         return [f"{name} is taken as {words[name]}" for name in names if name in self.measured.values]
 
 

@@ -215,7 +215,7 @@ def condensed_at_rest(rows: Rows, bench: Bench) -> None:
     x, near = (float(result.equilibrium.displacement[0]) for result in results)
     rows.check("axial displacement [m], predicted by Hertz on these bodies", x, _COARSE, Limit.equal(near, 0.06))
     why = "a ball's angle is that of its centre, the resultant of its pressures leans by a degree from it"
-    rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(results[0].model.scene.load.axial, 0.02))
+    rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(results[0].model.problem.load.axial, 0.02))
 
 
 def turn(rows: Rows, bench: Bench, integrator: str) -> None:
@@ -240,7 +240,7 @@ def calibrated_at_rest(rows: Rows, bench: Bench) -> None:
 
 
 def _on_the_seat(rows: Rows, result: Result) -> None:
-    seat, load = -float(result.to_dict()["model"]["reaction_n"]["x"]), result.model.scene.load.axial
+    seat, load = -float(result.to_dict()["model"]["reaction_n"]["x"]), result.model.problem.load.axial
     why = "an equilibrium of all nodes is solved to 1e-7 of its forces"
     rows.check("axial force on the outer seat [N]", seat, why, Limit.equal(load, 1e-5))
 

@@ -120,7 +120,7 @@ class Bench:
         system = attrs.evolve(surrogate(model.system), force=no_force, force_params=np.zeros(1))
         damping = system.evaluate(equilibrium.displacement, ball=equilibrium.ball).damping
         limit = system.damped_time_step(equilibrium.stiffness_rows_held, damping)
-        return Still(model, system, equilibrium, limit, model.scene.contact.law.dissipative)
+        return Still(model, system, equilibrium, limit, model.problem.contact.law.dissipative)
 
     def method(self, name: str, tolerance: float | None = None) -> Integrator:
         """An integrator; an implicit one with another tolerance of its steps."""
@@ -169,8 +169,8 @@ def axial_displacement(model: Model) -> float:
     size = 1e-3 * model.geometry.ball_diameter
 
     def axial(load: float) -> float:
-        angle = model.scene.bearing.contact_angle
-        for _ in range(_ANGLES if renews(model.scene.contact.law) else 1):
+        angle = model.problem.bearing.contact_angle
+        for _ in range(_ANGLES if renews(model.problem.contact.law) else 1):
             params, reach = _at_load(model, load, angle)
             approach = 0.0
             for pair in (0, z):
@@ -185,14 +185,14 @@ def axial_displacement(model: Model) -> float:
         moved = axial(load)
         return z * load * moved / sqrt(moved**2 + rest_radial**2)
 
-    total = model.scene.load.axial
-    load = inverted(force, total, total / (z * max(sin(model.scene.bearing.contact_angle), 0.1)))
+    total = model.problem.load.axial
+    load = inverted(force, total, total / (z * max(sin(model.problem.bearing.contact_angle), 0.1)))
     return axial(load) - rest_axial
 
 
 def _at_load(model: Model, load: float, angle: float) -> tuple[np.ndarray | None, np.ndarray]:
     """Parameters and reach (2 Z,) of the law where all contacts carry a load [N] at an angle [rad]."""
-    z, law = model.system.ball_count, model.scene.contact.law
+    z, law = model.system.ball_count, model.problem.contact.law
     if not renews(law):
         return None, np.zeros(2 * z)
     angles = np.full(z, angle)

@@ -218,7 +218,7 @@ class Bearing:
         SceneError
             Rows of different bearings.
         """
-        b = result.model.scene.bearing
+        b = result.model.problem.bearing
         if not b.equal_rows:
             raise SceneError.at(
                 "bearing.row", None, "holds rows of different bearings, which are not drawn: leave out what differs"

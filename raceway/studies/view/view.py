@@ -271,7 +271,7 @@ def _widened(bearing: Bearing, state: State) -> str:
 
 
 def _bearing_words(result: Result) -> str:
-    b, scene = result.model.scene.bearing, result.model.scene
+    b, scene = result.model.problem.bearing, result.model.scene
     name = f"{b.preset}: " if b.preset else ""
     return (
         f"{name}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, contact angle "
@@ -280,7 +280,7 @@ def _bearing_words(result: Result) -> str:
 
 
 def _lead(result: Result, state: State) -> str:
-    load, identified = result.model.scene.load, result.identification
+    load, identified = result.model.problem.load, result.identification
     words = [f"Axial load {load.axial:.4g} N"]
     if any(load.radial):
         words.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
