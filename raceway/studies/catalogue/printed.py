@@ -80,23 +80,16 @@ class Printed:
     internals: Internals | None = None
 
     def __attrs_post_init__(self) -> None:
-        numbers = {"bore": self.bore, "outer diameter": self.outer_diameter, "width": self.width or 1.0}
-        mistakes = []
+        numbers = [("bore", self.bore), ("outer diameter", self.outer_diameter), ("width", self.width or 1.0)]
         for rating in self.ratings:
             at = f"{rating.contact_angle_deg:g} deg"
-            numbers |= {
-                "contact angle": rating.contact_angle_deg,
-                f"dynamic rating, {at}": rating.dynamic,
-                f"static rating, {at}": rating.static,
-            }
+            numbers += [("contact angle", rating.contact_angle_deg)]
+            numbers += [(f"dynamic rating, {at}", rating.dynamic), (f"static rating, {at}", rating.static)]
         for pair in self.pairs:
-            numbers |= {
-                "angle of a pair": pair.contact_angle_deg,
-                "preload of a pair": pair.preload,
-                "stiffness of a pair": pair.stiffness,
-            }
-            mistakes += _not_positive(self.title, numbers)
-        mistakes += _not_positive(self.title, numbers)
+            numbers += [("angle of a pair", pair.contact_angle_deg), ("preload of a pair", pair.preload)]
+            numbers += [("stiffness of a pair", pair.stiffness)]
+        rule = "must be a finite number above 0"
+        mistakes = [Mistake(f"{self.title}: {name}", x, rule) for name, x in numbers if not 0.0 < x < math.inf]
         if mistakes:
             raise SceneError(list(dict.fromkeys(mistakes)))
         if not self.bore < self.outer_diameter < 10.0:
@@ -143,11 +136,6 @@ class Printed:
     def static(self) -> np.ndarray:
         """(n,) static ratings [N]."""
         return np.array([rating.static for rating in self.ratings])
-
-
-def _not_positive(where: str, numbers: dict[str, float]) -> list[Mistake]:
-    rule = "must be a finite number above 0"
-    return [Mistake(f"{where}: {name}", x, rule) for name, x in numbers.items() if not (math.isfinite(x) and x > 0.0)]
 
 
 @cache
