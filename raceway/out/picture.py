@@ -48,6 +48,16 @@ def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Ax
     return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
 
 
+def label_axes(axes: Axes, title: str, x: str, y: str, size: float = 11.0) -> None:
+    """Title, labels of a font size [pt] and grid."""
+    axes.set_title(title, fontsize=size + 1.0)
+    axes.set_xlabel(x, fontsize=size)
+    axes.set_ylabel(y, fontsize=size)
+    axes.tick_params(labelsize=size - 1.0)
+    axes.grid(color="#d8dee4", linewidth=0.7)
+    axes.set_axisbelow(True)
+
+
 def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 

@@ -11,7 +11,7 @@ import attrs
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
-from raceway.out.picture import new_figure, save_figure
+from raceway.out.picture import label_axes, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -130,7 +130,7 @@ def _draw_orbit(axes: Axes, result: Result) -> None:
     still = _MICRO * result.equilibrium.displacement[1:3]
     axes.plot(*still, "+", color=_STATIC, markersize=11, label="static equilibrium")
     axes.set_aspect("equal", adjustable="datalim")
-    _label(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
+    label_axes(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
 
 
 def _draw_spectrum(axes: Axes, result: Result) -> None:
@@ -158,7 +158,7 @@ def _draw_spectrum(axes: Axes, result: Result) -> None:
     axes.set_ylim(peak * 1e-9, peak * 10.0)
     axes.set_xticks(range(11))
     title = f"Spectrum of the displacement, mean removed\n{_subtitle(result)}"
-    _label(axes, title, "frequency / frequency of the excitation [-]", "amplitude [µm]")
+    label_axes(axes, title, "frequency / frequency of the excitation [-]", "amplitude [µm]")
 
 
 def _draw_ball_loads(axes: Any, result: Result) -> None:
@@ -204,15 +204,6 @@ def _turns(count: int) -> str:
 def _subtitle(result: Result) -> str:
     """The title, and what was changed of the scene, in lines that fit."""
     return "\n".join(part for line in result.title.splitlines() for part in wrap(line, 64))
-
-
-def _label(axes: Axes, title: str, x: str, y: str) -> None:
-    axes.set_title(title, fontsize=12)
-    axes.set_xlabel(x, fontsize=11)
-    axes.set_ylabel(y, fontsize=11)
-    axes.tick_params(labelsize=10)
-    axes.grid(color=_GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
 
 
 class _Drawing(NamedTuple):

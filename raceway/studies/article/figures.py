@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import Status
-from raceway.out.picture import new_figure
+from raceway.out.picture import label_axes, new_figure
 from raceway.storage.tables import Tables
 from raceway.studies.article.design import (
     AMPLITUDES,
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from raceway.studies.article.study import Article
 
 _WIDTH, _HEIGHT = 4.7, 3.8
-_GRID, _REFERENCE = "#d8dee4", "#8794a0"
+_REFERENCE = "#8794a0"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 #: Direction and amplitude law -> colour, style, width [pt] and name of a line.
 _PAIRS = {
@@ -81,19 +81,13 @@ class Picture:
         return figure
 
 
-def _axes(figure: Figure, position: tuple[int, int, int], solid: bool) -> Any:
-    words: Tables = {"projection": "3d"} if solid else {}
-    return figure.add_subplot(*position, **words)
+def _axes(figure: Figure, position: tuple[int, int, int], solid: bool) -> Axes:
+    return figure.add_subplot(*position, projection="3d" if solid else None)
 
 
 def finish(axes: Axes, title: str, x: str, y: str, legend: int = 0) -> None:
     """Title, labels and grid; a legend of so many columns below."""
-    axes.set_title(title, fontsize=11)
-    axes.set_xlabel(x, fontsize=10)
-    axes.set_ylabel(y, fontsize=10)
-    axes.tick_params(labelsize=9)
-    axes.grid(color=_GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
+    label_axes(axes, title, x, y, 10.0)
     axes.ticklabel_format(useOffset=False)
     if legend:
         axes.legend(fontsize=8.5, frameon=False, ncols=legend, loc="upper center", bbox_to_anchor=(0.5, -0.17))
@@ -115,9 +109,7 @@ class Line:
     def plot(self, axes: Axes) -> None:
         shown = np.isfinite(self.y) if self.bridged else slice(None)
         marker: Tables = {"marker": "o", "markersize": 3} if self.marked else {}
-        axes.plot(
-            self.x[shown], self.y[shown], self.style, color=self.colour, linewidth=self.width, label=self.label, **marker
-        )
+        axes.plot(self.x[shown], self.y[shown], self.style, color=self.colour, lw=self.width, label=self.label, **marker)
 
 
 def _panel(
@@ -337,11 +329,9 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
         if np.isfinite(light).all():
             axes.plot_wireframe(w, loads, light, color="#c8501e", linewidth=0.6)
         axes.set_title(TILT_WORDS[setting.tilt], fontsize=11)
-        for name, label in (("x", _SPEED), ("y", _LOAD), ("z", _STIFFNESS)):
-            getattr(axes, f"set_{name}label")(label, fontsize=9)
+        axes.set(xlabel=_SPEED, ylabel=_LOAD, zlabel=_STIFFNESS)
         axes.tick_params(labelsize=8)
-        axes.set_xticks([0.0, 0.5, 1.0])
-        axes.set_yticks([loads.min(), 0.5 * (loads.min() + loads.max()), loads.max()])
+        axes.set(xticks=[0.0, 0.5, 1.0], yticks=[loads.min(), 0.5 * (loads.min() + loads.max()), loads.max()])
         axes.locator_params(axis="z", nbins=5)
         axes.view_init(24, -128)
         axes.set_box_aspect(None, zoom=0.92)
@@ -381,11 +371,7 @@ def _tilt_stiffness(study: Article) -> Picture:
         axes.axvline(shaft, color=_REFERENCE, linewidth=0.8, linestyle="--")
         axes.annotate("shaft", (shaft, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
                       fontsize=9, color="#55636f")  # fmt: skip
-        axes.set_title("Hardening (above 1) or softening", fontsize=11)
-        axes.set_xlabel("tilt stiffness of the shaft [N m/rad]", fontsize=10)
-        axes.set_ylabel("k* at w* = 1", fontsize=10)
-        axes.tick_params(labelsize=9)
-        axes.grid(color=_GRID, linewidth=0.7)
+        label_axes(axes, "Hardening (above 1) or softening", "tilt stiffness of the shaft [N m/rad]", "k* at w* = 1", 10.0)
         axes.legend(fontsize=9, frameon=False)
 
     words = f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {_ends(ratios)}"

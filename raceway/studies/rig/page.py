@@ -29,7 +29,7 @@ from raceway.cli.frame import (
 )
 from raceway.framework.registry import registry_with
 from raceway.out.page import Page
-from raceway.out.picture import new_figure, save_figure
+from raceway.out.picture import label_axes, new_figure, save_figure
 from raceway.out.table import rows_table, written
 from raceway.out.wrapping import Words
 from raceway.scene.reading import rig_of
@@ -115,10 +115,8 @@ def procedures(study: RigStudy) -> Figure:
             values = [1e-6 * p.readings[k].stiffness for p in points]
             label = {"none": "no correction"}.get(name, name)
             panel.plot(speeds, values, color=_COLOURS[1], linestyle=style, marker=".", label=label)
-        panel.set_title(f"{axial:g} N axial", fontsize=11)
-        panel.set_xlabel("speed [r/min]")
+        label_axes(panel, f"{axial:g} N axial", "speed [r/min]", "", 10.0)
         panel.set_xticks(speeds)
-        panel.grid(color="#d8dee4", linewidth=0.7)
     # One scale for all panels, and set when all are drawn: a limit that is set holds, whatever comes after it.
     figure.axes[0].set_ylim(bottom=0.0)
     figure.axes[0].set_ylabel("K [N/µm]")
@@ -138,7 +136,7 @@ def causes(study: RigStudy) -> Figure:
         sizes = np.maximum(errors, _LEAST_PERCENT)
         axes.plot(sizes, np.full(len(sizes), row), "o", color=_KINDS[name[0]], markersize=5, alpha=0.75)
     words = [fill(f"{kind}: {text}" if kind != "none" else text, 46) for kind, text in reversed(names)]
-    axes.set_yticks(range(len(names)), words, fontsize=8)
+    axes.set_yticks(range(len(names)), words)
     axes.set_xscale("log")
     largest = 100.0 * max(abs(cause.error) for point in study.points for cause in point.causes)
     axes.set_xlim(0.8 * _LEAST_PERCENT, max(200.0, 1.5 * largest))
@@ -148,9 +146,7 @@ def causes(study: RigStudy) -> Figure:
             f"{limit:g} %", (limit, 1.0), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
             ha="center", va="bottom", fontsize=8,
         )  # fmt: skip
-    axes.set_xlabel("error of K by this cause alone [%]")
-    axes.grid(color="#d8dee4", linewidth=0.7)
-    axes.set_axisbelow(True)
+    label_axes(axes, "", "error of K by this cause alone [%]", "", 9.0)
     return figure
 
 
