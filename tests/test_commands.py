@@ -10,6 +10,7 @@ import re
 import sys
 import time
 from collections import Counter
+from functools import wraps
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -584,6 +585,7 @@ def test_verify_fails_with_code_1(monkeypatch):
 
     true = module.verify
 
+    @wraps(true)
     def off(*given, **named):
         done = true(*given, **named)
         return attrs.evolve(done, rows=tuple(attrs.evolve(row, ok=False) for row in done.rows))

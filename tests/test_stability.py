@@ -347,8 +347,8 @@ def test_an_interruption_keeps_finished_cases(tmp_path):
 
     store = tmp_path / "rows.jsonl"
     with pytest.raises(KeyboardInterrupt):
-        stability(only="chatter", processes=0, store=store, on_progress=stop)
-    assert stability(only="chatter", processes=0, store=store).reused == 2
+        stability(only="chatter", processes=0, kept=store, progress=stop)
+    assert stability(only="chatter", processes=0, kept=store).reused == 2
 
 
 @pytest.mark.parametrize(

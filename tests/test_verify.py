@@ -42,7 +42,7 @@ def test_numbers_that_no_source_published_are_not_counted_as_published():
 
 def test_several_cases_come_in_the_order_of_the_file_with_progress():
     seen = []
-    found = verify(only=["seed-unbalance", "masta-dgbb-1"], on_progress=lambda *now: seen.append(now))
+    found = verify(only=["seed-unbalance", "masta-dgbb-1"], progress=lambda *now: seen.append(now))
     cases = [row.case for row in found.worst]
     assert cases == list(dict.fromkeys(row.case for row in found.rows)) == ["masta-dgbb-1", "seed-unbalance"]
     assert seen == [("masta-dgbb-1", 0, 2), ("seed-unbalance", 1, 2), ("", 2, 2)]

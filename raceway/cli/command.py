@@ -200,9 +200,9 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 if stop.partial is None:
                     raise
                 answer, stopped = stop.partial, stop  # what is finished is written and shown first
-        content, files = answer.to_dict(), list[str]()
+        files: list[str] = []
         failed = None if folder is None else attempt(lambda: answer.save(folder, pictures and stopped is None), files)
-        show(content, as_json, failed or _by_flags(about, answer.failure()), lambda: answer.screen(files))
+        show(answer.to_dict(), as_json, failed or _by_flags(about, answer.failure()), lambda: answer.screen(files))
         if stopped is not None:
             raise stopped
     return 0 if answer.passed else 1

@@ -39,7 +39,7 @@ def test_quick_cases(claim):
 
 
 def test_all_cases(claim):
-    study = stability(every=True, store=KEPT)
+    study = stability(every=True, kept=KEPT)
     failed = [row for row in study.rows if row.verdict == "failed"]
     source = f"limits of {len(study.rows)} rows of {study.cases} cases"
     claim(

@@ -1,6 +1,6 @@
 """Stiff and extreme cases, each with an expectation.
 
-study       cases, their rows, and how they are run;  command: ``raceway stability``
+study       cases, their rows, and how they are run: ``raceway stability``
 catalogue   all cases and their data
 systems     bearings and masses that cases are measured on; expectations by a law's own force and energy
 motions     steps around the stable limit, conserved energy, impacts, chatter

@@ -5,23 +5,26 @@ A case writes rows: a number beside its limit, or a message that must come.
 
 from __future__ import annotations
 
-import json
 import math
 import time
 import traceback
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.registry import Registry, registry_with
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
+from raceway.out.table import micro
+from raceway.out.wrapping import Words
 from raceway.points.engine import Item, local, processor_time, work_through
 from raceway.points.store import RowStore, program_key, tables_key
-from raceway.storage.files import write_whole
+from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -169,17 +172,19 @@ def short(error: BaseException) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
 
-@attrs.frozen
-class Stability:
+@attrs.frozen(eq=False, repr=False, slots=False)
+class Stability(Answer):
     """Rows of a catalogue.
 
     Attributes
     ----------
-    cases : how many were run or taken from what is kept;  reused : how many of them were kept
+    cases : how many were run or taken from what is stored;  reused : how many of them were stored
     left_out : how many were not asked for
     seconds, cpu_s : wall time; processor time of all processes, compiling too
-    fault : why rows could not be kept, or None
+    fault : why rows could not be stored, or None;  by_row : whether a screen has a line for each row instead of each case
     """
+
+    stem: ClassVar[str] = "stability"
 
     title: str
     rows: tuple[Row, ...]
@@ -190,6 +195,7 @@ class Stability:
     cpu_s: float
     processes: int
     fault: RacewayError | None = None
+    by_row: bool = False
 
     @property
     def failed(self) -> tuple[Row, ...]:
@@ -200,35 +206,83 @@ class Stability:
         plain = {name: getattr(self, name) for name in names}
         return {**plain, "failed": len(self.failed), "rows": [attrs.asdict(row) for row in self.rows]}
 
-    def write(self, folder: Path) -> list[Path]:
-        """stability.json and stability.md.
+    @property
+    def passed(self) -> bool:
+        return not self.failed
 
-        Raises
-        ------
-        RacewayError
-            A folder or disk that cannot be written.
-        """
-        content = self.to_dict()
-        text = json.dumps(content, indent=1, allow_nan=False) + "\n"
-        page = write_whole(_page(content).encode(), folder / "stability.md")
-        return [write_whole(text.encode(), folder / "stability.json"), page]
+    def failure(self) -> RacewayError | None:
+        return self.fault
+
+    def texts(self, pictures: bool) -> dict[str, str]:
+        """The study as Markdown: what failed first, then a table for each case."""
+        bad = [attrs.asdict(row) for row in self.failed]
+        counts = (
+            f"{self._counted}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} cases kept from before); "
+            f"{self.left_out} cases not asked for."
+        )
+        lines = [f"# {self.title}", "", counts, *(["", "## Failed", "", *_table(bad)] if bad else [])]
+        for name in dict.fromkeys(row.case for row in self.rows):
+            lines += ["", f"## {name}", "", *_table(attrs.asdict(row) for row in self.rows if row.case == name)]
+        return {"md": "\n".join(lines) + "\n"}
+
+    @property
+    def _counted(self) -> str:
+        return f"{len(self.rows) - len(self.failed)} of {len(self.rows)} rows as expected, {self.cases} cases"
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        bad: list[Fact] = [("failed", row.case, row.note or row.reason) for row in self.failed]
+        return self.title, [("rows", "", self._counted), *bad]
+
+    def report(self) -> Iterator[Part]:
+        """A line for each case, or for each row; what is not as expected in full."""
+        yield Words(self.title, "bold")
+        verdicts: dict[str, list[str]] = {}
+        for row in self.rows:
+            verdicts.setdefault(micro(row.case), []).append(row.verdict)
+        yield (
+            [_cells(row) for row in self.rows]
+            if self.by_row
+            else [
+                {"case": case, "rows": str(len(of_case)), "as expected": str(of_case.count(AS_EXPECTED))}
+                for case, of_case in verdicts.items()
+            ]
+        )
+        for row in self.failed:
+            cells = ", ".join(cell for name, cell in _cells(row).items() if cell and name != "verdict")
+            yield Words(f"failed: {cells}. {row.note or row.reason}", "red")
+        yield f"{self._counted}{f', {self.reused} kept from before' if self.reused else ''}, {self.seconds:.0f} s"
+        if self.left_out and not self.by_row:
+            yield f"left out: {self.left_out} cases that take longer; --all runs them"
+
+
+def _cells(row: Row) -> dict[str, str]:
+    setting = ", ".join(micro(f"{key} {value}") for key, value in row.setting.items())
+    numbers = {
+        name: "" if value is None else f"{value:.6g}"
+        for name, value in (("predicted", row.predicted), ("observed", row.observed))
+    }
+    words = {"case": micro(row.case), "setting": setting, "quantity": row.quantity, "expected": row.expected}
+    return {**words, **numbers, "verdict": row.verdict}
 
 
 def stability(
-    tables: ReadTables | None = None, only: str | None = None, every: bool = False, processes: int = PROCESSES,
-    store: Path | None = None, registry: Registry | None = None, plugins: Sequence[Path] = (),
-    on_progress: OnProgress | None = None,
+    scene: ReadTables | None = None, only: str | None = None, every: bool = False, processes: int = PROCESSES,
+    *, kept: Path | None = None, plugins: Sequence[Path] = (), progress: OnProgress | None = None,
 ) -> Stability:  # fmt: skip
-    """Run the catalogue.
+    """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
+
+    Without --only or --all a set of quick cases is run. With SCENE, that scene is put through the cases that suit any scene.
+    Writes stability.json and stability.md. Finished cases are kept in DIR/stability-rows.jsonl and reused.
 
     Parameters
     ----------
-    tables : plain tables of a scene that is put through the cases that suit any scene; the whole catalogue when None
-    only : part of the names of the cases that are run;  every : all cases; without either the quick ones
-    processes : how many work at a time; 0 works in this process, without guard against a hang
-    store : file that finished cases are kept in and taken from
+    scene : plain tables; the whole catalogue when None
+    only : cases whose name holds these words, row by row
+    every : all cases, not only those of a minute: some ten minutes
+    processes : that work at a time; 0: in this one, without guard against a hang
+    kept : file that finished cases are stored in and taken from
     plugins : one-off plug-in files, which each process loads
-    on_progress : called as ``on_progress(what, done, total)`` after each case; an exception stops the study
+    progress : called as ``progress(what, done, total)`` after each case; an exception stops the study
 
     Raises
     ------
@@ -238,17 +292,19 @@ def stability(
     from raceway.studies.stability.catalogue import catalogue
 
     begun, cpu = time.monotonic(), processor_time()
-    registry = registry or default_registry()
-    cases = catalogue(registry, tables)
+    registry = registry_with(plugins)
+    if scene is not None:
+        scene_from_dict(scene, registry)  # mistakes are refused before anything is run
+    cases = catalogue(registry, scene)
     selected = [case for case in cases if (case.quick or every if only is None else only in case.name)]
     if not selected:
         names = list(dict.fromkeys(case.name for case in cases))
-        raise SceneError.at("--only", only, f"no case is called so{nearest(only or '', names)}; cases: {'; '.join(names)}")
-    rows_stored = RowStore(store)
-    rows, reused = measured(selected, processes, registry, plugins, rows_stored, on_progress)
-    title = "Stiff and extreme cases" if tables is None else f"Stiff and extreme cases of {tables.get('title', 'the scene')}"
+        raise SceneError.at("only", only, f"no case is called so{nearest(only or '', names)}; cases: {'; '.join(names)}")
+    store = RowStore(kept)
+    rows, reused = measured(selected, processes, registry, plugins, store, progress)
+    title = "Stiff and extreme cases" if scene is None else f"Stiff and extreme cases of {scene.get('title', 'the scene')}"
     seconds, left_out = (time.monotonic() - begun, processor_time() - cpu), len(cases) - len(selected)
-    return Stability(title, tuple(rows), len(selected), left_out, reused, *seconds, processes, rows_stored.fault)
+    return Stability(title, tuple(rows), len(selected), left_out, reused, *seconds, processes, store.fault, only is not None)
 
 
 def measured(
@@ -291,20 +347,6 @@ def rows_of(case: Case, registry: Registry) -> list[Row]:
         last = traceback.extract_tb(why.__traceback__)[-1]
         rows.lost(f"{type(why).__name__} in {Path(last.filename).name}, line {last.lineno}: {short(why)}")
     return rows.written
-
-
-def _page(content: Tables) -> str:
-    """The study as Markdown: what failed first, then a table for each case."""
-    rows = content["rows"]
-    bad = [row for row in rows if row["verdict"] == FAILED]
-    counts = (
-        f"{len(rows) - len(bad)} of {len(rows)} rows as expected, {content['cases']} cases, {content['seconds']:.0f} s on "
-        f"{content['processes']} processes ({content['reused']} cases kept from before); {content['left_out']} cases not asked for."
-    )
-    lines = [f"# {content['title']}", "", counts, *(["", "## Failed", "", *_table(bad)] if bad else [])]
-    for name in dict.fromkeys(row["case"] for row in rows):
-        lines += ["", f"## {name}", "", *_table(row for row in rows if row["case"] == name)]
-    return "\n".join(lines) + "\n"
 
 
 def _table(rows: Iterable[Tables]) -> list[str]:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from typing import ClassVar
 
 import attrs
 
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry
+from raceway.framework.shown import Fact, number
+from raceway.out.answer import Answer, Part
+from raceway.out.table import micro
+from raceway.out.wrapping import Words
 from raceway.storage.tables import Tables
 from raceway.studies.verify.cases import (
     Rows,
@@ -34,11 +39,20 @@ COMPUTED: dict[str, Callable[[Case, Registry], Rows]] = {
 }  # fmt: skip
 
 
-@attrs.frozen
-class Verification:
-    """The rows of all cases that were computed."""
+#: Columns of numbers and their significant digits.
+_DIGITS = {"reference": 5, "computed": 5, "error": 2, "tolerance": 2}
+#: Cases of which every number is shown: the pressures of the article, load by load, with their mesh independence.
+_IN_FULL = ("seed-static-pressures",)
+
+
+@attrs.frozen(eq=False, repr=False, slots=False)
+class Verification(Answer):
+    """The rows of all cases that were computed; ``every``: whether a screen shows all of them."""
+
+    stem: ClassVar[str] = "verify"
 
     rows: tuple[Row, ...]
+    every: bool = False
 
     @property
     def passed(self) -> bool:
@@ -60,21 +74,49 @@ class Verification:
     def to_dict(self) -> Tables:
         return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
 
+    def _counts(self) -> list[str]:
+        return [f"{count['within']} of {count['of']} {BASES[basis]}" for basis, count in self.kept.items()]
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        misses: list[Fact] = [("off", row.case, f"{row.quantity} {row.note}") for row in self.rows if not row.ok]
+        return "Reference cases", [("within their tolerance", "", words) for words in self._counts()] + misses
+
+    def report(self) -> Iterator[Part]:
+        """Of each case the worst number and all that are off, or ``every`` one."""
+        worst = self.worst
+        rows = [row for row in self.rows if self.every or not row.ok or row.case in _IN_FULL or row in worst]
+        yield [
+            {
+                "number": f"{row.case}: {micro(row.quantity)}",
+                **{name: number(getattr(row, name), "", digits) for name, digits in _DIGITS.items()},
+                "verdict": "ok" if row.ok else f"off {row.note}",
+            }
+            for row in rows
+        ]
+        yield Words(f"within their tolerance: {', '.join(self._counts())}", "green" if self.passed else "red")
+
 
 def _strain(row: Row) -> float:
     return float("inf") if row.error is None or not row.tolerance else row.error / row.tolerance
 
 
 def verify(
-    only: str | Iterable[str] | None = None, on_progress: OnProgress | None = None, registry: Registry | None = None
+    only: str | Iterable[str] = (),
+    every: bool = False,
+    *,
+    registry: Registry | None = None,
+    progress: OnProgress | None = None,
 ) -> Verification:
-    """Compute the cases, each within the agreement that its source allows.
+    """Compute reference cases; exit code 1 when a number misses its tolerance.
+
+    Published numbers, closed forms, and this program by two ways are counted apart.
 
     Parameters
     ----------
-    only : id of one case, or several; all cases to be checked when None
-    on_progress : called as ``on_progress(case, done, total)`` before each case and once at the end
+    only : one case instead of all
+    every : show every number, not only the worst of each case
     registry : whose integrators the impacts are run with
+    progress : called as ``progress(case, done, total)`` before each case and once at the end
 
     Raises
     ------
@@ -82,19 +124,19 @@ def verify(
         A case that does not exist (with the nearest name) or that is there for information only.
     """
     registry = registry or default_registry()
-    cases, rows, report = _cases(only), list[Row](), on_progress or (lambda *_: None)
-    for number, case in enumerate(cases):
-        report(case.id, number, len(cases))
+    cases, rows, report = _cases(only), list[Row](), progress or (lambda *_: None)
+    for count, case in enumerate(cases):
+        report(case.id, count, len(cases))
         rows += compute(case, registry)
     report("", len(cases), len(cases))
-    return Verification(tuple(rows))
+    return Verification(tuple(rows), every)
 
 
-def _cases(only: str | Iterable[str] | None) -> list[Case]:
+def _cases(only: str | Iterable[str]) -> list[Case]:
     """The cases to compute, in the file's order."""
     cases = reference_cases()
     checked = {name: case for name, case in cases.items() if case.checked}
-    names = list(checked) if only is None else [only] if isinstance(only, str) else list(only)
+    names = ([only] if isinstance(only, str) else list(only)) or list(checked)
     faults = []
     for name in names:
         if name not in checked:

@@ -4,6 +4,6 @@ bodies     triangles of rings, balls and grooves; the bearing of one state: arro
 pictures   the bearing cut open, labels, the most loaded ball in section
 stress     displacement and stress fields of elastic bodies, close up below the contacts
 page       the page with WebGL
-view       ``raceway.view``: the states of a result that are drawn, the files, the answer;  command: ``raceway view``
+view       ``raceway.view``: the states of a result that are drawn, the files, the answer
 mesh       ``raceway mesh``: counts, quality, files, picture
 """

@@ -1,40 +1,27 @@
-"""The command about meshes.  Part of ``raceway.cli.main``."""
+"""``raceway mesh``: the meshes of a scene, their quality, files and picture."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
-import click
 import numpy as np
-from rich.console import Group, RenderableType
 
-from raceway.cli.frame import (
-    RESULTS,
-    attempt,
-    common,
-    load,
-    on_scene,
-    out_folder,
-    plugin_files,
-    show,
-    slug,
-    tell_faults,
-)
+from raceway.cli.frame import slug
 from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
-from raceway.out.progress import ProgressBar
-from raceway.out.table import Row, grouped, number, sections, written
+from raceway.out.answer import Answer, Part
+from raceway.out.table import Row, grouped, number, sections
 from raceway.out.wrapping import Words
 from raceway.plugins.system_libraries import refuse_pictures
-from raceway.storage.files import writable, write_whole
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.files import write_whole
+from raceway.storage.tables import Tables
 from raceway.studies.view.pictures import INK, Plotter, look_from, rendered
 
 if TYPE_CHECKING:
@@ -42,6 +29,8 @@ if TYPE_CHECKING:
 
     from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry, Registry
+    from raceway.pipeline.simulate import OnProgress
+    from raceway.scene.scene import Scene
 
 
 #: Inner ring, outer ring, everything else.
@@ -100,110 +89,135 @@ def _outside(cells: np.ndarray) -> np.ndarray:
     return np.asarray(cells[facets[:, :1], FACES[facets[:, 1]]])
 
 
-def mesh_screen(content: ReadTables) -> RenderableType:
-    """Numbers of the whole, then a line a body.
+@attrs.frozen(eq=False, repr=False, slots=False)
+class Meshes(Answer):
+    """Meshes of the bodies of a scene.
 
-    Parameters
+    Attributes
     ----------
-    content : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds and files
+    content : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
+    meshes : by name of the body;  form : what writes them;  drawn : whether ``save`` also writes mesh.png
     """
-    count = len(content["bodies"])
-    size, jacobian = content["element_size_m"], content["scaled_jacobian"]
-    rows: list[Row] = [
-        (f"Mesh by '{content['mesher']}'", "", ""),
-        ("hexahedra", str(content["elements"]), "1 body" if count == 1 else f"{count} bodies"),
-        ("nodes", str(content["nodes"]), f"{3 * content['nodes']} degrees of freedom"),
-        ("element edges", f"{1e3 * size['mean']:.3g} mm", f"mean; {1e3 * size['min']:.3g} to {1e3 * size['max']:.3g} mm"),
-    ]
-    patch = content["patch_size_m"]
-    if patch is not None:
-        for name, sizes in patch.items():
+
+    stem: ClassVar[str] = "mesh"
+
+    content: Tables
+    meshes: dict[str, HexMesh]
+    form: Entry
+    drawn: bool
+
+    def to_dict(self) -> Tables:
+        return self.content
+
+    def save(self, folder: str | Path, pictures: bool = True) -> list[Path]:
+        """Write a file for each ring, one for all balls, and the picture.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written, or pyvista is missing.
+        """
+        folder, files = Path(folder), self.content["files"]
+        files.clear()
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise RacewayError(f"`{folder}` cannot be made: {error.strerror}. Choose another with --out.") from None
+        for name, body in _together(self.meshes).items():
+            with blamed(str(self.form), "write()"):
+                writer: Format = self.form.plugin()
+                path = folder / f"{slug(name)}{writer.suffixes[0]}"
+                writer.write(path, body)
+            files.append(str(path))
+        if self.drawn:
+            size = f"{self.content['elements']} hexahedra, {self.content['nodes']} nodes, {len(self.meshes)} bodies"
+            picture = mesh_picture(self.meshes, f"{self.content['title']}\n{size}")
+            files.append(str(write_whole(picture, folder / "mesh.png")))
+        return [Path(file) for file in files]
+
+    def _shown(self) -> tuple[str, list[Row]]:
+        return self.content["title"], self._rows()
+
+    def report(self) -> Iterator[Part]:
+        """Numbers of all bodies, then a line a body."""
+        yield Words(self.content["title"], "bold")
+        yield sections(self._rows())
+
+    def _rows(self) -> list[Row]:
+        content = self.content
+        count = len(content["bodies"])
+        size, jacobian = content["element_size_m"], content["scaled_jacobian"]
+        rows: list[Row] = [
+            (f"Mesh by '{content['mesher']}'", "", ""),
+            ("hexahedra", str(content["elements"]), "1 body" if count == 1 else f"{count} bodies"),
+            ("nodes", str(content["nodes"]), f"{3 * content['nodes']} degrees of freedom"),
+            (
+                "element edges",
+                f"{1e3 * size['mean']:.3g} mm",
+                f"mean; {1e3 * size['min']:.3g} to {1e3 * size['max']:.3g} mm",
+            ),
+        ]
+        for name, sizes in (content["patch_size_m"] or {}).items():
             low, high = (f"{1e3 * sizes[word]:.3g}" for word in ("min", "max"))
             rows.append((f"contact patch, {name}", f"{low} mm", f"to {high} mm, element edges"))
-    rows += [
-        ("scaled Jacobian", f"{jacobian['min']:.3g}", f"smallest; mean {jacobian['mean']:.3g}, 1 is a cube, 0 is flat"),
-        ("aspect", f"{content['aspect']['max']:.3g}", f"largest; mean {content['aspect']['mean']:.3g}"),
-        ("skew", f"{content['skew']['max']:.3g}", f"largest; mean {content['skew']['mean']:.3g}"),
-        ("memory", f"{content['memory_bytes'] / 2**20:.1f} MiB", "points, cells and sets"),
-        ("time", number(content["seconds"], "s", 3), "building the meshes; judging and writing them is apart"),
-        ("Bodies", "", ""),
-    ]
-    bodies = {}
-    for name, body in content["bodies"].items():
-        words = f"hexahedra, {body['nodes']} nodes, scaled Jacobian {body['scaled_jacobian']['min']:.3g} and more"
-        bodies[name] = str(body["elements"]), words
-    rows += [
-        (name, cells, f"each: {words}" if name.startswith("balls") else words) for name, (cells, words) in grouped(bodies)
-    ]
-    return Group(Words(content["title"], "bold"), sections(rows), *written(content["files"]))
+        rows += [
+            ("scaled Jacobian", f"{jacobian['min']:.3g}", f"smallest; mean {jacobian['mean']:.3g}, 1 is a cube, 0 is flat"),
+            ("aspect", f"{content['aspect']['max']:.3g}", f"largest; mean {content['aspect']['mean']:.3g}"),
+            ("skew", f"{content['skew']['max']:.3g}", f"largest; mean {content['skew']['mean']:.3g}"),
+            ("memory", f"{content['memory_bytes'] / 2**20:.1f} MiB", "points, cells and sets"),
+            ("time", number(content["seconds"], "s", 3), "building the meshes; judging and writing them is apart"),
+            ("Bodies", "", ""),
+        ]
+        bodies = {}
+        for name, body in content["bodies"].items():
+            words = f"hexahedra, {body['nodes']} nodes, scaled Jacobian {body['scaled_jacobian']['min']:.3g} and more"
+            bodies[name] = str(body["elements"]), words
+        for name, (cells, words) in grouped(bodies):
+            rows.append((name, cells, f"each: {words}" if name.startswith("balls") else words))
+        return rows
 
 
-@click.command(short_help="Mesh the bodies of a scene: counts, quality, files.")
-@on_scene
-@out_folder
-@click.option(
-    "--format",
-    "form",
-    default="vtu",
-    show_default=True,
-    metavar="NAME",
-    help="Format of the files by its name or ending: vtu, abaqus or inp; plug-ins bring more.",
-)
-@click.option("--picture", is_flag=True, help="Also draw the bearing, cut open, as mesh.png; needs no display.")
-@plugin_files
-@common
 def mesh(
-    scene: Path,
-    changes: tuple[str, ...],
-    out: Path | None,
-    form: str,
-    picture: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
+    scene: Scene, form: str = "vtu", picture: bool = False, *, plugins: Iterable[Path] = (), progress: OnProgress
+) -> Meshes:
     """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each ring, one for all balls.
 
     A scene without a table [mesh] gets the mesher `structured` with its defaults.
 
-    \b
-    Example:
-      raceway mesh examples/b7206_article_mesh.toml --picture
+    Parameters
+    ----------
+    scene : a scene
+    form : format of the files by its name or ending: vtu, abaqus or inp; plug-ins bring more
+    picture : also draw the bearing, cut open, as mesh.png; needs no display
+    plugins : files of one-off plug-ins that the scene uses
+    progress : called as ``progress(what, done, total)``
+
+    Raises
+    ------
+    SceneError
+        Meshes that need more memory than there is.
+    RacewayError
+        A format that only reads, or a package that is missing.
     """
+    from raceway.bodies.mesh import mesh_scene
+    from raceway.core.mesh.quality import summary
+
     registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    folder = writable(out or RESULTS / slug(loaded.title))
-    tell_faults(registry)
     written = _format(registry, form)
     if picture and find_spec("pyvista"):
         refuse_pictures(_OTHERWISE)
-    with ProgressBar("meshing") as progress:
-        from raceway.bodies.mesh import mesh_scene
-
-        start = time.perf_counter()
-        if loaded.mesh is None:
-            loaded = attrs.evolve(loaded, mesh=registry.find("mesher", "structured").plugin())
-        try:
-            meshes = mesh_scene(loaded)
-        except MemoryError:
-            raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
-        seconds = time.perf_counter() - start
-        from raceway.core.mesh.quality import summary
-
-        progress("judging the cells", 0, 0)
-        content: Tables = {"title": loaded.title, "mesher": loaded.mesh.name, "seconds": seconds, **summary(meshes)}
-        files: list[str] = []
-        failed = attempt(lambda: _write(written, meshes, folder, progress), files)
-        if picture and failed is None:
-            progress("drawing", 0, 0)
-            failed = attempt(lambda: [_draw(meshes, content, folder)], files)
-    content["files"] = files
-
-    def screen() -> RenderableType:
-
-        return mesh_screen(content)
-
-    show(content, as_json, failed, screen)
-    return 0
+    progress("meshing", 0, 0)
+    start = time.perf_counter()
+    if scene.mesh is None:
+        scene = attrs.evolve(scene, mesh=registry.find("mesher", "structured").plugin())
+    try:
+        meshes = mesh_scene(scene)
+    except MemoryError:
+        raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
+    seconds = time.perf_counter() - start
+    progress("judging the cells", 0, 0)
+    content: Tables = {"title": scene.title, "mesher": scene.mesh.name, "seconds": seconds, **summary(meshes), "files": []}
+    return Meshes(content, meshes, written, picture)
 
 
 def _format(registry: Registry, word: str) -> Entry:
@@ -218,24 +232,7 @@ def _format(registry: Registry, word: str) -> Entry:
     return form
 
 
-def _write(form: Entry, meshes: Tables, folder: Path, progress: ProgressBar) -> list[Path]:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RacewayError(f"`{folder}` cannot be made: {error.strerror}. Choose another with --out.") from None
-    paths = []
-    parts = _together(meshes)
-    for count, (name, body) in enumerate(parts.items()):
-        progress(f"writing {name}", count, len(parts))
-        with blamed(str(form), "write()"):
-            writer: Format = form.plugin()
-            path = folder / f"{slug(name)}{writer.suffixes[0]}"
-            writer.write(path, body)
-        paths.append(path)
-    return paths
-
-
-def _together(meshes: Tables) -> Tables:
+def _together(meshes: dict[str, HexMesh]) -> dict[str, HexMesh]:
     """Bodies by the name of their file: all balls are one mesh, in which each is a set of nodes of its own name."""
     from raceway.core.mesh.hex_mesh import merged
 
@@ -243,8 +240,3 @@ def _together(meshes: Tables) -> Tables:
     if len(balls) < 2:
         return meshes
     return {**{name: body for name, body in meshes.items() if name not in balls}, "balls": merged(balls)}
-
-
-def _draw(meshes: Tables, content: Tables, folder: Path) -> Path:
-    size = f"{content['elements']} hexahedra, {content['nodes']} nodes, {len(meshes)} bodies"
-    return write_whole(mesh_picture(meshes, f"{content['title']}\n{size}"), folder / "mesh.png")

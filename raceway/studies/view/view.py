@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -17,10 +17,13 @@ from raceway.bodies.mesh import mesh_scene
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact, Shown, largest_facts, race_words
+from raceway.framework.shown import Fact, largest_facts, race_words
+from raceway.out.answer import Answer, Part
 from raceway.out.picture import figure_png, given_axes
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K, X
+from raceway.out.table import sections
+from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
@@ -43,12 +46,12 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class View(Shown):
+class View(Answer):
     """Pictures of one bearing.
 
     Attributes
     ----------
-    content : what is shown: the largest load [N] and pressure [Pa], warnings
+    content : what is shown: the largest load [N] and pressure [Pa], warnings; the files that ``save`` wrote
     pictures : name -> content of the file
 
     Examples
@@ -59,6 +62,8 @@ class View(Shown):
     (b'\\x89PNG', [])
     """
 
+    stem: ClassVar[str] = "view"
+
     content: Tables
     pictures: dict[str, bytes]
 
@@ -67,15 +72,17 @@ class View(Shown):
         """What was written; empty where no folder was given."""
         return [Path(name) for name in self.content["files"]]
 
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write all pictures into a folder.
+    def save(self, folder: str | Path, pictures: bool = True) -> list[Path]:
+        """Write all pictures into a folder, and nothing else.
 
         Raises
         ------
         RacewayError
             A folder that cannot be written.
         """
-        return [write_whole(content, Path(folder) / name) for name, content in self.pictures.items()]
+        files = [write_whole(content, Path(folder) / name) for name, content in self.pictures.items()]
+        self.content["files"] = [str(file) for file in files]
+        return files
 
     def to_dict(self) -> Tables:
         """What is shown, as plain tables; the pictures by their files."""
@@ -109,6 +116,15 @@ class View(Shown):
         facts = [*largest_facts(shown, shown["shown"]), ("pictures", "", ", ".join(self.pictures))]
         where = [("written", "", str(path)) for path in self.files] or [("in memory", "", "save(folder) writes them")]
         return shown["title"], [*facts, *where, *(("warning", "", text) for text in shown["warnings"])]
+
+    def report(self) -> Iterator[Part]:
+        shown = self.content
+        rows: list[Fact] = [(f"Pictures {shown['shown']}", "", ""), *largest_facts(shown, shown["shown"])]
+        if shown["assumed"]:
+            rows.append(("rings drawn with usual", "", f"{', '.join(shown['assumed'])}: the scene does not say"))
+        yield Words(shown["title"], "bold")
+        yield sections(rows)
+        yield from (Words(f"note: {text}", "yellow") for text in shown["warnings"])
 
     def _repr_html_(self) -> str:
         image = base64.b64encode(self.pictures["bearing.png"]).decode()
@@ -314,13 +330,14 @@ def view(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> View:
-    """Draw a bearing: cut open with its ball loads, contact ellipses, ball loads by azimuth, the orbit, the mesh.
+    """Compute one scene and draw it: the bearing cut open with its ball loads, contact ellipses with their pressure, ball
+    loads by azimuth, the orbit, the mesh of elastic bodies. Needs no display.
 
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables, which is run first; or the Result of a run
     out : folder of the pictures; None: they are kept in memory
-    page : also view.html, the bearing to turn about with all pictures, which opens without a network
+    page : also write view.html: the bearing to turn about, tables, all pictures; it opens without a network
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -353,4 +370,6 @@ def view(
         result = source if isinstance(source, Result) else run(source, registry_with(plugins), on_progress)
         content, pictures = _draw(result, page, on_progress)
         answer = View(content, pictures)
-        return answer if folder is None else View({**content, "files": list(map(str, answer.save(folder)))}, pictures)
+        if folder is not None:
+            answer.save(folder)
+        return answer
