@@ -136,7 +136,14 @@ class Command:
         flags = (f"--{about.flag or parameter.name.replace('_', '-')}", parameter.name)
         text = about.help or _option_help(words)
         if kind == "bool":
-            return click.option(*flags, is_flag=True, help=text)
+            name = flags[0].removeprefix("--")
+            return click.option(
+                f"--{name}/--no-{name}" if default is True else flags[0],
+                parameter.name,
+                default=default,
+                is_flag=True,
+                help=text,
+            )
         if "Iterable[" in kind:
             return click.option(
                 *flags, multiple=True, metavar=about.metavar, help=f"{text.removesuffix('.')}; repeat for more."

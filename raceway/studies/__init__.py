@@ -1,6 +1,6 @@
 """Many runs, or many numbers, made into one answer.  Studies call ``raceway.pipeline.run`` and never reach into a time loop.
 
-stability, verify, view    one folder a command, with what it prints and draws
+stability, verify, view    one folder a command, with its answer and pictures
 rotor       coefficients for ROSS, Nastran and Ansys, as CSV and JSON; the bearing in a rotor
 fit         numbers of a scene from measured data, with what these do not determine
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
@@ -11,8 +11,7 @@ shaft       the rotor that ``rig`` and ``measured`` set the bearing in
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -22,30 +21,33 @@ if TYPE_CHECKING:
     import click
 
 
-def _study(name: str, about: str, place: str) -> type:
-    """The plug-in of a study.
+@attrs.frozen
+class Article:
+    """``raceway study article``."""
 
-    Parameters
-    ----------
-    place : module and name of its command, which is imported when it is asked for
-    """
-    module, _, function = place.partition(":")
+    name: ClassVar[str] = "article"
+    help: ClassVar[str] = "The article's figures 9 to 12 and a verdict on each of its claims."
 
-    def command(self: object) -> click.Command:
-        found: click.Command = getattr(import_module(module), function)
-        return found
+    def command(self) -> click.Command:
+        from raceway.studies.article.command import article
 
-    content = {"__doc__": f"``raceway study {name}``.", "name": name, "help": about, "command": command}
-    return attrs.make_class(name.capitalize(), [], class_body=content, frozen=True)
+        return article
+
+
+@attrs.frozen
+class Rig:
+    """``raceway study rig``."""
+
+    name: ClassVar[str] = "rig"
+    help: ClassVar[str] = "A test rig's signals, and the bearing read back from them."
+
+    def command(self) -> click.Command:
+        from raceway.cli.command import Command
+
+        example = "raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03"
+        return Command("rig", "raceway.studies.rig.study:rig", self.help, example, folder="-rig").click()
 
 
 @hookimpl
 def raceway_studies() -> list[type]:
-    return [
-        _study(
-            "article",
-            "The article's figures 9 to 12 and a verdict on each of its claims.",
-            "raceway.studies.article.command:article",
-        ),
-        _study("rig", "A test rig's signals, and the bearing read back from them.", "raceway.studies.rig.page:rig"),
-    ]
+    return [Article, Rig]

@@ -28,7 +28,7 @@ from raceway.studies.fit.rig import coefficients
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise
-from raceway.studies.rig.study import study
+from raceway.studies.rig.study import rig as rig_study
 from raceway.studies.shaft import balance, beam, bearing, rotor, shaft
 from raceway.testing import b7206c, default_registry
 from validation.shaker import hammer_record
@@ -51,7 +51,7 @@ ANGLE = "bearing.contact_angle_deg"
 def studied():
     """The study of six points, and its processor time."""
     begun = working_process_time()
-    found = study(SCENE, RIG, default_registry())
+    found = rig_study(SCENE)
     return found, working_process_time() - begun
 
 

@@ -1,41 +1,19 @@
-"""``raceway study rig``: the command, its table on the screen, figures and page."""
+"""The rig's study as figures and page."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-import click
 import numpy as np
-from rich.console import Group, RenderableType
 
 from raceway import __version__
-from raceway.cli.frame import (
-    RESULTS,
-    attempt,
-    common,
-    has_matplotlib,
-    keeping,
-    load,
-    on_scene,
-    out_folder,
-    plugin_files,
-    show,
-    show_progress,
-    slug,
-    tell_faults,
-)
-from raceway.framework.registry import registry_with
 from raceway.out.page import Page
 from raceway.out.picture import label_axes, new_figure, save_figure
-from raceway.out.table import rows_table, written
-from raceway.out.wrapping import Words
-from raceway.scene.reading import rig_of
-from raceway.storage.files import writable, write_json
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 from raceway.studies.fit.picture import figures
+from raceway.studies.rig.study import failure_words, point_name, point_row
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,56 +26,6 @@ _COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3")
 _KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "window": "#8a4fa3", "run-out": "#b58a00", "model": "#555f6b"}  # fmt: skip
 #: Errors below this are drawn at the edge.
 _LEAST_PERCENT = 1e-4
-
-
-@click.command(short_help="A test rig's signals, and the bearing read back from them.")
-@on_scene
-@out_folder
-@click.option("--signals/--no-signals", default=True, help="Write the signals as CSV (default).")
-@click.option("--pictures/--no-pictures", default=True, help="Write figures as PNG and the page rig.html (default).")
-@plugin_files
-@common
-def rig(
-    scene: Path,
-    changes: tuple[str, ...],
-    out: Path | None,
-    signals: bool,
-    pictures: bool,
-    plugins: tuple[Path, ...],
-    as_json: bool,
-) -> int:
-    """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
-
-    The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
-    Writes rig.json, rig.html, figures and the signals, which `raceway identify` reads. Exit code 1 when a point has no motion.
-    Finished points are stored in DIR/rig-rows.jsonl and reused.
-
-    \b
-    Example:
-      raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03
-    """
-    registry = registry_with(plugins)
-    loaded = load(scene, changes, registry)
-    inputs = rig_of(loaded)
-    folder = writable(out or RESULTS / f"{slug(loaded.title)}-rig")
-    pictures = pictures and has_matplotlib()
-    tell_faults(registry)
-    rows = folder / "rig-rows.jsonl"
-    with keeping("points", rows):
-        with show_progress() as progress:
-            from raceway.studies.rig.study import study
-
-            result = study(loaded, inputs, registry, progress, rows)
-        content, files = result.to_dict(), list[str]()
-        failed = attempt(lambda: [write_json(content, folder / "rig.json")], files) or result.fault
-        if pictures and failed is None:
-            failed = attempt(lambda: _write_page(result, folder), files)
-        if signals and failed is None:
-            records = list[str]()
-            failed = attempt(lambda: result.write_signals(folder), records)
-            files += [f"{len(records)} records, signals-*.csv and slow-roll-*.csv"] if records else []
-    show(content, as_json, failed, lambda: _rig_screen(content, files))
-    return 1 if result.failed else 0
 
 
 def procedures(study: RigStudy) -> Figure:
@@ -150,45 +78,7 @@ def causes(study: RigStudy) -> Figure:
     return figure
 
 
-#: Corrections of the article's kind that the screen shows; all of them are in rig.json.
-_SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
-
-
-def _rig_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """A row for each speed and load: the true bearing, the beam inverted, the article's procedure."""
-    worst, rows = content["worst"], []
-    for row in content["rows"]:
-        ratios = {reading["correction"]: reading["over_true"] for reading in row["printed"]}
-        cells = {
-            name: cell for name, cell in _point_row(row).items() if name not in ("force N", "over m e w²/2", "sensor µm")
-        }
-        rows.append(cells | {words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()})
-    causes = [
-        {"cause": cause["kind"], "what": cause["what"], "error %": f"{100 * cause['error']:+.3g}"}
-        for cause in content["worst_by_cause"]
-    ]
-    speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in content["critical_speed_rpm"].items())
-    return Group(
-        Words(content["title"], "bold"),
-        Words(f"first critical speed {speeds}", "dim"),
-        rows_table(rows),
-        Words(
-            "bearing: its own motion; identified: by the inverted beam, ± at 95 %; printed, derived: K by such a correction over the true K"
-        ),
-        Words(
-            f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
-        ),
-        rows_table(causes, "Largest error of K by one cause at a time"),
-        *(Words(f"failed: {_failed(point)}", "red") for point in content["failed"]),
-        *written(files),
-    )
-
-
-def _failed(point: ReadTables) -> str:
-    return f"{point['speed_rpm']:.0f} r/min, {point['axial_n']:.0f} N: {point['reason']}"
-
-
-def _write_page(study: RigStudy, folder: Path) -> list[Path]:
+def write_page(study: RigStudy, folder: Path) -> list[Path]:
     """rig.html and its figures as PNG.
 
     Raises
@@ -231,12 +121,12 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         kind="lead",
     )
     out.rows(
-        list(map(_point_row, rows)), "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
+        list(map(point_row, rows)), "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
     )
     alternative = "K over speed for each axial load, true and by each procedure"
     out.figures([(drawn["procedures"], alternative, "K by each procedure")])
     for point in study.failed:
-        out.text(f"Failed: {_failed(point)}", kind="note")
+        out.text(f"Failed: {failure_words(point)}", kind="note")
     out.section("The article's procedure")
     out.text(
         "Detrend, denoise, whole-turn Fourier transform, F = m e w²/2, less the shaft's deflection as printed, "
@@ -244,7 +134,7 @@ def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
         "beam bends by m e w² a (3 L² - 4 a²) / (48 E I), which is the printed formula for an L of twice the span; the bearing's "
         "force is amplified, too, because the bow moves the disc outwards.",
     )
-    names = [_name(row) for row in rows]
+    names = [point_name(row) for row in rows]
     ratios = zip(*(row["printed"] for row in rows), strict=True)
     lines = [[readings[0]["correction"], *(f"{reading['over_true']:.3f}" for reading in readings)] for readings in ratios]
     out.table(["correction", *names], lines, "K over the true K, by the correction for the shaft")
@@ -271,23 +161,4 @@ def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str
         [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]
         for cause in causes_of_points
     ]
-    out.table(["cause", *map(_name, rows)], lines, "Error of K [%] by one cause at a time")
-
-
-def _name(row: ReadTables) -> str:
-    return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
-
-
-def _point_row(row: ReadTables) -> Tables:
-    true, identified = row["true"], row["identified"]["identification"]
-    return {
-        "point": _name(row),
-        "force N": f"{true['force_n']:.4g}",
-        "over m e w²/2": f"{true['force_over_half_unbalance']:.4g}",
-        "bearing µm": f"{1e6 * true['deflection_m']:.4g}",
-        "sensor µm": f"{1e6 * true['sensor_m']:.4g}",
-        "true K N/µm": f"{1e-6 * true['equivalent_stiffness']:.3f}",
-        "identified": f"{1e-6 * identified['equivalent_stiffness']:.3f}",
-        "±": f"{1e-6 * identified['equivalent_stiffness_error']:.3f}",
-        "off %": f"{100 * row['identified']['error']:.3f}",
-    }
+    out.table(["cause", *map(point_name, rows)], lines, "Error of K [%] by one cause at a time")

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from cmath import exp
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from math import pi, radians
 from pathlib import Path
+from typing import ClassVar
 
 import attrs
 
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError
-from raceway.framework.registry import Registry
+from raceway.framework.registry import Registry, registry_with
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
 from raceway.out.quantities import K_ERROR, C, K
+from raceway.out.table import rows_table
+from raceway.out.wrapping import Words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import RowStore, row_key
+from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Rig
 from raceway.storage.files import without_nan
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.fit.identify import Identified, identify_recording
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.signals import Recording, write_recording
@@ -95,10 +101,17 @@ class Point:
         }
 
 
-@attrs.frozen(eq=False)
-class RigStudy:
-    """All points, with the rig and its critical speeds [r/min] by axial load; ``failed``: points without a motion, and
-    why; ``fault``: why points could not be stored."""
+@attrs.frozen(eq=False, repr=False, slots=False)
+class RigStudy(Answer):
+    """All points, with the rig and its critical speeds [r/min] by axial load.
+
+    Attributes
+    ----------
+    failed : points without a motion, and why;  fault : why points could not be stored
+    signals : whether ``save`` writes the records
+    """
+
+    stem: ClassVar[str] = "rig"
 
     title: str
     scene: Scene
@@ -107,6 +120,14 @@ class RigStudy:
     points: list[Point]
     failed: list[Tables]
     fault: RacewayError | None = None
+    signals: bool = True
+
+    @property
+    def passed(self) -> bool:
+        return not self.failed
+
+    def failure(self) -> RacewayError | None:
+        return self.fault
 
     def to_dict(self) -> Tables:
         """Everything but the signals, as plain tables for JSON."""
@@ -140,30 +161,106 @@ class RigStudy:
         noisy = max(abs(point.identified.state.stiffness / point.state.stiffness - 1.0) for point in self.points)
         return {"clean": clean, "disturbed": noisy}
 
-    def write_signals(self, folder: Path) -> list[Path]:
-        """The records as CSV files.
+    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+        """Write rig.json, the page with its figures where ``pictures`` asks for them, and the records as CSV files.
 
         Raises
         ------
         RacewayError
-            A folder that cannot be written.
+            A folder that cannot be written, or matplotlib is missing.
         """
-        files = []
-        for point in self.points:
-            files.append(write_recording(point.signals, folder / f"signals-{point.name}.csv"))
-            files.append(write_recording(point.slow, folder / f"slow-roll-{point.name}.csv"))
+        from raceway.studies.rig.page import write_page
+
+        folder, files = Path(folder), super().save(folder)
+        files += write_page(self, folder) if pictures else []
+        for point in self.points if self.signals else ():
+            for name, recording in (("signals", point.signals), ("slow-roll", point.slow)):
+                files.append(write_recording(recording, folder / f"{name}-{point.name}.csv"))
         return files
 
+    def _shown(self) -> tuple[str, list[Fact]]:
+        facts: list[Fact] = [
+            (
+                point.name,
+                f"{1e-6 * point.state.stiffness:.4g} N/µm",
+                f"true K; identified {1e-6 * point.identified.state.stiffness:.4g}",
+            )
+            for point in self.points
+        ]
+        return self.title, facts + [("failed", "", failure_words(point)) for point in self.failed]
 
-def study(
-    scene: Scene, rig: Rig, registry: Registry, on_progress: OnProgress | None = None, store: Path | None = None
+    def report(self) -> Iterator[Part]:
+        """A row for each speed and load: the true bearing, the beam inverted, the article's procedure; errors by their causes."""
+        content, rows = self.to_dict(), []
+        for row in content["rows"]:
+            ratios = {reading["correction"]: reading["over_true"] for reading in row["printed"]}
+            cells = {
+                name: cell for name, cell in point_row(row).items() if name not in ("force N", "over m e w²/2", "sensor µm")
+            }
+            rows.append(cells | {words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()})
+        worst = content["worst"]
+        speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in self.critical.items())
+        yield Words(self.title, "bold")
+        yield Words(f"first critical speed {speeds}", "dim")
+        yield rows
+        yield "bearing: its own motion; identified: by the inverted beam, ± at 95 %; printed, derived: K by such a correction over the true K"
+        yield f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
+        causes = [
+            {"cause": cause["kind"], "what": cause["what"], "error %": f"{100 * cause['error']:+.3g}"}
+            for cause in content["worst_by_cause"]
+        ]
+        yield rows_table(causes, "Largest error of K by one cause at a time")
+        yield from (Words(f"failed: {failure_words(point)}", "red") for point in self.failed)
+
+
+#: Corrections of the article's kind that the screen shows; all of them are in rig.json.
+_SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and force": "derived"}
+
+
+def failure_words(point: ReadTables) -> str:
+    return f"{point['speed_rpm']:.0f} r/min, {point['axial_n']:.0f} N: {point['reason']}"
+
+
+def point_name(row: ReadTables) -> str:
+    return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
+
+
+def point_row(row: ReadTables) -> Tables:
+    true, identified = row["true"], row["identified"]["identification"]
+    return {
+        "point": point_name(row),
+        "force N": f"{true['force_n']:.4g}",
+        "over m e w²/2": f"{true['force_over_half_unbalance']:.4g}",
+        "bearing µm": f"{1e6 * true['deflection_m']:.4g}",
+        "sensor µm": f"{1e6 * true['sensor_m']:.4g}",
+        "true K N/µm": f"{1e-6 * true[K.name]:.3f}",
+        "identified": f"{1e-6 * identified[K.name]:.3f}",
+        "±": f"{1e-6 * identified[K_ERROR.name]:.3f}",
+        "off %": f"{100 * row['identified']['error']:.3f}",
+    }
+
+
+def rig(
+    scene: Scene,
+    signals: bool = True,
+    *,
+    kept: Path | None = None,
+    plugins: Sequence[Path] = (),
+    progress: OnProgress | None = None,
 ) -> RigStudy:
-    """Simulate the rig and read its signals.
+    """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
+
+    The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
+    Writes rig.json, rig.html, figures and the signals, which `raceway fit` reads. Exit code 1 when a point has no motion.
+    Finished points are stored in DIR/rig-rows.jsonl and reused.
 
     Parameters
     ----------
-    on_progress : called as ``on_progress(what, done, total)`` after each point; an exception stops the study
-    store : file that finished points are stored in and taken from
+    scene : with a table [rig]
+    signals : write the signals as CSV (default)
+    kept : file that finished points are stored in and taken from
+    plugins : files of one-off plug-ins that the scene uses
+    progress : called as ``progress(what, done, total)`` after each point; an exception stops the study
 
     Raises
     ------
@@ -172,28 +269,29 @@ def study(
     ConvergenceError
         No point at which shaft and bearing find a common motion.
     """
-    grid = list(enumerate((axial, rpm) for axial in rig.axial_loads for rpm in rig.speeds_rpm))
-    bearings = {axial: bearing(scene, axial, registry) for axial in rig.axial_loads}
+    inputs, registry = rig_of(scene), registry_with(plugins)
+    grid = list(enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm))
+    bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
     supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
-    critical = {name: critical_speed(rig, tested) * 30.0 / pi for name, tested in supports.items()}
+    critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
     points: dict[int, Point] = {}
 
-    def compute(inputs: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
+    def compute(numbered: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
         """The bearing's answers: nearly all of the time; signals, and what is read from them, follow again from those."""
-        k, (axial, rpm) = inputs
+        k, (axial, rpm) = numbered
         tested = bearings[axial].anew()
         try:
-            points[k] = _point(rig, tested, rpm, k)
+            points[k] = _point(inputs, tested, rpm, k)
         except (ConvergenceError, BeyondPlanError) as why:
             return {"answers": [], "reason": str(why)}
         return {"answers": tested.answers, "reason": ""}
 
-    table, items = attrs.asdict(rig), []
+    table, items = attrs.asdict(inputs), []
     for k, (axial, rpm) in grid:
         key = row_key(scene, registry, ["rig", table, axial, rpm, k])
         items.append(Item(key, f"{rpm:.0f} r/min, {axial:.0f} N", (k, (axial, rpm))))
-    finished = RowStore(store)
-    rows, _ = work_through(compute, items, finished, local(registry, 0), registry, on_progress=on_progress)
+    finished = RowStore(kept)
+    rows, _ = work_through(compute, items, finished, local(registry, 0), registry, on_progress=progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
     failed = []
@@ -201,9 +299,9 @@ def study(
         if row["reason"]:
             failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
         elif k not in points:
-            points[k] = _point(rig, bearings[axial].anew(row["answers"]), rpm, k)
+            points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
     ordered = [points[k] for k in sorted(points)]
-    return RigStudy(scene.title, scene, rig, critical, ordered, failed, finished.fault)
+    return RigStudy(scene.title, scene, inputs, critical, ordered, failed, finished.fault, signals)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> Point:
