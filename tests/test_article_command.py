@@ -24,7 +24,7 @@ from raceway.studies.article.design import (
     shaft_tilt_stiffness,
 )
 from raceway.studies.article.figures import Picture, drawings
-from raceway.studies.article.page import page, write
+from raceway.studies.article.page import page
 from tests.test_commands import SMALL
 from validation.article_study import curves, row, study
 from validation.command_line import EXAMPLES, invoke
@@ -105,7 +105,7 @@ def made_page(monkeypatch):
 
     def make(k, bodies=("rigid", "condensed"), **options) -> str:
         found = study(curves(k, bodies, **options))
-        return page(found, drawings(found), "raceway study article").html()
+        return page(found, drawings(found)).html()
 
     return make
 
@@ -169,7 +169,7 @@ def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_p
     found.scan[400.0][1] = row(15000.0, 400.0, None, "failed", "no motion, says the scan")
     found = attrs.evolve(found, rig=(*found.rig[1:], {**found.rig[0], **row(11000.0, 400.0, None, "refused", "not so")}))
     assert [one["reason"] for one in found.failed] == ["not so", "no motion, says the scan"]
-    write(found, tmp_path, False)
+    found.save(tmp_path)
     with (tmp_path / "tilt-stiffness.csv").open(encoding="utf-8") as file:
         assert [line["k_ratio"] == "" for line in csv.DictReader(file)] == [True] + [False] * 50
     for path in tmp_path.glob("*.csv"):

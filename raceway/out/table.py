@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeVar
@@ -65,6 +67,15 @@ def micro(text: str) -> str:
 def written(files: Sequence[str]) -> list[RenderableType]:
     """The files' names, each unbroken on its line, so that it can be copied."""
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
+
+
+def csv_text(rows: Sequence[ReadTables]) -> str:
+    """A table as CSV, with every key of any row as a column."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
 
 
 def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:

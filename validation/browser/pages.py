@@ -26,7 +26,7 @@ def _article(folder: Path) -> Path:
     from validation.article_study import curves, study
 
     found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
-    return page(found, drawings(found), "raceway study article").write(folder / "article.html")
+    return page(found, drawings(found)).write(folder / "article.html")
 
 
 def _article_elastic(folder: Path) -> Path:

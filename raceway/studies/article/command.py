@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -28,12 +29,13 @@ from raceway.cli.frame import (
     slug,
     tell_faults,
 )
-from raceway.errors import ConvergenceError, Mistake, SceneError
+from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
+    from raceway.out.answer import Answer
     from raceway.out.progress import ProgressBar
     from raceway.storage.tables import Tables
 
@@ -105,61 +107,50 @@ def article(options: ArticleOptions) -> int:
     """  # fmt: skip
     context, elastic = click.get_current_context(), options.bodies == "elastic"
     _refuse_unused(context, elastic)
-    registry, command = registry_with(options.plugins), _command(context)
+    registry = registry_with(options.plugins)
     scene = options.scene or Path(__file__).resolve().parents[2] / "data" / f"article{'_elastic' if elastic else ''}.toml"
     tables, mistakes = changed_tables(scene, options.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
+    run = (_elastic if elastic else _article)(options, tables)
     name = "article-elastic" if elastic else "article"
-    study = (_elastic if elastic else _article)(options, tables, registry)
     folder = writable(options.out or RESULTS / (name if options.scene is None else f"{slug(str(tables['title']))}-{name}"))
     pictures = options.pictures and has_matplotlib()
     tell_faults(registry)
     rows = folder / f"{name}-rows.jsonl"
     with keeping("runs" if elastic else "curves", rows), show_progress() as progress:
-        result, write, screen = study(folder if pictures else None, rows, progress)
+        answer = run(folder if pictures else None, rows, registry, options.plugins, progress, _command(context))
         progress("writing", 0, 0)
-        content, files = result.to_dict(), list[str]()
-        failed = attempt(lambda: write(result, folder, pictures, command), files) or result.fault
-    lost = ("failed", "refused") if elastic else ("failed",)
-    if failed is None and all(row["status"] in lost for row in content["rows"]):
-        failed = ConvergenceError(f"every run failed; the first reason: {content['rows'][0]['reason']}")
-    show(content, options.as_json, failed, lambda: screen(content, files))
+        files: list[str] = []
+        failed = attempt(lambda: answer.save(folder, pictures), files) or answer.failure()
+    show(answer.to_dict(), options.as_json, failed, lambda: answer.screen(files))
     return 0
 
 
-#: Runs a study: where the section is drawn, file of finished rows, progress -> result, and what writes and shows it.
-Study = Callable[[Path | None, Path, "ProgressBar"], tuple[Any, Callable[..., list[Path]], Callable[..., object]]]
+#: Runs a study: where the section is drawn, file of finished rows, registry, plug-in files, progress, what makes the page again.
+Study = Callable[[Path | None, Path, "Registry", tuple[Path, ...], "ProgressBar", str], "Answer"]
 
 
-def _article(options: ArticleOptions, tables: Tables, registry: Registry) -> Study:
+def _article(options: ArticleOptions, tables: Tables) -> Study:
     """Rigid and condensed bodies; mistakes are refused before anything is loaded that computes."""
     from raceway.studies.article.design import design
 
     kinds = ("rigid", "condensed") if options.bodies == "both" else (options.bodies,)
     runs = design(tables, options.speeds, options.axial, options.shaft, kinds, options.friction)
 
-    def study(_folder: Path | None, rows: Path, progress: ProgressBar) -> Any:
-        from raceway.studies.article.page import article_screen, write
+    def study(_folder: Path | None, *given: Any) -> Answer:
         from raceway.studies.article.study import article
 
-        return article(runs, options.processes, rows, registry, options.plugins, progress), write, article_screen
+        return article(runs, options.processes, *given)
 
     return study
 
 
-def _elastic(options: ArticleOptions, tables: Tables, registry: Registry) -> Study:
+def _elastic(options: ArticleOptions, tables: Tables) -> Study:
     """Elastic bodies beside the others."""
     from raceway.studies.article.elastic import TURNS, design, elastic_article
 
-    runs = design(tables, options.friction, TURNS if options.turns is None else options.turns)
-
-    def study(folder: Path | None, rows: Path, progress: ProgressBar) -> Any:
-        from raceway.studies.article.elastic_page import elastic_screen, write
-
-        return elastic_article(runs, folder, rows, registry, options.plugins, progress), write, elastic_screen
-
-    return study
+    return partial(elastic_article, design(tables, options.friction, TURNS if options.turns is None else options.turns))
 
 
 #: Options that one choice of --bodies has no use for, with the reason.

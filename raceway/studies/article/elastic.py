@@ -8,18 +8,22 @@ from __future__ import annotations
 import gc
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
 from raceway import make_plan
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.registry import Registry, default_registry
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
 from raceway.out.progress import RemainingTime
 from raceway.out.quantities import C, K, Z
+from raceway.out.table import rows_table
+from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import tables_at
@@ -363,15 +367,18 @@ def _over(value: float, reference: float) -> float | None:
     return value / reference - 1.0 if reference else None
 
 
-@attrs.frozen(eq=False, slots=False)
-class ElasticArticle:
+@attrs.frozen(eq=False, repr=False, slots=False)
+class ElasticArticle(Answer):
     """The study's rows, with their differences from Hertz and from condensed bodies.
 
     Attributes
     ----------
     rows : of ``design.runs()``, in their order;  seconds, cpu_s : wall and processor time of this command
     reused : rows that were stored before;  fault : why rows could not be stored; None where they were
+    command : what makes the page again
     """
+
+    stem: ClassVar[str] = "article-elastic"
 
     title: str
     design: Design
@@ -380,6 +387,7 @@ class ElasticArticle:
     cpu_s: float
     reused: int
     fault: RacewayError | None = None
+    command: str = "raceway study article --bodies elastic"
 
     @cached_property
     def of_run(self) -> dict[Run, Tables]:
@@ -424,6 +432,53 @@ class ElasticArticle:
         )
         return content
 
+    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+        """Write JSON and CSV, and where ``pictures`` asks for them the figures and the page, which comes first.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder or disk that cannot be written.
+        """
+        from raceway.studies.article.elastic_page import columns, drawings, page
+        from raceway.studies.article.page import write_tables
+
+        folder, content = Path(folder), self.to_dict()
+        drawn = drawings(content) if pictures else []
+        files = write_tables(self.stem, content, {self.stem: columns(content["rows"])}, drawn, folder)
+        if not pictures:
+            return files
+        stresses = [file for row in self.rows for name in row.get("pictures") or [] if (file := folder / name).is_file()]
+        section = next((file.read_bytes() for file in stresses if file.suffix == ".png"), None)
+        return [page(content, drawn, section, self.command).write(folder / "article-elastic.html"), *files, *stresses]
+
+    def failure(self) -> RacewayError | None:
+        if self.fault is None and not self.of_run and all(row["status"] in ("failed", "refused") for row in self.rows):
+            return ConvergenceError(f"every run failed; the first reason: {self.rows[0]['reason']}")
+        return self.fault
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        from raceway.studies.article.elastic_page import in_short
+
+        return self.title, [("", "", words) for words in in_short(self.to_dict())]
+
+    def report(self) -> Iterator[Part]:
+        """What the numbers say, both tables of differences from condensed bodies, failures and cost."""
+        from raceway.studies.article.elastic_page import in_short, tables
+
+        content, runs = self.to_dict(), self.design.runs()
+        yield Words(self.title, "bold")
+        yield from in_short(content)
+        for caption, rows in tables(content).items():
+            yield rows_table(rows, caption)
+        for each, row in zip(runs, self.rows, strict=True):
+            if row["reason"]:
+                yield Words(f"{each.name}: {row['status']}: {row['reason']}", "magenta")
+        if content["elements"]:
+            yield Words(f"elements of elastic bodies: {content['elements']}", "magenta")
+        cost = f"{len(runs)} runs, {self.failed} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
+        yield Words(cost + (f"; {self.reused} rows taken from earlier" if self.reused else ""), "dim")
+
     def _compared(self, run: Run, row: Tables) -> Tables:
         """A row with its run and its differences."""
         table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
@@ -446,6 +501,7 @@ def elastic_article(
     registry: Registry | None = None,
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
+    command: str = "raceway study article --bodies elastic",
 ) -> ElasticArticle:
     """Run the study.
 
@@ -453,6 +509,7 @@ def elastic_article(
     ----------
     folder : where the section through the most loaded contact is drawn; None: it is not
     store : file that finished rows are stored in and taken from; what this machine refused is tried again
+    command : what makes the page again
 
     Raises
     ------
@@ -482,8 +539,8 @@ def elastic_article(
         return row_of(scenes[k], registry, progress, folder if k == drawn else None)
 
     rows, reused = work_through(compute, items, finished, local(registry, 0), registry, plugins)
-    taken = time.monotonic() - begun, time.process_time() - cpu
-    return ElasticArticle(scenes[0].title, design, rows, *taken, reused, finished.fault)
+    spent = time.monotonic() - begun, time.process_time() - cpu
+    return ElasticArticle(scenes[0].title, design, rows, *spent, reused, finished.fault, command)
 
 
 def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:

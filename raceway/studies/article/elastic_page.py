@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from rich.console import Group, RenderableType
 
 from raceway.out.page import Cell, Page
-from raceway.out.table import rows_table, written
-from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.elastic import RACES
 from raceway.studies.article.figures import Panel, Picture, finish
-from raceway.studies.article.page import percent, show_picture, shown, write_tables
+from raceway.studies.article.page import percent, show_picture, shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from raceway.studies.article.elastic import ElasticArticle
 
 #: The article's largest deviation of a peak pressure from exact Hertz, section 3.2.
 _ARTICLE_DEVIATION = 0.0242
@@ -29,37 +24,19 @@ _LOOKS = {"elastic": ("#c8501e", "o"), "condensed": ("#0b5fa5", "s"), "rigid": (
 _NAMES = {"ball_loads": "a ball load, over the largest", "x": "x", "y": "y", "kyy": "kyy", "k": "K", "abs_z": "|Z|"}
 
 
-def write(study: ElasticArticle, folder: Path, pictures: bool, command: str) -> list[Path]:
-    """Write everything; the files, the page first.
-
-    Raises
-    ------
-    RacewayError
-        matplotlib is missing, or a folder or disk that cannot be written.
-    """
-    content = study.to_dict()
-    drawn = drawings(content) if pictures else []
-    files = write_tables("article-elastic", content, {"article-elastic": _columns(content["rows"])}, drawn, folder)
-    if not pictures:
-        return files
-    stresses = [folder / name for row in content["rows"] for name in row.get("pictures") or [] if (folder / name).is_file()]
-    section = next((file.read_bytes() for file in stresses if file.suffix == ".png"), None)
-    return [page(content, drawn, section, command).write(folder / "article-elastic.html"), *files, *stresses]
-
-
-def _columns(rows: Sequence[ReadTables]) -> list[Tables]:
+def columns(rows: Sequence[ReadTables]) -> list[Tables]:
     """Flat rows without what is a table in other rows: its columns stay empty where there is none."""
-    flat_rows = [flat(row) for row in rows]
+    flat_rows = [_flat(row) for row in rows]
     inner = {name.rpartition(".")[0] for row in flat_rows for name in row}
     return [{name: value for name, value in row.items() if name not in inner} for row in flat_rows]
 
 
-def flat(table: ReadTables, before: str = "") -> Tables:
+def _flat(table: ReadTables, before: str = "") -> Tables:
     """Numbers and words of nested tables, with their names joined by dots; lists are left to the JSON file."""
     out: Tables = {}
     for name, value in table.items():
         if isinstance(value, dict):
-            out |= flat(value, f"{before}{name}.")
+            out |= _flat(value, f"{before}{name}.")
         elif not isinstance(value, list):
             out[f"{before}{name}"] = value
     return out
@@ -165,7 +142,7 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     footer += "All numbers: article-elastic.json and article-elastic.csv beside this page."
     out = Page("The article’s own model: elastic rings and balls", content["title"], footer)
     drawn = {picture.name: picture for picture in pictures}
-    static, moving = (_of_phase(content, phase) for phase in ("static", "motion"))
+    static = _of_phase(content, "static")
     _opening(out, content)
     out.section("Peak pressures")
     out.text(
@@ -176,9 +153,11 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     out.rows(_pressure_rows(static), caption)
     show_picture(out, drawn, "article-elastic-pressures")
     out.section("Bodies against each other, at rest")
-    out.rows(_rows_at_rest(static, content), _AT_REST.format(**content))
+    at_rest, in_motion = tables(content).items()
+    out.rows(at_rest[1], at_rest[0])
     show_picture(out, drawn, "article-elastic-ball-loads")
-    _motion(out, moving, content)
+    _motion(out, content)
+    out.rows(in_motion[1], in_motion[0])
     show_picture(out, drawn, "article-elastic-stiffness")
     _stresses(out, static, section)
     out.section("Cost")
@@ -198,7 +177,12 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     return out
 
 
-#: Captions of tables that page and screen have.
+def tables(content: ReadTables) -> dict[str, list[Tables]]:
+    """Those of differences from the reference at rest and in motion, by their captions."""
+    rows = _rows_at_rest(_of_phase(content, "static"), content), _rows_in_motion(_of_phase(content, "motion"), content)
+    return {caption.format(**content): lines for caption, lines in zip((_AT_REST, _IN_MOTION), rows, strict=True)}
+
+
 _AT_REST = (
     "Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest"
 )
@@ -219,10 +203,10 @@ def _opening(out: Page, content: ReadTables) -> None:
         f"alone deform. Four load cases at rest; one operating point, {content['speed_rpm']:g} r/min, under both excitations.",
         kind="lead",
     )
-    out.listing(_in_short(content))
+    out.listing(in_short(content))
 
 
-def _in_short(content: ReadTables) -> list[str]:
+def in_short(content: ReadTables) -> list[str]:
     """What the numbers say, as far as runs came to an end."""
     rows, reference = content["rows"], content["reference"]
     elastic = [row for row in rows if row["bodies"] == "elastic" and row["status"] == "completed"]
@@ -295,7 +279,7 @@ def _rows_at_rest(rows: list[Tables], content: ReadTables) -> list[Tables]:
     return lines
 
 
-def _motion(out: Page, rows: list[Tables], content: ReadTables) -> None:
+def _motion(out: Page, content: ReadTables) -> None:
     out.section("In motion")
     out.text(
         f"{content['speed_rpm']:g} r/min, {content['scene']['load']['axial']:g} N, tilt locked, balls with inertia, friction "
@@ -310,7 +294,6 @@ def _motion(out: Page, rows: list[Tables], content: ReadTables) -> None:
             "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Take `--turns 2`.",
             kind="note",
         )
-    out.rows(_rows_in_motion(rows, content), _IN_MOTION.format(**content))
 
 
 def _rows_in_motion(rows: list[Tables], content: ReadTables) -> list[Tables]:
@@ -372,30 +355,3 @@ def _cost_row(row: ReadTables) -> Tables:
         "peak GiB": shown(None if memory is None else memory / 2**30, ".2f"),
         "steps": shown(cost["steps"]), "iterations": shown(cost["newton_iterations"]), "": state,
     }  # fmt: skip
-
-
-def elastic_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """What the numbers say, both tables of differences from condensed bodies, failures and cost.
-
-    Parameters
-    ----------
-    content : what ``--json`` prints;  files : what was written
-    """
-    rows, cost = content["rows"], content["cost"]
-    lines = [
-        f"{row['phase']} {row['case']}, {row['bodies']} bodies: {row['status']}: {row['reason']}"
-        for row in rows
-        if row["reason"]
-    ]
-    lines += [f"elements of elastic bodies: {content['elements']}"] if content["elements"] else []
-    end = f"{content['runs']} runs, {content['failed']} failed; {cost['wall_s']:.0f} s, {cost['cpu_s']:.0f} s of processor time"
-    end += f"; {cost['reused']} rows taken from earlier" if cost["reused"] else ""
-    return Group(
-        Words(content["title"], "bold"),
-        *map(Words, _in_short(content)),
-        rows_table(_rows_at_rest(_of_phase(content, "static"), content), _AT_REST.format(**content)),
-        rows_table(_rows_in_motion(_of_phase(content, "motion"), content), _IN_MOTION.format(**content)),
-        *(Words(line, "magenta") for line in lines),
-        Words(end, "dim"),
-        *written(files),
-    )

@@ -2,56 +2,28 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
-from rich.box import SIMPLE_HEAD
-from rich.console import Group, RenderableType
-from rich.table import Table
-from rich.text import Text
 
 from raceway.out.page import Cell, Page
 from raceway.out.picture import save_figure
-from raceway.out.table import written
-from raceway.out.wrapping import Words
+from raceway.out.table import csv_text
 from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, TILT_WORDS, Setting
-from raceway.studies.article.figures import Picture, drawings, named
-from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED
+from raceway.studies.article.figures import Picture, named
+from raceway.studies.article.rules import KINDS
 from raceway.studies.article.study import SOLVER_SPEEDS
 
 if TYPE_CHECKING:
     from raceway.studies.article.study import Article
 
-#: Kind of a verdict -> tone of its cell, colour on the screen, and words after a count.
-_KINDS = {
-    HOLDS: ("good", "green", "hold"),
-    PARTLY: ("partly", "yellow", "hold only in a region"),
-    NOT: ("bad", "red", "do not hold"),
-    FAILED: ("failed", "magenta", "failed"),
-    UNTESTED: ("partly", "magenta", "cannot be tested"),
-}
 ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads with Rotor Excitation” (Lubricants 2026, 14(3), 128)"
 _DOTS_PER_INCH = 110
-
-
-def write(study: Article, folder: Path, pictures: bool = True, command: str = "raceway study article") -> list[Path]:
-    """Write everything; the files, the page first.
-
-    Raises
-    ------
-    RacewayError
-        matplotlib is missing, or a folder or disk that cannot be written.
-    """
-    content, drawn = study.to_dict(), drawings(study) if pictures else []
-    files = write_tables("article", content, study.tables(content), drawn, folder)
-    return [page(study, drawn, command).write(folder / "article.html"), *files] if pictures else files
 
 
 def write_tables(
@@ -59,50 +31,16 @@ def write_tables(
 ) -> list[Path]:
     """JSON of a study, a CSV file of each table and a PNG file of each picture."""
     files = [write_json(content, folder / f"{name}.json")]
-    files += [_write_csv(rows, folder / f"{title}.csv") for title, rows in tables.items()]
+    files += [write_whole(csv_text(rows).encode(), folder / f"{title}.csv") for title, rows in tables.items()]
     return files + [save_figure(picture.figure(), folder / f"{picture.name}.png", _DOTS_PER_INCH) for picture in pictures]
 
 
-def _write_csv(rows: Sequence[ReadTables], path: Path) -> Path:
-    """A table with every key of any row as a column."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return write_whole(text.getvalue().encode(), path)
-
-
-def article_screen(content: ReadTables, files: Sequence[str]) -> RenderableType:
-    """Verdicts, the check against an independent solver, failures and cost.
-
-    Parameters
-    ----------
-    content : what ``--json`` prints;  files : what was written
-    """
-    table = Table("", "claim", "verdict", box=SIMPLE_HEAD, pad_edge=False)
-    for verdict in content["verdicts"]:
-        words = Text(verdict["kind"], style=_KINDS[verdict["kind"]][1])
-        if verdict["region"]:
-            words.append(f" {verdict['region']}", style="default")
-        if verdict["failed"]:
-            words.append("; some runs failed or are unstable", style="magenta")
-        table.add_row(verdict["number"], Words(verdict["claim"]), words)
-    trends, cost = content["quasi_static"], content["cost"]
-    lines = [
-        f"quasi-static trends equal to an independent solver's printed digits: {sum(row['holds'] for row in trends)} of {len(trends)}",
-        f"{content['runs']} points, {content['failed']} failed; {cost['wall_s']:.0f} s, "
-        f"{cost['cpu_s']:.0f} s of processor time"
-        + (f"; {cost['reused']} of {cost['tasks']} pieces taken from earlier" if cost["reused"] else ""),
-    ]
-    return Group(Words(content["title"], "bold"), table, *(Words(line, "dim") for line in lines), *written(files))
-
-
-def page(study: Article, pictures: Sequence[Picture], command: str) -> Page:
-    """The page; ``command`` is what makes it again."""
+def page(study: Article, pictures: Sequence[Picture]) -> Page:
+    """The page."""
     from raceway import __version__
 
     content, drawn = study.to_dict(), {picture.name: picture for picture in pictures}
-    footer = f"Made by `{command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
+    footer = f"Made by `{study.command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
     out = Page("The article’s claims, computed again", study.title, footer)
     _opening(out, content, study.curves.design.scene_load)
@@ -120,7 +58,7 @@ def page(study: Article, pictures: Sequence[Picture], command: str) -> Page:
 def _opening(out: Page, content: ReadTables, load: float) -> None:
     verdicts = content["verdicts"]
     counts = Counter(verdict["kind"] for verdict in verdicts)
-    parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, _, words) in _KINDS.items() if counts[kind])
+    parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, words) in KINDS.items() if counts[kind])
     out.text(
         f"The claims of {ARTICLE} are put to {len(content['rows'])} motions of this "
         f"program, each claim in every reading that its words allow. Of {len(verdicts)} readings {parts}. No claim "
@@ -193,7 +131,7 @@ def _swaps(out: Page, content: ReadTables, load: float) -> None:
 
 def _verdicts(out: Page, content: ReadTables) -> None:
     out.section("Verdicts")
-    badges = [Cell(verdict["kind"], _KINDS[verdict["kind"]][0], verdict["region"]) for verdict in content["verdicts"]]
+    badges = [Cell(verdict["kind"], KINDS[verdict["kind"]][0], verdict["region"]) for verdict in content["verdicts"]]
     judged = list(zip(content["verdicts"], badges, strict=True))
     rows = [[verdict["number"], verdict["claim"], badge] for verdict, badge in judged]
     out.table(["", "claim", "verdict"], rows, "The article’s claims; how each was decided stands below")

@@ -246,6 +246,14 @@ def by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", for
 
 
 HOLDS, PARTLY, NOT, FAILED, UNTESTED = "holds", "holds only for", "does not hold", "failed", "cannot be tested"
+#: Kind of a verdict -> tone of its cell on a page, and words after a count.
+KINDS = {
+    HOLDS: ("good", "hold"),
+    PARTLY: ("partly", "hold only in a region"),
+    NOT: ("bad", "do not hold"),
+    FAILED: ("failed", "failed"),
+    UNTESTED: ("partly", "cannot be tested"),
+}
 #: How every rule treats numbers that are missing; the rules do it, this tells the reader.
 BRIDGED = "unstable motions between the ends are left out, a failed run leaves no judgement"
 

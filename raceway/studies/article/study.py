@@ -7,26 +7,27 @@ is run for.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry, default_registry
+from raceway.framework.shown import Fact
+from raceway.out.answer import Answer, Part
 from raceway.out.quantities import K
+from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
 from raceway.points.engine import Item, local, processor_time, without_mesh, work_through
-from raceway.points.store import RowStore, program_key
+from raceway.points.store import RowStore, program_key, tables_key
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import without_nan
@@ -321,8 +322,8 @@ def _rows(task: Task, registry: Registry) -> Tables:
     return {"rows": function(inputs, registry)}
 
 
-@attrs.frozen(eq=False, slots=False)
-class Article:
+@attrs.frozen(eq=False, repr=False, slots=False)
+class Article(Answer):
     """The study's numbers, with verdicts, page, pictures and tables made from them.
 
     Attributes
@@ -332,7 +333,10 @@ class Article:
     scan : axial load -> rows over the shaft's tilt stiffness at the lowest and highest speed
     seconds, cpu_s : wall and processor time, of which ``own_cpu_s`` in this process
     reused : tasks that were taken from the folder, of ``tasks``;  fault : why rows could not be stored; None where they were
+    command : what makes the page again
     """
+
+    stem: ClassVar[str] = "article"
 
     title: str
     curves: Curves
@@ -346,6 +350,7 @@ class Article:
     tasks: int
     reused: int
     fault: RacewayError | None = None
+    command: str = "raceway study article"
 
     @cached_property
     def verdicts(self) -> list[Verdict]:
@@ -420,6 +425,49 @@ class Article:
             "tilt-stiffness": scan,
         }
 
+    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+        """Write JSON and CSV tables, and where ``pictures`` asks for them the figures and the page, which comes first.
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or a folder or disk that cannot be written.
+        """
+        from raceway.studies.article.figures import drawings
+        from raceway.studies.article.page import page, write_tables
+
+        folder, content, drawn = Path(folder), self.to_dict(), drawings(self) if pictures else []
+        files = write_tables("article", content, self.tables(content), drawn, folder)
+        return [page(self, drawn).write(folder / "article.html"), *files] if pictures else files
+
+    def failure(self) -> RacewayError | None:
+        rows = [row for curve_rows in self.curves.rows.values() for row in curve_rows]
+        if self.fault is None and all(row["status"] == "failed" for row in rows):
+            return ConvergenceError(f"every run failed; the first reason: {rows[0]['reason']}")
+        return self.fault
+
+    def _shown(self) -> tuple[str, list[Fact]]:
+        return self.title, [(f"claim {verdict.number}", verdict.kind, verdict.region) for verdict in self.verdicts]
+
+    def report(self) -> Iterator[Part]:
+        """Verdicts, the check against an independent solver, failures and cost."""
+        yield Words(self.title, "bold")
+        yield [
+            {
+                "": verdict.number,
+                "claim": verdict.claim,
+                "verdict": f"{verdict.kind} {verdict.region}".strip()
+                + ("; some runs failed or are unstable" if verdict.failed else ""),
+            }
+            for verdict in self.verdicts
+        ]
+        equal = sum(trend.holds for trend in self.trends)
+        yield Words(
+            f"quasi-static trends equal to an independent solver's printed digits: {equal} of {len(self.trends)}", "dim"
+        )
+        cost = f"{self.runs} points, {len(self.failed)} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
+        yield Words(cost + (f"; {self.reused} of {self.tasks} pieces taken from earlier" if self.reused else ""), "dim")
+
 
 def article(
     design: Design,
@@ -428,6 +476,7 @@ def article(
     registry: Registry | None = None,
     plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None,
+    command: str = "raceway study article",
 ) -> Article:
     """Run the study.
 
@@ -438,6 +487,7 @@ def article(
     store : file that finished curves are stored in and taken from
     plugins : one-off plug-in files, which each process loads
     on_progress : called as ``on_progress(what, done, total)``; an exception stops the study
+    command : what makes the page again
 
     Raises
     ------
@@ -453,8 +503,8 @@ def article(
     rows, program = RowStore(store), program_key(registry)
     items = []
     for name, function, inputs in (tasks := _tasks(design, registry)):
-        text = json.dumps([function.__qualname__, inputs, program], sort_keys=True, default=str)
-        items.append(Item(hashlib.sha256(text.encode()).hexdigest()[:24], name, (name, function, inputs)))
+        key = tables_key({"function": function.__qualname__, "inputs": inputs}, registry, program=program)
+        items.append(Item(key, name, (name, function, inputs)))
     finished, reused = work_through(_rows, items, rows, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
     static = next(results)
@@ -462,5 +512,6 @@ def article(
     scan = {load: next(results) for load in scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
-    taken = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu
-    return Article(title, curves, tuple(rig), tuple(static), tuple(compared), scan, *taken, len(tasks), reused, rows.fault)
+    spent = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu
+    numbers = title, curves, tuple(rig), tuple(static), tuple(compared), scan
+    return Article(*numbers, *spent, len(tasks), reused, rows.fault, command)
