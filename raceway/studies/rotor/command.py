@@ -87,30 +87,22 @@ def export(
     number : of Nastran's property (the next 12 are its tables), of Ansys' element type
     tag : the element's name in ROSS; None: the bearing's
     """
-    paths = {"nastran": nastran, "ansys": ansys, None: table}
-    programs = [(kind_of(kind, path), Path(path)) for kind, path in paths.items() if path is not None]
-    if ross is None and not programs:
+    paths = [Path(path) for path in (ross, nastran, ansys, table) if path is not None]
+    files = {"nastran": nastran, "ansys": ansys, None: table}
+    kinds = [kind_of(kind, path) for kind, path in files.items() if path is not None]
+    if not paths:
         raise SceneError.at("raceway export", None, "writes nothing: give --ross, --nastran, --ansys or --table with a FILE")
-    for _, path in programs:
+    for path in paths:
         writable(path.parent)
-    exports: list[tuple[CoefficientFile, Path]] = []
+    exports: list[CoefficientFile] = []
+    at = tuple(at)
     if ross is not None:
-        check_name(Path(ross))
-        writable(Path(ross).parent)
+        check_name(paths[0])
         if ross_version is None and installed_generation() is None:
             warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", label="")
-        bearing = export_ross(
-            store, at=tuple(at), source=source, damping=damping, ross_version=ross_version, node=node, tag=tag
-        )
-        exports.append((bearing, Path(ross)))
+        exports = [export_ross(store, at=at, source=source, damping=damping, ross_version=ross_version, node=node, tag=tag)]
     exports += [
-        (
-            export_coefficients(
-                store, kind=kind, at=tuple(at), source=source, damping=damping, number=number, node=node, tag=tag
-            ),
-            path,
-        )
-        for kind, path in programs
+        export_coefficients(store, kind=kind, at=at, source=source, damping=damping, number=number, node=node, tag=tag)
+        for kind in kinds
     ]
-    files = [str(bearing.write(path)) for bearing, path in exports]
-    return Exports(str(store), [bearing for bearing, _ in exports], files)
+    return Exports(str(store), exports, [str(bearing.write(path)) for bearing, path in zip(exports, paths, strict=True)])
