@@ -79,7 +79,7 @@ ANSWERS = (
     ),
     Command(
         "fit",
-        "raceway.studies.fit.command:fit_texts",
+        "raceway.studies.fit.fit:fit_texts",
         "Numbers of a scene, or K and C of a rig's bearing, from measured data.",
         "raceway fit measured-k.csv --scene examples/b7206.toml \\\n"
         "    --free bearing.contact_angle_deg\n"

@@ -27,7 +27,7 @@ from raceway.scene.tables import Rig
 from raceway.storage.files import without_nan, writable
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE
-from raceway.studies.fit.fit import interval
+from raceway.studies.fit.fitted import interval
 from raceway.studies.fit.rig import (
     changed_rotors,
     invert,

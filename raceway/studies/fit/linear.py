@@ -26,7 +26,7 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.studies.fit.disturbances import TONES, aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Estimate, Free, estimate, judged
-from raceway.studies.fit.fit import Fitted, Series, refuse_few
+from raceway.studies.fit.fitted import Fitted, Series, refuse_few
 from raceway.studies.fit.signals import Signals
 
 #: Part of the force's power below and above the band of frequencies that are used, and how far these reach beyond it.

@@ -27,7 +27,7 @@ from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Rig
 from raceway.studies.fit.estimate import COVERAGE, Free, estimate, free_keys, uncertain, with_free
-from raceway.studies.fit.fit import Derived, Fitted, Series, refuse_few
+from raceway.studies.fit.fitted import Derived, Fitted, Series, refuse_few
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.signals import Signals, faults_at, recording_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, synchronous

@@ -25,7 +25,7 @@ from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.column_headers import IGNORE
 from raceway.studies.fit.estimate import COVERAGE, Estimate, Free, estimate, free_keys, uncertain, with_free
-from raceway.studies.fit.fit import Fitted, Series, refuse_few
+from raceway.studies.fit.fitted import Fitted, Series, refuse_few
 
 #: Index of displacements across the axis in the coordinates at rest.
 _ACROSS = {"y": 1, "z": 2}
