@@ -17,9 +17,9 @@ from raceway.studies.article.design import FRICTION_WORDS, MEASURES, ONE_WAY, RO
 from raceway.studies.article.rules import BRIDGED, LEVEL, Exponent, Finding, Verdict, by_tilt, course, judge
 
 #: What the text of the article states: deviations of peak pressures; effects of the axial load in two zones of w*.
-LARGEST_DEVIATION, HEAVIEST_DEVIATION = 0.0242, 0.0033
-LOW_ZONE, HIGH_ZONE = (0.0, 0.25), (0.75, 1.0)
-LOW_EFFECT, HIGH_EFFECT = 0.08, 0.34
+_LARGEST_DEVIATION, _HEAVIEST_DEVIATION = 0.0242, 0.0033
+_LOW_ZONE, _HIGH_ZONE = (0.0, 0.25), (0.75, 1.0)
+_LOW_EFFECT, _HIGH_EFFECT = 0.08, 0.34
 #: Readings of claim 5: number -> effect, rule.
 _READINGS = {
     "5a": ("effect of speed inside each zone", "rise of k at one axial load: k(0.25)/k(0) − 1 and k(1)/k(0.75) − 1"),
@@ -29,7 +29,7 @@ _READINGS = {
 }  # fmt: skip
 
 #: Number, claim, rule, what was computed, outcomes of the rule.
-Row = tuple[str, str, str, str, list[Finding]]
+_Row = tuple[str, str, str, str, list[Finding]]
 
 
 def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
@@ -56,9 +56,9 @@ def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
     rule = "none: the load cases are not in the text that is left of the article, so that no case can be computed again"
     out = []
     for number, claim, rows, deviation in (
-        ("1a", f"Static peak pressures are within {LARGEST_DEVIATION:.2%} of exact Hertz in four load cases.", pressures,
+        ("1a", f"Static peak pressures are within {_LARGEST_DEVIATION:.2%} of exact Hertz in four load cases.", pressures,
          "largest deviation of the peak pressures in four load cases of our own"),
-        ("1b", f"In the heaviest case the inner race's is within {HEAVIEST_DEVIATION:.2%}.", heaviest,
+        ("1b", f"In the heaviest case the inner race's is within {_HEAVIEST_DEVIATION:.2%}.", heaviest,
          "deviation of the inner race's peak pressure at 2000 N axial, the heaviest of ours"),
     ):  # fmt: skip
         errors = [row["error"] for row in rows if row["error"] is not None]
@@ -72,7 +72,7 @@ def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
     return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, computed, rules.UNTESTED)]
 
 
-def _unidirectional(curves: Curves) -> list[Row]:
+def _unidirectional(curves: Curves) -> list[_Row]:
     """Claim 3: under a force along one line the stiffness falls with speed."""
     rule = (
         f"unidirectional force, constant amplitude: falls at every step of the speed, and by at least {LEVEL:.1%} over the range; "
@@ -106,7 +106,7 @@ def _ratio(values: np.ndarray) -> float | None:
 
 
 #: Exponent of K over the speed, from relative and absolute speeds, values and relative errors (n,).
-Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], Exponent | None]
+_Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], Exponent | None]
 
 
 def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Exponent | None:
@@ -118,10 +118,10 @@ def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors
     return rules.exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
 
 
-def _hardening(curves: Curves, measure: str) -> list[Row]:
+def _hardening(curves: Curves, measure: str) -> list[_Row]:
     """Claim 4, "approximately quadratic", in two readings, and in either."""
     claim = "Bidirectional: rises roughly quadratically with speed"
-    rows: list[Row] = []
+    rows: list[_Row] = []
     for number, words, law, fit in (
         ("4a", "in the speed", f"{measure} = a + c w^p", _in_speed),
         ("4b", "in the speed above the lowest", "k* − 1 = c w*^p", _above_lowest),
@@ -139,7 +139,7 @@ def _hardening(curves: Curves, measure: str) -> list[Row]:
     return [("4", f"{claim}.", "4a or 4b", "see 4a and 4b", either), *rows]
 
 
-def _powers(curves: Curves, measure: str, fit: Fit) -> tuple[list[Finding], str]:
+def _powers(curves: Curves, measure: str, fit: _Fit) -> tuple[list[Finding], str]:
     """Outcomes for every model and load, and the exponents where k rises, in words."""
     findings: list[Finding] = []
     rising: dict[str, list[Exponent]] = {}
@@ -183,20 +183,22 @@ def _effects(curves: Curves, measure: str) -> dict[str, list[_Effect]]:
             surface.missing,
         )
         for load, k, lost in zip(surface.loads, values, failed, strict=True):
-            low = rules.change_within(w, k, lost, *LOW_ZONE)
-            for number, begin in (("5a", HIGH_ZONE[0]), ("5b", 0.0)):
-                high = rules.change_within(w, k, lost, begin, HIGH_ZONE[1])
+            low = rules.change_within(w, k, lost, *_LOW_ZONE)
+            for number, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
+                high = rules.change_within(w, k, lost, begin, _HIGH_ZONE[1])
                 effects[number].append(_Effect({**model, "load": load}, low, high, why))
         for number, k in (("5c", values), ("5d", values / values[:, :1])):
-            low, high = (rules.spread(w, k, failed, *zone) for zone in (LOW_ZONE, HIGH_ZONE))
+            low, high = (rules.spread(w, k, failed, *zone) for zone in (_LOW_ZONE, _HIGH_ZONE))
             effects[number].append(_Effect(model, low, high, why))
     return effects
 
 
-def _axial(curves: Curves, measure: str) -> list[Row]:
+def _axial(curves: Curves, measure: str) -> list[_Row]:
     """Claim 5: about 8 % at low speeds and 34 % at high ones in every reading, and whether the effect grows."""
-    effects, rows = _effects(curves, measure), list[Row]()
-    expected = f"about {LOW_EFFECT:.0%} and about {HIGH_EFFECT:.0%} (each within {rules.ABOUT:.0%} of the number); {BRIDGED}"
+    effects, rows = _effects(curves, measure), list[_Row]()
+    expected = (
+        f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {rules.ABOUT:.0%} of the number); {BRIDGED}"
+    )
     claim = "Axial load: about 8 % effect for w* from 0 to 0.25, about 34 % from 0.75 to 1"
     for number, (effect, words) in _READINGS.items():
         zones = []
@@ -219,10 +221,10 @@ def _axial(curves: Curves, measure: str) -> list[Row]:
 def _as_claimed(effect: _Effect) -> bool | None:
     if effect.low is None or effect.high is None:
         return None
-    return rules.about(effect.low, LOW_EFFECT) and rules.about(effect.high, HIGH_EFFECT)
+    return rules.about(effect.low, _LOW_EFFECT) and rules.about(effect.high, _HIGH_EFFECT)
 
 
-def _combined(curves: Curves, measure: str) -> list[Row]:
+def _combined(curves: Curves, measure: str) -> list[_Row]:
     """Claim 6: k rises with axial load, with speed, the speed's influence with axial load, and all of this."""
     with_load, with_speed, grows, together = [], [], [], []
     for model, surface in curves.surfaces(ROTATING):

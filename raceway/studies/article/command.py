@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from raceway.storage.tables import Tables
 
 
-class ArticleOptions(NamedTuple):
+class _ArticleOptions(NamedTuple):
     """Arguments and options of ``raceway study article``."""
 
     scene: Path | None
@@ -86,8 +86,8 @@ class ArticleOptions(NamedTuple):
 @click.option("--pictures/--no-pictures", default=True, help="Draw figures and write the page (default).")
 @plugin_files
 @common
-@record(ArticleOptions)
-def article(options: ArticleOptions) -> int:
+@record(_ArticleOptions)
+def article(options: _ArticleOptions) -> int:
     """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
 
     SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
@@ -128,10 +128,10 @@ def article(options: ArticleOptions) -> int:
 
 
 #: Runs a study: where the section is drawn, file of finished rows, registry, plug-in files, progress, what makes the page again.
-Study = Callable[[Path | None, Path, "Registry", tuple[Path, ...], "ProgressBar", str], "Answer"]
+_Study = Callable[[Path | None, Path, "Registry", tuple[Path, ...], "ProgressBar", str], "Answer"]
 
 
-def _article(options: ArticleOptions, tables: Tables) -> Study:
+def _article(options: _ArticleOptions, tables: Tables) -> _Study:
     """Rigid and condensed bodies; mistakes are refused before anything is loaded that computes."""
     from raceway.studies.article.design import design
 
@@ -146,7 +146,7 @@ def _article(options: ArticleOptions, tables: Tables) -> Study:
     return study
 
 
-def _elastic(options: ArticleOptions, tables: Tables) -> Study:
+def _elastic(options: _ArticleOptions, tables: Tables) -> _Study:
     """Elastic bodies beside the others."""
     from raceway.studies.article.elastic import TURNS, design, elastic_article
 

@@ -27,7 +27,7 @@ TILT_WORDS = {"locked": "tilt locked", "shaft": "tilt against the shaft", "free"
 TILTS = tuple(TILT_WORDS)
 BODIES = ("rigid", "condensed")
 #: The article's coefficient, section 3.1; what a contact that sticks means depends on whether the balls orbit.
-FRICTION = 0.03
+_FRICTION = 0.03
 FRICTION_WORDS = {
     "none": "without friction",
     "standing": "friction on balls that stand",
@@ -43,7 +43,7 @@ ARTICLE = Path(__file__).resolve().parents[2] / "data" / "article.toml"
 SPEEDS = "10980:15000:9"
 LOADS = "400:2000:9"
 #: The rig's shaft: span between the bearings from section 3.3; the diameter is not printed, 30 mm is the bearing's bore.
-SHAFT_DIAMETER, SPAN, YOUNG = 0.030, 0.175, 212e9
+_SHAFT_DIAMETER, _SPAN, _YOUNG = 0.030, 0.175, 212e9
 #: Status of a run that is neither failed nor refused.
 ANSWERED = (Status.COMPLETED, Status.UNSTABLE, Status.UNSTEADY)
 #: What may be called k: name -> key of a row.
@@ -161,7 +161,7 @@ class Design:
         return tables_at(self.tables, values, registry)
 
 
-def shaft_tilt_stiffness(diameter: float = SHAFT_DIAMETER, span: float = SPAN, young: float = YOUNG) -> float:
+def shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
     """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
     Notes
@@ -230,7 +230,7 @@ def friction_of(tables: ReadTables, friction: float | None) -> float:
         A friction below 0.
     """
     if friction is None:
-        friction = float(tables.get("contact", {}).get("friction", 0.0)) or FRICTION
+        friction = float(tables.get("contact", {}).get("friction", 0.0)) or _FRICTION
     if not (math.isfinite(friction) and friction >= 0.0):
         raise SceneError.at("--friction", friction, "must be a coefficient of friction of at least 0")
     return friction

@@ -44,15 +44,15 @@ if TYPE_CHECKING:
 SCENE = Path(__file__).resolve().parents[2] / "data" / "article_elastic.toml"
 #: Condensed bodies come first: the others are compared with them, and they show in seconds whether the scene is what was meant.
 BODIES = ("condensed", "rigid", "elastic")
-REFERENCE = BODIES[0]
+_REFERENCE = BODIES[0]
 RACES = ("inner", "outer")
 #: One operating point: turns and steps of a turn.
 TURNS, STEPS = 2, 40
 #: Stiffness of a contact that sticks [N/m], for all bodies alike: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
 #: default of surface points, as stiff as their penalty, has Newton's method change to and fro between points that stick and slide.
-STICK = 1e7
+_STICK = 1e7
 #: Residual of a step over the largest force: one solution with factors of elastic bodies reaches it, a second one costs as much.
-TOLERANCE = 1e-5
+_TOLERANCE = 1e-5
 _CASES = "seed-static-pressures"
 #: Tables that scenes at rest do not have.
 _OF_MOTION = ("excitation", "integrator", "identifier")
@@ -75,7 +75,7 @@ _STABILITY = (
 _ERROR = ("total", "time_step", "transient", "mesh", "contact")
 
 #: What is not the same with the three kinds of bodies, whatever the scene.
-DIFFERENCES = (
+_DIFFERENCES = (
     "Elastic bodies: every node of rings and balls moves, with its own inertia; hexahedra by `bodies.formulation`. Each ball is held "
     "at its azimuth by an ideal cage.",
     "Condensed bodies: full integration of the hexahedra, whatever `bodies.formulation` says, on meshes of their own with the same "
@@ -166,12 +166,12 @@ class Design:
                 "excitation.kind": run.excitation[0],
                 "excitation.amplitude": run.excitation[1],
                 "integrator.kind": "newmark",
-                "integrator.tolerance": TOLERANCE,
+                "integrator.tolerance": _TOLERANCE,
                 "integrator.turns": self.turns,
                 "integrator.steps_per_turn": STEPS,
             }
         if run.excitation is not None and self.friction > 0.0:
-            values["contact.stick_stiffness"] = STICK
+            values["contact.stick_stiffness"] = _STICK
         scene = dict(self.tables)
         if run.bodies == "rigid":  # one force a contact, by Hertz's law; no mesh
             scene.pop("mesh")
@@ -416,8 +416,8 @@ class ElasticArticle(Answer):
                 "speed_rpm": design.speed_rpm,
                 "turns": design.turns,
                 "steps_per_turn": STEPS,
-                "reference": REFERENCE,
-                "what_differs": list(DIFFERENCES),
+                "reference": _REFERENCE,
+                "what_differs": list(_DIFFERENCES),
                 "rows": rows,
                 "elements": max((row["cost"]["elements"] or 0 for row in rows), default=0) or None,
                 "runs": len(rows),
@@ -484,14 +484,14 @@ class ElasticArticle(Answer):
         table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
         if row["status"] != "completed":
             return table
-        reference = None if run.bodies == REFERENCE else self.row(run.phase, run.case, REFERENCE)
+        reference = None if run.bodies == _REFERENCE else self.row(run.phase, run.case, _REFERENCE)
         if run.excitation is None:
             table |= {"from_hertz": from_hertz(row), "below_contact": below_contact(row)}
             differences = at_rest
         else:
             table |= {"identified": identified(row), "energy_balance": row["stability"]["energy_drift"]}
             differences = in_motion
-        return table | {f"from_{REFERENCE}": None if reference is None else differences(row, reference)}
+        return table | {f"from_{_REFERENCE}": None if reference is None else differences(row, reference)}
 
 
 def elastic_article(
@@ -526,7 +526,7 @@ def elastic_article(
     finished.rows = {key: row for key, row in finished.rows.items() if row["status"] != "refused"}
     items = [Item(row_key(scene, registry, "article elastic"), run.name, k) for k, (run, scene) in enumerate(zip(runs, scenes, strict=True))]  # fmt: skip
     waiting = [k for k, item in enumerate(items) if finished.get(item.key) is None]
-    seconds = predicted([scenes[k] for k in waiting], registry)
+    seconds = _predicted([scenes[k] for k in waiting], registry)
     kinds = {k: (runs[k].bodies, runs[k].phase) for k in waiting}
     progress = RemainingTime(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
     # The run at rest with elastic bodies under the heaviest load: its most loaded contact is drawn.
@@ -543,7 +543,7 @@ def elastic_article(
     return ElasticArticle(scenes[0].title, design, rows, *spent, reused, finished.fault, command)
 
 
-def predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
+def _predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
     """Planned time of runs one after the other [s]: what is made once for bodies at rest, or in motion, counts in the first alone."""
     seconds, prepared = [], set[tuple[str, bool]]()
     for scene in scenes:

@@ -94,7 +94,7 @@ def finish(axes: Axes, title: str, x: str, y: str, legend: int = 0) -> None:
 
 
 @attrs.frozen(eq=False)
-class Line:
+class _Line:
     """A line of a panel; ``marked`` has a dot at each point, ``bridged`` goes straight over points without a number."""
 
     x: np.ndarray
@@ -113,7 +113,7 @@ class Line:
 
 
 def _panel(
-    lines: Sequence[Line], labels: tuple[str, str, str], legend: int, words: str, caption: str = "", more: Callable[[Axes], None] | None = None
+    lines: Sequence[_Line], labels: tuple[str, str, str], legend: int, words: str, caption: str = "", more: Callable[[Axes], None] | None = None
 ) -> Panel:  # fmt: skip
     """Lines over one axis.
 
@@ -216,8 +216,8 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     def k(curve: Any, status: str = "completed") -> np.ndarray:
         return np.asarray(curve.values(measure, status) / (curve.values(measure)[0] if star else 1e6))
 
-    lines = [Line(w, k(curve), "--", _PAIRS[pair][0], 1.1, None, False, True) for pair, curve in light.items()]
-    lines += [Line(w, k(curve), style, colour, width, name, bridged=True)
+    lines = [_Line(w, k(curve), "--", _PAIRS[pair][0], 1.1, None, False, True) for pair, curve in light.items()]
+    lines += [_Line(w, k(curve), style, colour, width, name, bridged=True)
               for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
 
     def unstable(axes: Axes) -> None:
@@ -245,9 +245,9 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 10: at several axial loads; dashed without ball inertia."""
     w, shown = np.array(curves.design.relative(curves.design.speeds)), _spread(curves.design.loads)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
     for row, colour in zip(shown, _colours(len(shown)), strict=True):
-        lines += [Line(w, k[row], "-", colour, 2.0, marked=False), Line(w, light[row], "--", colour, 1.1, marked=False)]
+        lines += [_Line(w, k[row], "-", colour, 2.0, marked=False), _Line(w, light[row], "--", colour, 1.1, marked=False)]
         names[f"{curves.design.loads[row]:g} N"] = k[row]
 
     def ends(axes: Axes) -> None:
@@ -266,11 +266,11 @@ def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 11: at several speeds; dashed without ball inertia."""
     loads, shown = np.array(curves.design.loads), _spread(curves.design.speeds)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
     for column, colour in zip(shown, _colours(len(shown)), strict=True):
         name = f"w* = {curves.design.relative(curves.design.speeds)[column]:.2g}"
-        lines.append(Line(loads, light[:, column], "--", colour, 1.1, marked=False))
-        lines.append(Line(loads, k[:, column], "-", colour, 1.9, name))
+        lines.append(_Line(loads, light[:, column], "--", colour, 1.1, marked=False))
+        lines.append(_Line(loads, k[:, column], "-", colour, 1.9, name))
         names[name] = k[:, column]
     words = f"{label} over the axial load, {TILT_WORDS[tilt]}: {_ends(names)}"
     return _panel(lines, (TILT_WORDS[tilt], _LOAD, label), 3, words, "Dashed: weightless balls.")
@@ -342,13 +342,13 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
 
 def _friction(curves: Curves, tilt: str) -> Panel:
     """k* over speed without friction, and with it on balls that stand and that orbit, at the heaviest and the lightest load."""
-    design, lines, names = curves.design, list[Line](), {}
+    design, lines, names = curves.design, list[_Line](), {}
     for load, style in ((design.loads[-1], "-"), (design.loads[0], "--")):
         for friction in design.frictions:
             setting = Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
             star, w = curves.curve(setting, load).normalised(), np.array(design.relative(design.speeds_of(setting)))
             label = FRICTION_WORDS[friction] if style == "-" else None
-            lines.append(Line(w, star, style, _FRICTION_COLOURS[friction], 1.7, label, bridged=True))
+            lines.append(_Line(w, star, style, _FRICTION_COLOURS[friction], 1.7, label, bridged=True))
             names[f"{load:g} N, {FRICTION_WORDS[friction]}"] = star
     words = f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends(names)}"
     caption = f"Solid: {design.loads[-1]:g} N. Dashed: {design.loads[0]:g} N."
@@ -386,7 +386,7 @@ def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
     surfaces = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
     label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
     lines = [
-        Line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
+        _Line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
         for (name, values), style in zip(surfaces.items(), ("--" if star else "-", "-"), strict=False)
         for row, colour in zip(shown, _colours(len(shown)), strict=True)
     ]

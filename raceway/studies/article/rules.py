@@ -106,7 +106,7 @@ def influence_grows(surface: np.ndarray, failed: np.ndarray) -> bool | None:
 _EXPONENTS = np.linspace(0.05, 30.0, 2996)
 _CHANCE, _CHI_SQUARED = 0.975, 3.84
 #: Nearer to 2 than to 1 or 3 is roughly quadratic; a straight line has 1.
-NEAREST, STRAIGHT = (1.5, 2.5), 1.0
+NEAREST, _STRAIGHT = (1.5, 2.5), 1.0
 
 
 @attrs.frozen
@@ -120,7 +120,7 @@ class Exponent:
     @property
     def roughly_quadratic(self) -> bool:
         """Nearer to 2 than to any other whole number, and no straight line."""
-        return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= STRAIGHT <= self.high
+        return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= _STRAIGHT <= self.high
 
 
 def exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> Exponent | None:
@@ -171,9 +171,6 @@ class Finding:
     holds: bool | None
     value: float | None = None
     why: str = ""
-
-    def to_dict(self) -> Tables:
-        return {"at": dict(self.at), "holds": self.holds, "value": self.value, "why": self.why}
 
 
 def where(findings: Sequence[Finding], holds: bool | None) -> str:
@@ -286,7 +283,7 @@ class Verdict:
         return {**attrs.asdict(self, filter=lambda field, _: field.name != "findings"), "verdict": words}
 
     def to_dict(self) -> Tables:
-        return {**self.row(), "findings": [finding.to_dict() for finding in self.findings]}
+        return {**self.row(), "findings": [attrs.asdict(finding) for finding in self.findings]}
 
 
 def judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:

@@ -50,7 +50,7 @@ from raceway.studies.verify import study as verification
 from raceway.studies.verify.reference import reference_cases
 
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
-SWAPS: dict[str, Tables] = {
+_SWAPS: dict[str, Tables] = {
     "rotating force m e w², ball inertia": {},
     "direction swapped: unidirectional force m e w²": {"direction": DIRECTIONS[0]},
     "amplitude law swapped: rotating force, constant": {"amplitude": AMPLITUDES[0]},
@@ -69,10 +69,10 @@ def base(tilt: str, bodies: Sequence[str]) -> Setting:
     return Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid" if "rigid" in bodies else bodies[0])
 
 
-def one_at_a_time(curves: Curves, load: float) -> list[tuple[str, dict[str, float | str]]]:
+def _one_at_a_time(curves: Curves, load: float) -> list[tuple[str, dict[str, float | str]]]:
     """Of each swap that is run at a load the ``change`` of K at each tilt boundary."""
     rows = []
-    for name, swap in SWAPS.items():
+    for name, swap in _SWAPS.items():
         settings = {tilt: attrs.evolve(base(tilt, curves.design.bodies), **swap) for tilt in TILTS}
         if (settings[TILTS[0]], load) in curves.rows:  # with friction every other axial load is run
             rows.append((name, {tilt: change(curves.curve(setting, load)) for tilt, setting in settings.items()}))
@@ -102,7 +102,7 @@ def scan_loads(design: Design) -> list[float]:
     return [design.loads[0], design.loads[len(design.loads) // 2], design.loads[-1]]
 
 
-def scan_points(design: Design, load: float, registry: Registry) -> list[Tables]:
+def _scan_points(design: Design, load: float, registry: Registry) -> list[Tables]:
     """Scenes at the lowest and highest speed over the shaft's tilt stiffness."""
     ends = [
         design.point(base("shaft", design.bodies), load, speed, registry) for speed in (design.speeds[0], design.speeds[-1])
@@ -180,13 +180,13 @@ class Trend:
     def row(self) -> Tables:
         """As a row of a flat table."""
         table = self.to_dict()
-        off, holds = table.pop("off_in_last_digits"), table.pop("holds")
-        for name in ("expected", "computed"):
-            table |= {f"{name}_{k}": value for k, value in enumerate(table.pop(name) or ())}
-        return {**table, "off_in_last_digits": off, "holds": holds}
+        numbers = {
+            f"{name}_{k}": value for name in ("expected", "computed") for k, value in enumerate(table.pop(name) or ())
+        }
+        return {name: table.pop(name) for name in ("tilt", "load", "inertia", "why")} | numbers | table
 
 
-def secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
+def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     """Secant stiffness [N/m] at the five speeds of a case: tilt, axial load, ball inertia."""
     tilt, load, inertia = case
     article = article_tables()
@@ -211,7 +211,7 @@ def secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
 
 
 def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
-    """The printed numbers of a case beside the rows of ``secants``."""
+    """The printed numbers of a case beside the rows of ``_secants``."""
     first, ratios = TRENDS[case]
     reason = next((row["reason"] for row in rows if row["status"] != "completed"), "")
     k = [] if reason else [row["k"] for row in rows]
@@ -219,7 +219,7 @@ def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
     return Trend(*case, (first, *ratios), computed, reason)
 
 
-PROCESSES = 2
+_PROCESSES = 2
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
 RIG_SPEEDS, RIG_LOADS = (11000.0, 13000.0, 15000.0), (400.0, 2000.0)
 #: Turns of the motion that is integrated where no ring stays on a steady one; half of them are judged.
@@ -293,19 +293,19 @@ def static_pressures(case: str, registry: Registry) -> list[Tables]:
 
 
 #: Name of a task, the function that computes its rows here or in another process, and what that takes, plain values.
-Task = tuple[str, Callable[[Any, Registry], list[Tables]], Any]
+_Task = tuple[str, Callable[[Any, Registry], list[Tables]], Any]
 
 
-def _tasks(design: Design, registry: Registry) -> list[Task]:
+def _tasks(design: Design, registry: Registry) -> list[_Task]:
     """All that is run: static pressures, quasi-static trends, the scan of the tilt stiffness, the rig's points, the curves."""
 
     def points(setting: Setting, loads: Sequence[float], speeds: Sequence[float]) -> list[Tables]:
         return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
 
-    tasks: list[Task] = [("static verification", static_pressures, _STATIC)]
-    tasks += [("quasi-static trends", secants, list(case)) for case in TRENDS]
+    tasks: list[_Task] = [("static verification", static_pressures, _STATIC)]
+    tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
     for load in scan_loads(design):
-        tasks.append((f"tilt stiffness at {load:g} N", curve, scan_points(design, load, registry)))
+        tasks.append((f"tilt stiffness at {load:g} N", curve, _scan_points(design, load, registry)))
     tasks += [("the rig's speeds", curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
     for setting, load in design.tasks():
         name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
@@ -317,7 +317,7 @@ def _rig_settings(design: Design) -> list[Setting]:
     return [base(tilt, [bodies]) for bodies in design.bodies for tilt in TILTS]
 
 
-def _rows(task: Task, registry: Registry) -> Tables:
+def _rows(task: _Task, registry: Registry) -> Tables:
     _, function, inputs = task
     return {"rows": function(inputs, registry)}
 
@@ -390,7 +390,7 @@ class Article(Answer):
                 "quasi_static": [trend.to_dict() for trend in self.trends],
                 "static": self.static,
                 "rig": self.rig,
-                "causes": {f"{load:g}": dict(one_at_a_time(self.curves, load)) for load in design.loads},
+                "causes": {f"{load:g}": dict(_one_at_a_time(self.curves, load)) for load in design.loads},
                 "tilt_stiffness": [
                     {"axial_n": load, "stiffness": STIFFNESSES, "ratio": ratio.tolist(), "turning_point": turning_point(ratio)}
                     for load, ratio in ratios.items()
@@ -471,7 +471,7 @@ class Article(Answer):
 
 def article(
     design: Design,
-    processes: int = PROCESSES,
+    processes: int = _PROCESSES,
     store: Path | None = None,
     registry: Registry | None = None,
     plugins: Sequence[Path] = (),

@@ -41,7 +41,7 @@ _BEGIN = 4.0
 
 
 @attrs.frozen
-class Response:
+class _Response:
     """Deflection at the sensor [m] over the unbalance's phase, at one to three speeds [rad/s]."""
 
     speeds: tuple[float, ...]
@@ -58,16 +58,16 @@ class Response:
         return np.polynomial.polynomial.polyval(speed / self.middle - 1.0, weights)
 
 
-def response(rig: Rig, tested: Bearing, state: State, signals: Signals) -> Response:
+def response(rig: Rig, tested: Bearing, state: State, signals: Signals) -> _Response:
     """The response around a state's speed, as far as the speed drifts."""
     if signals.speed_drift == 0.0:
-        return Response((state.speed,), (state.sensor,))
+        return _Response((state.speed,), (state.sensor,))
     speeds = tuple(state.speed * (1.0 + 0.5 * signals.speed_drift * part) for part in (-1.0, 0.0, 1.0))
     first, last = (balance(rotor(rig, speed), tested).sensor for speed in (speeds[0], speeds[2]))
-    return Response(speeds, (first, state.sensor, last))
+    return _Response(speeds, (first, state.sensor, last))
 
 
-def record(rig: Rig, answer: Response, signals: Signals, seed: int, noise: float | None = None) -> Recording:
+def record(rig: Rig, answer: _Response, signals: Signals, seed: int, noise: float | None = None) -> Recording:
     """A record at the response's middle speed.
 
     Parameters
@@ -96,7 +96,7 @@ def record(rig: Rig, answer: Response, signals: Signals, seed: int, noise: float
     return Recording(time, plane.real, plane.imag, key, speed)
 
 
-def white_noise(answer: Response, signals: Signals) -> float:
+def white_noise(answer: _Response, signals: Signals) -> float:
     """rms of the noise of each channel [m]."""
     return float(abs(answer.at(np.array(answer.middle)))) / np.sqrt(2.0) * 10.0 ** (-signals.noise_db / 20.0)
 
@@ -107,7 +107,7 @@ def slow_roll_record(rig: Rig, tested: Bearing, signals: Signals, seed: int, noi
     free = rotor(rig, speed)
     load = np.linalg.solve(tested.compliance - free.ring[:, 1:], free.ring[:, 0] * free.unbalance_force)
     slow = attrs.evolve(signals, speed_drift=0.0, duration=max(signals.duration, 11.5 * 2.0 * pi / speed))
-    return record(rig, Response((speed,), (free.at_sensor(*load),)), slow, seed, noise)
+    return record(rig, _Response((speed,), (free.at_sensor(*load),)), slow, seed, noise)
 
 
 def _mark(angle: np.ndarray) -> np.ndarray:

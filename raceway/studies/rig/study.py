@@ -42,11 +42,11 @@ from raceway.studies.rig.signals import (
 )
 from raceway.studies.shaft import Bearing, State, balance, bearing, rotor
 
-OnProgress = Callable[[str, int, int], None]
+_OnProgress = Callable[[str, int, int], None]
 
 
 @attrs.frozen(eq=False)
-class Point:
+class _Point:
     """One speed under one axial load.
 
     Attributes
@@ -117,7 +117,7 @@ class RigStudy(Answer):
     scene: Scene
     rig: Rig
     critical: dict[str, float]
-    points: list[Point]
+    points: list[_Point]
     failed: list[Tables]
     fault: RacewayError | None = None
     signals: bool = True
@@ -246,7 +246,7 @@ def rig(
     *,
     kept: Path | None = None,
     plugins: Sequence[Path] = (),
-    progress: OnProgress | None = None,
+    progress: _OnProgress | None = None,
 ) -> RigStudy:
     """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
 
@@ -274,7 +274,7 @@ def rig(
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
     supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
     critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
-    points: dict[int, Point] = {}
+    points: dict[int, _Point] = {}
 
     def compute(numbered: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
         """The bearing's answers: nearly all of the time; signals, and what is read from them, follow again from those."""
@@ -304,7 +304,7 @@ def rig(
     return RigStudy(scene.title, scene, inputs, critical, ordered, failed, finished.fault, signals)
 
 
-def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> Point:
+def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
     """One speed: the true motion, its signals with noise of their ``number``, and what is read from them."""
     free, seed = rotor(rig, rpm * pi / 30.0), rig.signals.seed + 2 * number
     state = balance(free, tested)
@@ -315,4 +315,4 @@ def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> Point:
     component = amplitude(rotation_of(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
     by_article = readings(rig, tested, state.speed, component)
     causes = split(rig, tested, state)
-    return Point(tested.scene.load.axial, state, free.unbalance_force, signals, slow, identified, by_article, causes)
+    return _Point(tested.scene.load.axial, state, free.unbalance_force, signals, slow, identified, by_article, causes)

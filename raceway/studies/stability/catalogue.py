@@ -14,11 +14,10 @@ from raceway.errors import SceneError
 from raceway.framework.registry import Registry
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.stability.study import Case
-
-Changes = Tables
+from raceway.studies.verify.cases import transient_integrators
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
-BASE: Changes = {
+BASE: Tables = {
     "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
     "bearing": {"preset": "B7206C"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0}, "contact": {"damping": 0.001},
     "excitation": {
@@ -30,7 +29,7 @@ BASE: Changes = {
 UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
 
 
-def force(newton: float) -> Changes:
+def force(newton: float) -> Tables:
     """A rotating force that is the same at every speed."""
     return {"excitation.amplitude": "constant", "excitation.force": newton}
 
@@ -41,20 +40,20 @@ _B7206C = {
     "bearing.ball_diameter": 9.525e-3, "bearing.pitch_diameter": 46e-3, "bearing.ball_count": 12,
     "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0,
 }  # fmt: skip
-RUBBER, CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
-NEARLY_INCOMPRESSIBLE: Changes = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
-_RUBBER_BALLS: Changes = {"bearing.rings": CERAMIC, "bearing.balls": RUBBER, "load.axial": 10.0}
-STATIC: Changes = {"kinematics.ball_inertia": False}
+_RUBBER, _CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
+_NEARLY_INCOMPRESSIBLE: Tables = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
+_RUBBER_BALLS: Tables = {"bearing.rings": _CERAMIC, "bearing.balls": _RUBBER, "load.axial": 10.0}
+STATIC: Tables = {"kinematics.ball_inertia": False}
 #: The whole force from the first step on: while a force grows, energy is not balanced.
-SUDDEN: Changes = {"integrator.start": "static"}
+_SUDDEN: Tables = {"integrator.start": "static"}
 
 #: name, what changes in the base, whether the closed form of an axial load holds, and how the motion is judged:
 #: "orbit" by the steady orbit, "slow" by the series of equilibria, "finer" by finer steps and the balance of energy where no
 #: orbit is steady or friction remembers, "" for the equilibrium alone.
-SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
+SCENES: tuple[tuple[str, Tables, bool, str], ...] = (
     ("base", {}, True, "orbit"),
     ("axial load 1 N", {"load.axial": 1.0, **force(0.1), **STATIC}, False, "orbit"),
-    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **force(50.0), **STATIC, **SUDDEN}, False, "finer"),
+    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **force(50.0), **STATIC, **_SUDDEN}, False, "finer"),
     ("axial load 100 kN", {"load.axial": 1e5, **force(400.0)}, True, "orbit"),
     ("speed 1 r/min", {"excitation.speed_rpm": 1.0, **force(400.0), "integrator.turns": 3}, True, "slow"),
     ("speed 200 000 r/min", {"excitation.speed_rpm": 2e5, **force(100.0)}, False, "orbit"),
@@ -84,9 +83,9 @@ SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
     ),
     ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **force(100.0)}, False, "orbit"),
     ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **force(100.0)}, False, "orbit"),
-    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, True, "orbit"),
+    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, True, "orbit"),
     ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
-    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}, True, "orbit"),
+    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}, True, "orbit"),
     ("friction 0.3", {"contact.friction": 0.3, **force(100.0)}, True, "finer"),
     ("friction 1.0", {"contact.friction": 1.0, **force(100.0)}, True, "finer"),
     ("gyroscopic moments, 40 000 r/min", {"kinematics.gyroscopic": "outer_race", "excitation.speed_rpm": 4e4, **force(100.0)}, False, "orbit"),
@@ -99,40 +98,40 @@ SCENES: tuple[tuple[str, Changes, bool, str], ...] = (
 )  # fmt: skip
 
 #: Those that are run with elastic rings and balls, too.
-CONDENSED = (
+_CONDENSED = (
     "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "conformity 0.501",
     "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
     "ceramic balls in steel rings", "friction 0.3", "tilt free",
 )  # fmt: skip
 #: Those that are run unless all is asked for.
-QUICK = (
+_QUICK = (
     "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "clearance 20 um", "tilt free",
     "lift-off: rotating 3000 N at 1000 N axial",
 )  # fmt: skip
-PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
+_PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
 
-POINTS: Changes = {
+_POINTS: Tables = {
     "bodies.kind": "condensed", "contact.discretisation": "nodal", "mesh": {"kind": "structured", "nodes_per_semi_axis": 2}, **STATIC,
 }  # fmt: skip
 #: Scenes at rest whose contacts lie inside the grooves.
-STILL: tuple[tuple[str, Changes], ...] = (
+_STILL: tuple[tuple[str, Tables], ...] = (
     ("base", {}),
     ("axial load 1 N", {"load.axial": 1.0}),
     ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0]}),
     ("3 balls", {"bearing.ball_count": 3}),
     ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}),
-    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
     ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
 )
 #: Scenes at rest that a user must be told something about.
-WARNED: tuple[tuple[str, Changes, str, str], ...] = (
+_WARNED: tuple[tuple[str, Tables, str, str], ...] = (
     ("axial load 100 kN", {"load.axial": 1e5}, "groove's edge", "contacts are cut off by the shoulder"),
     (
         "conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501},
         "groove's edge", "the ellipse is longer than the groove",
     ),
     ("rubber balls in ceramic rings", _RUBBER_BALLS, "groove's edge", "the balls fill the grooves"),
-    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
+    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
 )  # fmt: skip
 
 #: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
@@ -148,31 +147,31 @@ TINY: Tables = {
     "rotor": {"mass": 0.5},
     "contact": {"kind": "hertz", "discretisation": "nodal"},
 }  # fmt: skip
-ELASTIC_POINTS: tuple[tuple[str, Changes], ...] = (
+_ELASTIC_POINTS: tuple[tuple[str, Tables], ...] = (
     ("base", {}),
     ("axial load 1 N", {"load.axial": 1.0}),
     ("axial load 100 kN", {"load.axial": 1e5}),
     ("rubber balls in ceramic rings", _RUBBER_BALLS),
-    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
-    ("Poisson's ratio 0.4999", NEARLY_INCOMPRESSIBLE),
+    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
+    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE),
 )
 #: 2688 elements for the base scene's twelve balls.
-COARSE: Changes = {
+COARSE: Tables = {
     "bodies": {"kind": "elastic", "formulation": "incompatible"},
     "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 24}, **STATIC,
 }  # fmt: skip
-RESULTANTS: tuple[tuple[str, Changes], ...] = (
+_RESULTANTS: tuple[tuple[str, Tables], ...] = (
     ("base", {}),
     ("axial load 1 N", {"load.axial": 1.0}),
     ("3 balls", {"bearing.ball_count": 3, "load.axial": 250.0}),
-    ("ceramic balls in steel rings", {"bearing.balls": CERAMIC}),
+    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
     ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
 )
 #: 15 000 r/min, a force that acts at once.
-EXCITED: Changes = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **force(60.0)}
+_EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **force(60.0)}
 
 #: name, changes, words of the message, why there is no answer.
-REFUSALS: tuple[tuple[str, Changes, str, str], ...] = (
+_REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
     ("no load", {"load.axial": 0.0}, "nothing loads the bearing", "every motion is free"),
     (
         "two balls on the line of the load",
@@ -198,7 +197,7 @@ REFUSALS: tuple[tuple[str, Changes, str, str], ...] = (
     ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "nothing has mass", "no acceleration is defined"),
 )  # fmt: skip
 #: name, changes, words of the warning, what it is about.
-WARNINGS: tuple[tuple[str, Changes, str, str], ...] = (
+_WARNINGS: tuple[tuple[str, Tables, str, str], ...] = (
     (
         "axial load that unseats the bearing", {"load.axial": -1000.0, **STATIC, "excitation": None},
         "the bearing unseats", "grooves without an end would hold the ring on the other side",
@@ -218,7 +217,7 @@ _ORBITS = (
 #: Step over the limit and amplitude over the approach of undamped steps: contacts stay closed, or open.
 _UNDAMPED = ((0.1, 0.03), (0.02, 1.5))
 #: integrator, options, step over the contact's period, whether it may chatter: the law decides.
-_CHATTER: tuple[tuple[str, Changes, float, bool], ...] = (
+_CHATTER: tuple[tuple[str, Tables, float, bool], ...] = (
     ("newmark", {}, 1.0, True), ("newmark", {}, 0.05, False), ("generalized_alpha", {"rho_infinity": 0.5}, 1.0, False),
     ("generalized_alpha", {"rho_infinity": 0.0}, 1.0, False), ("central_difference", {}, 0.05, False),
 )  # fmt: skip
@@ -227,8 +226,7 @@ _AT_REST = "scenes:condensed_at_rest"
 
 def transient(registry: Registry) -> list[str]:
     """Names of the integrators that march through time with inertia."""
-    entries = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [entry.name for entry in entries if entry.plugin.inertial and not entry.plugin.steady]
+    return [entry.name for entry in transient_integrators(registry)]
 
 
 def laws_with(registry: Registry, *discretisations: str) -> list[str]:
@@ -272,11 +270,11 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
     return (*cases, *(case for part in parts for case in part), *_messages(base), *_elements())
 
 
-def _any_scene(base: Changes, registry: Registry, own: bool) -> Iterator[Case]:
+def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
     """Steps around the limit, orbits, undamped steps, penalties; ``own``: of a user's scene, whose orbit is its own."""
     laws = laws_with(registry, "resultant")
     for name in transient(registry):
-        by_name: Changes = {"tables": base, "integrator": name}
+        by_name: Tables = {"tables": base, "integrator": name}
         yield Case("steps around the limit, linear", "motions:linear", {"integrator": name}, by_name)
         for law in laws:
             setting, changes = {"integrator": name, "law": law}, with_law(law, registry)
@@ -297,17 +295,17 @@ def _any_scene(base: Changes, registry: Registry, own: bool) -> Iterator[Case]:
                     undamped = {**arguments, "steps": steps, "factor": factor, "amplitude": amplitude}
                     yield Case("undamped steps", "motions:many_steps", setting, undamped, steps == 100_000)
     judge = "" if "excitation" not in base else "any" if own else "orbit"
-    for factor in PENALTIES if "penalty" in laws else ():
+    for factor in _PENALTIES if "penalty" in laws else ():
         arguments = {"tables": base, "changes": {"contact.kind": "penalty"}, "penalty_factor": factor, "judge": judge}
         shown = {"law": "penalty", "penalty / default": factor}
         yield Case("penalty", "scenes:extreme", shown, arguments, own or factor in (1e-3, 1e3))
 
 
-def _contacts(base: Changes, registry: Registry) -> Iterator[Case]:
+def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
     """Impacts, deep penetrations, equilibria from afar, chatter."""
     names = transient(registry)
     for law in laws_with(registry, "resultant"):
-        arguments: Changes = {"tables": base, "changes": with_law(law, registry)}
+        arguments: Tables = {"tables": base, "changes": with_law(law, registry)}
         for name in names:
             moved, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
             for speed in (0.01, 1.0, 10.0):
@@ -322,34 +320,32 @@ def _contacts(base: Changes, registry: Registry) -> Iterator[Case]:
                 yield Case("chatter", "motions:chatter", {"integrator": name, "law": law}, falling)
 
 
-def _scenes(base: Changes, registry: Registry) -> Iterator[Case]:
+def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
         if closed:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {}, {"tables": base, "changes": changes})
         for law in laws_with(registry, "resultant"):
             lawful = {**changes, **with_law(law, registry)}
-            arguments: Changes = {"tables": base, "judge": judge, "changes": lawful}
-            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in QUICK)
-            if name in CONDENSED:
+            arguments: Tables = {"tables": base, "judge": judge, "changes": lawful}
+            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _QUICK)
+            if name in _CONDENSED:
                 arguments |= {"changes": {**lawful, "bodies.kind": "condensed"}, "may_be_too_stiff": True}
                 yield Case(name, "scenes:extreme", {"law": law, "bodies": "condensed"}, arguments, False)
 
 
-def _points(base: Changes, registry: Registry) -> Iterator[Case]:
+def _points(base: Tables, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
-    turn: Changes = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
+    turn: Tables = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
     for law in laws_with(registry, "nodal"):
 
-        def case(
-            name: str, measure: str, changes: Changes, shown: Changes | None = None, law: str = law, **more: Any
-        ) -> Case:
+        def case(name: str, measure: str, changes: Tables, shown: Tables | None = None, law: str = law, **more: Any) -> Case:
             setting = {"law": law, "bodies": "condensed, points", **(shown or {})}
-            arguments = {"tables": base, "changes": {**POINTS, **changes, "contact.kind": law}, **more}
+            arguments = {"tables": base, "changes": {**_POINTS, **changes, "contact.kind": law}, **more}
             return Case(f"surface points: {name}", measure, setting, arguments, measure == _AT_REST and name == "base")
 
-        for name, changes in STILL:
+        for name, changes in _STILL:
             yield case(name, _AT_REST, changes)
-        for name, changes, words, reason in WARNED:
+        for name, changes, words, reason in _WARNED:
             yield case(name, "scenes:warning", {**changes, "excitation": None}, words=words, reason=reason)
         for name in transient(registry):
             shown = {"integrator": name}
@@ -360,11 +356,11 @@ def _points(base: Changes, registry: Registry) -> Iterator[Case]:
                 yield case("a turn", "scenes:refusal", {**turn, "integrator.kind": name}, shown, words=words, reason=reason)
 
 
-def _elastic(base: Changes, registry: Registry) -> Iterator[Case]:
+def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
     """One force a contact and pressures at points, with every law that both can have."""
 
     def case(
-        name: str, measure: str, changes: Changes, bodies: str = "points", tables: Changes = TINY, law: str = "", **more: Any
+        name: str, measure: str, changes: Tables, bodies: str = "points", tables: Tables = TINY, law: str = "", **more: Any
     ) -> Case:  # fmt: skip
         setting = ({"law": law} if law else {}) | {"bodies": f"elastic, {bodies}"}
         setting |= {"integrator": more["integrator"]} if "integrator" in more else {}
@@ -372,9 +368,9 @@ def _elastic(base: Changes, registry: Registry) -> Iterator[Case]:
         return Case(f"elastic bodies: {name}", measure, setting, {"tables": tables, "changes": changes, **more}, False)
 
     for law in laws_with(registry, "nodal", "resultant"):
-        for name, changes in RESULTANTS if law == "hertz" else RESULTANTS[:1]:
+        for name, changes in _RESULTANTS if law == "hertz" else _RESULTANTS[:1]:
             yield case(name, "scenes:calibrated_at_rest", {**changes, "excitation": None}, "resultants", base, law)
-        for name, changes in ELASTIC_POINTS if law == "hertz" else ELASTIC_POINTS[:1]:
+        for name, changes in _ELASTIC_POINTS if law == "hertz" else _ELASTIC_POINTS[:1]:
             yield case(name, "scenes:points_at_rest", changes, law=law)
         words = "the displacement depend on the mesh"
         reason = "an element is wider than a contact: the displacement is a third too small"
@@ -383,14 +379,14 @@ def _elastic(base: Changes, registry: Registry) -> Iterator[Case]:
     reason = "what the mesh gives way under a contact is more than Hertz's compliance"
     heavy = {**COARSE, "load.axial": 1e5, "excitation": None}
     yield case("axial load 100 kN", "scenes:refusal", heavy, "resultants", base, words=words, reason=reason)
-    yield case("friction 1.0, a force acts at once", "scenes:rubbing", {**EXCITED, "contact.friction": 1.0})
+    yield case("friction 1.0, a force acts at once", "scenes:rubbing", {**_EXCITED, "contact.friction": 1.0})
     for name in transient(registry):
-        yield case("a force acts at once", "scenes:sudden_force", EXCITED, integrator=name)
+        yield case("a force acts at once", "scenes:sudden_force", _EXCITED, integrator=name)
 
 
-def _messages(base: Changes) -> Iterator[Case]:
+def _messages(base: Tables) -> Iterator[Case]:
     """Scenes that are refused, or that users are warned about."""
-    for measure, messages in (("refusal", REFUSALS), ("warning", WARNINGS)):
+    for measure, messages in (("refusal", _REFUSALS), ("warning", _WARNINGS)):
         for name, changes, words, reason in messages:
             arguments = {"tables": base, "changes": changes, "words": words, "reason": reason}
             yield Case(name, f"scenes:{measure}", {}, arguments)

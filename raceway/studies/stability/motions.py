@@ -39,7 +39,7 @@ _AT_REST = 1e-3
 #: Every so many steps are recorded: no divisor of a million's blocks that a period could meet.
 _STRIDE = 10
 #: Parts of the predicted limit.
-FACTORS = (0.5, 0.9, 0.98, 1.02, 1.1)
+_FACTORS = (0.5, 0.9, 0.98, 1.02, 1.1)
 _STEPS, _TURNS = 400, 50
 #: Perturbation over the axial approach: small enough to be linear, far above the tolerance of implicit steps (1e-9).
 _SMALL = 1e-6
@@ -271,7 +271,7 @@ def _around_the_limit(
         return float(np.abs((moved - still) * weight).max() / size)
 
     words = f"largest over first displacement, {_STEPS} steps"
-    for factor in FACTORS:
+    for factor in _FACTORS:
         bounded = method.implicit or factor < 1.0
         why, limit_of_growth = (_SWINGS, Limit.at_most(_BOUNDED)) if bounded else (_GROWS, Limit.at_least(_GROWING))
         rows.check(words, growth(factor), why, limit_of_growth, at={"step/limit": factor})

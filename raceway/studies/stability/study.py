@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 AS_EXPECTED, FAILED = "as expected", "failed"
 PROCESSES = 2
 #: A case that takes longer has hung [s].  The longest takes 20 s, and compiling for the first time on busy cores some minutes.
-PATIENCE_S = 900.0
+_PATIENCE_S = 900.0
 #: Of a message in a table [characters].
 _LONGEST = 200
 #: A value, or a value and the drift of the energy.
@@ -62,7 +62,7 @@ class Case:
 
 
 @attrs.frozen
-class Row:
+class _Row:
     """One line of the report.
 
     Attributes
@@ -116,11 +116,11 @@ class Rows:
 
     case: str
     setting: Tables = attrs.field(factory=dict)
-    written: list[Row] = attrs.field(factory=list)
+    written: list[_Row] = attrs.field(factory=list)
 
     def check(
         self, quantity: str, value: Measured | Callable[[], Measured], why: str, limit: Limit, at: Tables | None = None, note: str = ""
-    ) -> Row:  # fmt: skip
+    ) -> _Row:  # fmt: skip
         """A number against its limit; an error of a function, or no number, fails.
 
         Parameters
@@ -141,7 +141,7 @@ class Rows:
         self.written[-1] = attrs.evolve(row, predicted=limit.near, observed=number, energy_drift=drift)
         return self.written[-1]
 
-    def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> Row:
+    def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> _Row:
         """What must be refused, with a message that holds ``words``."""
         good, note = False, "it was computed instead"
         try:
@@ -150,18 +150,18 @@ class Rows:
             good, note = words in str(error), short(error)
         return self._row(good, "message", f"refused: '{words}'", why, note, at)
 
-    def warned(self, words: str, why: str, warnings: Iterable[str]) -> Row:
+    def warned(self, words: str, why: str, warnings: Iterable[str]) -> _Row:
         """A warning that holds ``words``."""
         text = next((text for text in warnings if words in text), None)
         return self._row(text is not None, "warning", f"warned: '{words}'", why, text or "no such warning")
 
-    def lost(self, why: str, at: Tables | None = None) -> Row:
+    def lost(self, why: str, at: Tables | None = None) -> _Row:
         """A case, or a part of it, that ended without an answer."""
         return self._row(False, "answer", "an answer or a refusal", "", why, at)
 
-    def _row(self, good: bool, quantity: str, expected: str, why: str, note: str = "", at: Tables | None = None) -> Row:
+    def _row(self, good: bool, quantity: str, expected: str, why: str, note: str = "", at: Tables | None = None) -> _Row:
         verdict = AS_EXPECTED if good else FAILED
-        row = Row(self.case, {**self.setting, **(at or {})}, quantity, expected, None, None, None, verdict, why, note)
+        row = _Row(self.case, {**self.setting, **(at or {})}, quantity, expected, None, None, None, verdict, why, note)
         self.written.append(row)
         return row
 
@@ -187,7 +187,7 @@ class Stability(Answer):
     stem: ClassVar[str] = "stability"
 
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[_Row, ...]
     cases: int
     left_out: int
     reused: int
@@ -198,7 +198,7 @@ class Stability(Answer):
     by_row: bool = False
 
     @property
-    def failed(self) -> tuple[Row, ...]:
+    def failed(self) -> tuple[_Row, ...]:
         return tuple(row for row in self.rows if row.verdict == FAILED)
 
     def to_dict(self) -> Tables:
@@ -255,7 +255,7 @@ class Stability(Answer):
             yield f"left out: {self.left_out} cases that take longer; --all runs them"
 
 
-def _cells(row: Row) -> dict[str, str]:
+def _cells(row: _Row) -> dict[str, str]:
     setting = ", ".join(micro(f"{key} {value}") for key, value in row.setting.items())
     numbers = {
         name: "" if value is None else f"{value:.6g}"
@@ -309,8 +309,8 @@ def stability(
 
 def measured(
     cases: Sequence[Case], processes: int, registry: Registry, plugins: Sequence[Path] = (), store: RowStore | None = None,
-    on_progress: OnProgress | None = None, patience: float = PATIENCE_S,
-) -> tuple[list[Row], int]:  # fmt: skip
+    on_progress: OnProgress | None = None, patience: float = _PATIENCE_S,
+) -> tuple[list[_Row], int]:  # fmt: skip
     """Rows of all cases, and how many cases were kept from before; none can stop the others by hanging or dying.
 
     Parameters
@@ -325,14 +325,14 @@ def measured(
         _answer, items, store or RowStore(None), executor, registry, plugins, on_progress,
         lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.task.setting).lost(reason))]},
     )  # fmt: skip
-    return [Row(**row) for answer in answers for row in answer["rows"]], reused
+    return [_Row(**row) for answer in answers for row in answer["rows"]], reused
 
 
 def _answer(case: Case, registry: Registry) -> Tables:
     return {"rows": [attrs.asdict(row) for row in rows_of(case, registry)]}
 
 
-def rows_of(case: Case, registry: Registry) -> list[Row]:
+def rows_of(case: Case, registry: Registry) -> list[_Row]:
     """The rows of a case; whatever its code raises becomes a failed row."""
     rows, (module, _, function) = Rows(case.name, case.setting), case.measure.partition(":")
     arguments, bench = dict(case.arguments), None

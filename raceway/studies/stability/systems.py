@@ -142,7 +142,7 @@ def inverted(function: Callable[[float], float], value: float, first: float) -> 
     return high
 
 
-def force_and_slope(model: Model, pair: int, approach: float, params: np.ndarray | None = None) -> tuple[float, float]:
+def _force_and_slope(model: Model, pair: int, approach: float, params: np.ndarray | None = None) -> tuple[float, float]:
     """Force [N] and stiffness [N/m] of one ball-race pair at rest, by the law's kernel; ``params`` (2 Z, k): not the model's."""
     system = surrogate(model.system)
     law_params = system.law_params if params is None else params
@@ -153,7 +153,7 @@ def force_and_slope(model: Model, pair: int, approach: float, params: np.ndarray
 
 
 def _force_at(model: Model, pair: int, params: np.ndarray | None, approach: float) -> float:
-    return force_and_slope(model, pair, approach, params)[0]
+    return _force_and_slope(model, pair, approach, params)[0]
 
 
 def axial_displacement(model: Model) -> float:
@@ -205,7 +205,7 @@ def stiffer_than_hertz(model: Model, ball_load: float) -> bool:
     for pair, ellipse in ((0, model.inner), (model.system.ball_count, model.outer)):
         for load in (factor * ball_load for factor in _LOADS):
             approach = float(ellipse.approach(load))
-            if force_and_slope(model, pair, approach)[1] > 1.5 * load / approach:
+            if _force_and_slope(model, pair, approach)[1] > 1.5 * load / approach:
                 return True
     return False
 

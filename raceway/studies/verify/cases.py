@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from raceway.framework.contracts import Excitation, Integrator
 
 
-INCH, POUND, PSI = 0.0254, 4.4482216152605, 6894.757293168361
+_INCH, _POUND, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
 Rows = Iterator[Row]
 
@@ -78,13 +78,13 @@ def masta(case: Case, registry: Registry) -> Rows:
 def race_ellipse(case: Case, registry: Registry) -> Rows:
     """Ellipse, approach and pressure of the inner race at a load and contact angle (the loaded one)."""
     bearing = {"preset": "ACB21-HARRIS-MINDEL", "contact_angle_deg": case.inputs["alpha_deg"]}
-    inner = _model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * POUND})).inner
-    load = case.inputs["Q_lb"] * POUND
+    inner = _model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * _POUND})).inner
+    load = case.inputs["Q_lb"] * _POUND
     a, b = inner.semi_axes(load)
     yield from _numbers(case, {
-        "a_in": ("semi-major axis [in]", float(a) / INCH), "b_in": ("semi-minor axis [in]", float(b) / INCH),
-        "delta_in": ("approach [in]", float(inner.approach(load)) / INCH),
-        "pmax_psi": ("peak pressure [psi]", float(inner.peak_pressure(load)) / PSI),
+        "a_in": ("semi-major axis [in]", float(a) / _INCH), "b_in": ("semi-minor axis [in]", float(b) / _INCH),
+        "delta_in": ("approach [in]", float(inner.approach(load)) / _INCH),
+        "pmax_psi": ("peak pressure [psi]", float(inner.peak_pressure(load)) / _PSI),
     })  # fmt: skip
 
 
@@ -144,8 +144,8 @@ def _largest_force(excitation: Excitation) -> float:
 
 
 #: Peak force and contact time of an integrator at this many steps a contact, and how close they have to come: 0.1 %.
-STEPS_PER_CONTACT = 100
-TRANSIENT_TOLERANCE = 1e-3
+_STEPS_PER_CONTACT = 100
+_TRANSIENT_TOLERANCE = 1e-3
 #: Instants of the first touch within a step; the worst of them counts.
 _PHASES = (0.0, 0.25, 0.5, 0.75)
 #: d_max / v to the time of contact.
@@ -153,7 +153,7 @@ _CONTACT_TIME = 0.8 * sqrt(pi) * gamma(0.4) / gamma(0.9)
 
 
 @attrs.frozen
-class Impact:
+class _Impact:
     """One mass against one Hertz contact: mass [kg], relative speed [m/s], factor k [N/m^1.5]."""
 
     mass: float
@@ -176,16 +176,16 @@ class Impact:
         return _CONTACT_TIME * self.largest_approach / self.speed
 
 
-def impact_of(inputs: Tables) -> Impact:
+def impact_of(inputs: Tables) -> _Impact:
     """The impact that a case describes; its ``type`` says what the sphere meets."""
     radius, speed = inputs["R_m"], inputs["v_each_m_s"]
     mass = inputs["rho_kg_m3"] * 4.0 / 3.0 * pi * radius**3
     young, poisson = inputs["E_Pa"], inputs["nu"]
     if inputs["type"] == "two equal spheres":
         modulus = contact_modulus(young, poisson, young, poisson)
-        return Impact(0.5 * mass, 2.0 * speed, ellipse(4.0 / radius, 0.0, modulus).factor)
+        return _Impact(0.5 * mass, 2.0 * speed, ellipse(4.0 / radius, 0.0, modulus).factor)
     modulus = young / (1.0 - poisson**2)
-    return Impact(mass, speed, ellipse(2.0 / radius, 0.0, modulus).factor)
+    return _Impact(mass, speed, ellipse(2.0 / radius, 0.0, modulus).factor)
 
 
 def transient_integrators(registry: Registry) -> list[Entry]:
@@ -203,14 +203,14 @@ def impact_of_spheres(case: Case, registry: Registry) -> Rows:
     for entry in transient_integrators(registry):
         note, force, time = "", None, None
         try:
-            force, time = worst_measured(entry.plugin(), impact, STEPS_PER_CONTACT)
+            force, time = _worst_measured(entry.plugin(), impact, _STEPS_PER_CONTACT)
         except Exception as why:  # a third party's own code: it is reported by name
             note = f"integrator '{entry.name}' of {entry.distribution} fails: {type(why).__name__}: {why}"
-        yield case.row(f"peak force, {entry.name} [N]", out["Fmax_N"], force, TRANSIENT_TOLERANCE, note)
-        yield case.row(f"contact time, {entry.name} [s]", out["tc_s"], time, TRANSIENT_TOLERANCE, note)
+        yield case.row(f"peak force, {entry.name} [N]", out["Fmax_N"], force, _TRANSIENT_TOLERANCE, note)
+        yield case.row(f"contact time, {entry.name} [s]", out["tc_s"], time, _TRANSIENT_TOLERANCE, note)
 
 
-def worst_measured(method: Integrator, impact: Impact, steps: int) -> tuple[float, float]:
+def _worst_measured(method: Integrator, impact: _Impact, steps: int) -> tuple[float, float]:
     """Peak force [N] and contact time [s] that lie farthest off, over touches at several instants within a step."""
     measured = [measure(method, impact, steps, phase) for phase in _PHASES]
     force = max((m[0] for m in measured), key=lambda f: abs(f - impact.largest_force))
@@ -218,7 +218,7 @@ def worst_measured(method: Integrator, impact: Impact, steps: int) -> tuple[floa
     return force, time
 
 
-def measure(method: Integrator, impact: Impact, steps: int, phase: float) -> tuple[float, float]:
+def measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
     """Peak force [N] and contact time [s] of one impact at ``steps`` steps a contact.
 
     Parameters

@@ -53,7 +53,7 @@ def joined(parts: list[Surface]) -> Surface:
     )
 
 
-def revolved(line: np.ndarray, azimuths: np.ndarray) -> Surface:
+def _revolved(line: np.ndarray, azimuths: np.ndarray) -> Surface:
     """The surface that a closed line (k, 2) of x and radius sweeps, the body to the left of it.
 
     Parameters
@@ -137,7 +137,7 @@ def arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: floa
     head = min(2.5 * thickness, 0.6 * length)
     thin, wide = 0.3 * thickness * head / (2.5 * thickness), 0.8 * thickness * head / (2.5 * thickness)
     line = np.array([[0.0, 0.0], [0.0, thin], [length - head, thin], [length - head, wide], [length, 0.0]])
-    solid = revolved(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
+    solid = _revolved(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
     side = np.cross(towards, [1.0, 0.0, 0.0] if abs(towards[0]) < 0.9 else [0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
     frame = np.stack([towards, side, np.cross(towards, side)])
@@ -146,12 +146,12 @@ def arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: floa
 
 _MM = 1e3
 #: Azimuths that are cut out of the rings [rad], from +y towards +z.
-CUT = (-0.08 * pi, 0.55 * pi)
+_CUT = (-0.08 * pi, 0.55 * pi)
 #: The longest arrow over the ball diameter.
 _LONGEST = 1.1
 #: The longest semi-axis of a contact as it is drawn over the ball's diameter.
 _WIDEST = 0.45
-INNER, OUTER, FACE = "#6f93b5", "#b9a679", "#dfe3e7"
+INNER, OUTER, _FACE = "#6f93b5", "#b9a679", "#dfe3e7"
 
 
 @attrs.frozen(eq=False)
@@ -254,7 +254,7 @@ class Bearing:
         turn = np.cross([0.0, tilt_y, tilt_z], points)
         return np.asarray(points + turn + [x, y, z])
 
-    def rings(self, cut: tuple[float, float] | None = CUT, glass: bool = True) -> list[Part]:
+    def rings(self, cut: tuple[float, float] | None = _CUT, glass: bool = True) -> list[Part]:
         """Both rings of each row at rest, without the azimuths between ``cut``; ``glass``: one sees through the outer one."""
         parts = []
         low, high = (0.0, 0.0) if cut is None else cut
@@ -265,10 +265,10 @@ class Bearing:
                 outline = np.concatenate([seat, race[::-1]] if inner else [race, seat[::-1]])
                 name = "inner ring" if inner else "outer ring"
                 opacity = 0.32 if glass and not inner else 1.0
-                parts.append(Part(name, revolved(outline, azimuths), colour, opacity))
+                parts.append(Part(name, _revolved(outline, azimuths), colour, opacity))
                 if cut is not None:
                     faces = [section(race, seat, at, sense) for at, sense in ((high, -1.0), (low, 1.0))]
-                    parts.append(Part(f"{name}, cut face", joined(faces), FACE if glass else colour))
+                    parts.append(Part(f"{name}, cut face", joined(faces), _FACE if glass else colour))
         return parts
 
     def lines(self, inner: bool, side: float, axial: float) -> tuple[np.ndarray, np.ndarray]:

@@ -95,9 +95,11 @@ def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
             {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
         )
 
+    from matplotlib.colors import to_rgb
+
     for k, part in enumerate(bearing.rings()):
         shapes[f"ring {k}"] = _packed(part.surface)
-        add(part, f"ring {k}", np.zeros(3), _hex(part.colour))
+        add(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white")))
     for part, centre in zip(bearing.balls(state), centres, strict=True):
         add(part, "ball", centre, _tone(LOADS, (part.load or 0.0) / top))
     for k, part in enumerate(bearing.arrows(state, top)):
@@ -179,11 +181,6 @@ def _bar(quantity: str, unit: str, colours: str, top: float) -> str:
     )
     numbers = "".join(f"<span>{share * top:.4g}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
     return f'<div class="bar">{escape(quantity)} [{unit}]<i style="background: linear-gradient(90deg, {stops})"></i><div>{numbers}</div></div>'
-
-
-def _hex(colour: str | None) -> list[float]:
-    text = (colour or "#ffffff").lstrip("#")
-    return [int(text[k : k + 2], 16) / 255.0 for k in (0, 2, 4)]
 
 
 def _short(values: np.ndarray | list[float]) -> list[float]:

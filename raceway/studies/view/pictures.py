@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -135,7 +136,11 @@ def rendered(
         plotter.close()
         return pixels
 
-    return _png(quietly(pyvista, image, otherwise))
+    from PIL import Image
+
+    memory = io.BytesIO()
+    Image.fromarray(quietly(pyvista, image, otherwise)).save(memory, "PNG")
+    return memory.getvalue()
 
 
 def look_from(plotter: Plotter, camera: Sequence[Sequence[float]], zoom: float) -> None:
@@ -305,17 +310,3 @@ def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: flo
     axes.set_ylabel("rolling [mm]")
     axes.set_title(f"{race} race: {words}", fontsize=11)
     return scale
-
-
-def _png(image: np.ndarray) -> bytes:
-    """An image (rows, columns, 3) of bytes as a PNG file: zlib's stream of unfiltered rows."""
-    import struct
-    import zlib
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    height, width = image.shape[:2]
-    rows = b"".join(b"\0" + row.tobytes() for row in np.ascontiguousarray(image[:, :, :3]))
-    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows, 6)) + chunk(b"IEND", b"")
