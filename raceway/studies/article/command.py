@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 from click.core import ParameterSource
@@ -34,10 +34,7 @@ from raceway.framework.registry import registry_with
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
-    from raceway.framework.registry import Registry
     from raceway.out.answer import Answer
-    from raceway.out.progress import ProgressBar
-    from raceway.storage.tables import Tables
 
 
 class _ArticleOptions(NamedTuple):
@@ -112,45 +109,34 @@ def article(options: _ArticleOptions) -> int:
     tables, mistakes = changed_tables(scene, options.changes, registry)
     if mistakes:
         raise SceneError(mistakes)
-    run = (_elastic if elastic else _article)(options, tables)
     name = "article-elastic" if elastic else "article"
     folder = writable(options.out or RESULTS / (name if options.scene is None else f"{slug(str(tables['title']))}-{name}"))
     pictures = options.pictures and has_matplotlib()
     tell_faults(registry)
+    compute: Callable[..., Answer]
+    if elastic:
+        from raceway.studies.article.elastic import TURNS, elastic_article
+        from raceway.studies.article.elastic import design as elastic_design
+
+        runs = elastic_design(tables, options.friction, TURNS if options.turns is None else options.turns)
+        compute = partial(elastic_article, runs, folder if pictures else None)
+    else:
+        from raceway.studies.article.design import design
+
+        kinds = ("rigid", "condensed") if options.bodies == "both" else (options.bodies,)
+        curves = design(tables, options.speeds, options.axial, options.shaft, kinds, options.friction)
+        # Mistakes are refused before anything is loaded that computes.
+        from raceway.studies.article.study import article as compute_curves
+
+        compute = partial(compute_curves, curves, options.processes)
     rows = folder / f"{name}-rows.jsonl"
     with keeping("runs" if elastic else "curves", rows), show_progress() as progress:
-        answer = run(folder if pictures else None, rows, registry, options.plugins, progress, _command(context))
+        answer = compute(rows, registry, options.plugins, progress, _command(context))
         progress("writing", 0, 0)
         files: list[str] = []
         failed = attempt(lambda: answer.save(folder, pictures), files) or answer.failure()
     show(answer.to_dict(), options.as_json, failed, lambda: answer.screen(files))
     return 0
-
-
-#: Runs a study: where the section is drawn, file of finished rows, registry, plug-in files, progress, what makes the page again.
-_Study = Callable[[Path | None, Path, "Registry", tuple[Path, ...], "ProgressBar", str], "Answer"]
-
-
-def _article(options: _ArticleOptions, tables: Tables) -> _Study:
-    """Rigid and condensed bodies; mistakes are refused before anything is loaded that computes."""
-    from raceway.studies.article.design import design
-
-    kinds = ("rigid", "condensed") if options.bodies == "both" else (options.bodies,)
-    runs = design(tables, options.speeds, options.axial, options.shaft, kinds, options.friction)
-
-    def study(_folder: Path | None, *given: Any) -> Answer:
-        from raceway.studies.article.study import article
-
-        return article(runs, options.processes, *given)
-
-    return study
-
-
-def _elastic(options: _ArticleOptions, tables: Tables) -> _Study:
-    """Elastic bodies beside the others."""
-    from raceway.studies.article.elastic import TURNS, design, elastic_article
-
-    return partial(elastic_article, design(tables, options.friction, TURNS if options.turns is None else options.turns))
 
 
 #: Options that one choice of --bodies has no use for, with the reason.

@@ -7,7 +7,7 @@ has all of them side by side.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import attrs
 import numpy as np
@@ -23,6 +23,7 @@ from raceway.studies.article.design import (
     ROTATING,
     TILT_WORDS,
     TILTS,
+    Curve,
     Curves,
     Setting,
 )
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
     from raceway.studies.article.study import Article
 
+_Colour: TypeAlias = str | tuple[float, float, float, float]
 _WIDTH, _HEIGHT = 4.7, 3.8
 _REFERENCE = "#8794a0"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
@@ -100,7 +102,7 @@ class _Line:
     x: np.ndarray
     y: np.ndarray
     style: str
-    colour: Any
+    colour: _Colour
     width: float
     label: str | None = None
     marked: bool = True
@@ -140,13 +142,13 @@ def _ends(named: Mapping[str, np.ndarray]) -> str:
     )
 
 
-def _colours(count: int) -> list[Any]:
+def _colours(count: int) -> list[_Colour]:
     from matplotlib import colormaps
 
     return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
-def _end_labels(axes: Axes, x: float, labels: list[tuple[float, str, Any]]) -> None:
+def _end_labels(axes: Axes, x: float, labels: list[tuple[float, str, _Colour]]) -> None:
     """Names at the right ends of curves, pushed apart where they would cover each other."""
     finite = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
     low, high = axes.get_ylim()
@@ -213,7 +215,7 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     run = {pair: curves.curve(setting, load) for pair, setting in settings.items() if (setting, load) in curves.rows}
     light = {pair: curves.curve(attrs.evolve(settings[pair], inertia=False), load) for pair in CLAIMED}
 
-    def k(curve: Any, status: str = "completed") -> np.ndarray:
+    def k(curve: Curve, status: str = "completed") -> np.ndarray:
         return np.asarray(curve.values(measure, status) / (curve.values(measure)[0] if star else 1e6))
 
     lines = [_Line(w, k(curve), "--", _PAIRS[pair][0], 1.1, None, False, True) for pair, curve in light.items()]
