@@ -10,6 +10,7 @@ import attrs
 from raceway.bodies.mesh import unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem, resolve
@@ -147,26 +148,24 @@ def nodes_of(scene: Scene) -> int:
     return int(getattr(scene.mesh, "nodes_per_semi_axis", NODES))
 
 
-def patch_faults(scene: Scene) -> list[Mistake]:
-    """Limits of contacts at surface points that a scene violates, each with the way out."""
-    faults: list[Mistake] = []
-
-    def refuse(bad: bool, path: str, value: object, why: str) -> None:
-        if bad:
-            faults.append(Mistake(path, value, why))
-
-    instead = "use discretisation = 'resultant'"
-    contact = scene.contact
-    remembers = contact.law.state_size > 0
-    why = f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {instead}"
-    refuse(remembers, "contact.kind", contact.kind, why)
-    recorded = scene.excitation is not None and "record" in scene.identifier.method.needs
-    why = f"is explicit and takes contacts at surface points through too many steps: use 'newmark' or 'quasi_static', or {instead}"
-    refuse(recorded and not scene.integrator.method.implicit, "integrator.kind", scene.integrator.kind, why)
-    cost = patch_cost(scene)
-    why = f"would take {cost.bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: take fewer points"
-    refuse(cost.bytes > _LIMIT, "mesh.nodes_per_semi_axis", nodes_of(scene), why)
-    return faults
+_INSTEAD = "use discretisation = 'resultant'"
+#: Limits of contacts at surface points, each with the way out.
+_PATCHES: tuple[Rule[Scene], ...] = (
+    Rule(
+        "contact.kind", lambda s: s.contact.law.state_size > 0,
+        f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {_INSTEAD}",
+    ),
+    Rule(
+        "integrator.kind",
+        lambda s: s.excitation is not None and "record" in s.identifier.method.needs and not s.integrator.method.implicit,
+        "is explicit and takes contacts at surface points through too many steps: use 'newmark' or 'quasi_static', or "
+        f"{_INSTEAD}",
+    ),
+    Rule(
+        "mesh.nodes_per_semi_axis", lambda s: patch_cost(s).bytes > _LIMIT,
+        lambda s: f"would take {patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: take fewer points",
+    ),
+)  # fmt: skip
 
 
 _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-6}, sample=14.0e-6, search=2.5)
@@ -218,7 +217,7 @@ class Condensed:
         faults += seat_faults(scene)
         if unmeshed or scene.contact.discretisation not in scene.contact.law.discretisations:
             return faults
-        return faults + ((patch_faults(scene) if _nodal(scene) else []) or section_faults(scene))
+        return faults + ((mistakes(_PATCHES, scene) if _nodal(scene) else []) or section_faults(scene))
 
     def traits(self, scene: Scene) -> Traits:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""

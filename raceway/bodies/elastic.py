@@ -15,6 +15,7 @@ from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_constraint
 from raceway.framework.options import one_of, option, positive
+from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
 from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem, axial_approach
@@ -205,37 +206,41 @@ def _own_bytes() -> float:
     return inf if limit == resource.RLIM_INFINITY else float(limit - taken)
 
 
-def elastic_faults(scene: Scene) -> list[Mistake]:
-    """Limits of elastic bodies that a scene violates, each with the way out."""
-    faults: list[Mistake] = []
-
-    def refuse(bad: bool, path: str, value: object, why: str) -> None:
-        if bad:
-            faults.append(Mistake(path, value, why))
-
-    other = "or take bodies.kind = 'condensed'"
-    kinematics, b, contact = scene.kinematics, scene.bearing, scene.contact
-    why = f"is required by elastic bodies: for instance [mesh] with kind = 'structured', {other}"
-    refuse(scene.mesh is None, "mesh", None, why)
-    whole = contact.discretisation == "resultant"
-    why = f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {other}"
-    refuse(whole and contact.friction > 0.0, "contact.friction", contact.friction, why)
-    why = "is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', " + other
-    refuse(is_constraint(contact.law), "contact.kind", contact.kind, why)
-    why = f"balls of elastic bodies stay at their azimuth: set it false, {other}"
-    refuse(kinematics.orbiting, "kinematics.orbiting", True, why)
-    why = f"balls of elastic bodies do not turn: set it 'none', {other}"
-    refuse(kinematics.gyroscopic != "none", "kinematics.gyroscopic", kinematics.gyroscopic, why)
-    why = f"elastic bodies are one row of balls: use 'single', {other}"
-    refuse(len(b.rows) > 1, "bearing.arrangement" if not b.row else "bearing.row", b.signs if b.row else b.arrangement, why)
-    why = f"balls of elastic bodies do not turn: set it false, {other}"
-    refuse(kinematics.ball_growth, "kinematics.ball_growth", True, why)
-    why = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {other}"
-    for key, value in scene.mounting.changes.items():
-        refuse(True, f"mounting.{key}", value, why)
-    why = f"the arm follows from the shape of elastic rings, which is that of 'groove': use it, {other}"
-    refuse(b.tilt_arm != "groove", "bearing.tilt_arm", b.tilt_arm, why)
-    return faults
+_OTHER = "or take bodies.kind = 'condensed'"
+_ONE_ROW = f"elastic bodies are one row of balls: use 'single', {_OTHER}"
+_SHAPES = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {_OTHER}"
+#: What elastic bodies cannot do, each with the way out.
+_RULES: tuple[Rule[Scene], ...] = (
+    Rule(
+        "mesh", lambda s: s.mesh is None,
+        f"is required by elastic bodies: for instance [mesh] with kind = 'structured', {_OTHER}",
+    ),
+    Rule(
+        "contact.friction", lambda s: s.contact.discretisation == "resultant" and s.contact.friction > 0.0,
+        f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {_OTHER}",
+    ),
+    Rule(
+        "contact.kind", lambda s: is_constraint(s.contact.law),
+        f"is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', {_OTHER}",
+    ),
+    Rule(
+        "kinematics.orbiting", lambda s: s.kinematics.orbiting,
+        f"balls of elastic bodies stay at their azimuth: set it false, {_OTHER}",
+    ),
+    Rule(
+        "kinematics.gyroscopic", lambda s: s.kinematics.gyroscopic != "none",
+        f"balls of elastic bodies do not turn: set it 'none', {_OTHER}",
+    ),
+    Rule("bearing.arrangement", lambda s: len(s.bearing.rows) > 1 and not s.bearing.row, _ONE_ROW),
+    Rule(
+        "kinematics.ball_growth", lambda s: s.kinematics.ball_growth,
+        f"balls of elastic bodies do not turn: set it false, {_OTHER}",
+    ),
+    Rule(
+        "bearing.tilt_arm", lambda s: s.bearing.tilt_arm != "groove",
+        f"the arm follows from the shape of elastic rings, which is that of 'groove': use it, {_OTHER}",
+    ),
+)  # fmt: skip
 
 
 def memory_faults(scene: Scene) -> list[Mistake]:
@@ -293,7 +298,10 @@ class Elastic:
 
     def faults(self, scene: Scene) -> list[Mistake]:
         """What bodies with every node cannot do; meshes without cells, or too large."""
-        faults = elastic_faults(scene)
+        faults = mistakes(_RULES, scene)
+        if scene.bearing.row and len(scene.bearing.rows) > 1:
+            faults.append(Mistake("bearing.row", scene.bearing.signs, _ONE_ROW))
+        faults += [Mistake(f"mounting.{key}", value, _SHAPES) for key, value in scene.mounting.changes.items()]
         points = [] if scene.contact.discretisation == "resultant" else unrefined(scene, "pressures at surface points")
         unmeshed = points or mesh_faults(scene)
         return faults + (unmeshed or ([] if faults else memory_faults(scene)))
