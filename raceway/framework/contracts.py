@@ -450,7 +450,7 @@ def plural(kind: str) -> str:
     return f"{words.removesuffix('y')}ies" if words.endswith("y") else f"{words}s"
 
 
-def broken_duties(kind: str, plugin: Any) -> list[str]:
+def broken_duties(kind: str, plugin: object) -> list[str]:
     """Duties of a kind that a class breaks; empty when it is a plug-in."""
     if not isinstance(plugin, type):
         return [f"{plugin!r} is not a class"]

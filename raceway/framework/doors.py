@@ -28,7 +28,7 @@ def door(function: F) -> F:
     readers = [(p.name, p.default, read) for p in signature.parameters.values() if (read := _reader_of(p)) is not None]
 
     @wraps(function)
-    def opened(*args: Any, **keywords: Any) -> Any:
+    def opened(*args: object, **keywords: object) -> Any:
         try:
             bound = signature.bind(*args, **keywords)
         except TypeError:
@@ -52,7 +52,7 @@ def _reader_of(parameter: inspect.Parameter) -> Reader | None:
     return _READERS.get(kind if kind in ("str", "bool") else parameter.name) or _READERS.get(kind)
 
 
-def member(argument: str, value: Any, choices: Collection[str]) -> Any:
+def member(argument: str, value: object, choices: Collection[str]) -> Any:
     """One of the names that an object has; ``SceneError`` for another."""
     if not isinstance(value, str) or value not in choices:
         raise SceneError.at(argument, value, f"must be one of {', '.join(map(repr, choices))}")
@@ -60,7 +60,7 @@ def member(argument: str, value: Any, choices: Collection[str]) -> Any:
 
 
 def _reader(words: str, test: Callable[[Any], Any], convert: Callable[[Any], Any] = lambda value: value) -> Reader:
-    def read(value: Any) -> Any:
+    def read(value: object) -> Any:
         if not test(value):
             raise ValueError(words)
         return convert(value)
@@ -95,7 +95,7 @@ def _tells(value: Any) -> bool:
     return isinstance(value, bool) or bool(inspect.signature(value).bind("what", 0, 1))
 
 
-def _table(value: Any) -> Any:
+def _table(value: object) -> Any:
     texts = _TEXTS[1](list(value) if isinstance(value, Mapping) else value)
     return value if isinstance(value, Mapping) else texts
 

@@ -21,7 +21,7 @@ Rule = Callable[[Any, Any, Any], None]
 
 
 def option(
-    default: Any = attrs.NOTHING,
+    default: object = attrs.NOTHING,
     *,
     unit: str = "",
     help: str = "",

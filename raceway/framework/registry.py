@@ -131,7 +131,7 @@ class Registry:
             if not same:
                 del self.entries[entry.kind, entry.name]
 
-    def notify(self, hook: str, **arguments: Any) -> None:
+    def notify(self, hook: str, **arguments: object) -> None:
         """Call a life-cycle hook of every plug-in, in the order of registration.
 
         Raises

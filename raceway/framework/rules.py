@@ -41,7 +41,7 @@ def mistakes(rules: Iterable[Rule[S]], tables: S) -> list[Mistake]:
     return [Mistake(key, _value(tables, key), words) for key, words in speaking(rules, tables)]
 
 
-def _value(tables: Any, key: str) -> object:
+def _value(tables: object, key: str) -> object:
     """What stands at a key; None at a table, and of what is not there."""
     table, _, name = key.partition(".")
     part = getattr(tables, table)

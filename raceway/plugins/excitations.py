@@ -124,7 +124,7 @@ class Unidirectional(Amplitude):
     direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Self]:
+    def examples(cls, **options: object) -> list[Self]:
         return [
             force for angle in (0.0, 130.0) for force in super(Unidirectional, cls).examples(direction_deg=angle, **options)
         ]
@@ -149,7 +149,7 @@ class Bidirectional(Amplitude):
     whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
 
     @classmethod
-    def examples(cls, **options: Any) -> list[Self]:
+    def examples(cls, **options: object) -> list[Self]:
         senses = "forward", "backward"
         return [force for whirl in senses for force in super(Bidirectional, cls).examples(whirl=whirl, **options)]
 

@@ -66,7 +66,7 @@ def picture(result: Result, name: str) -> Figure:
     return figure
 
 
-def plot(result: Result, what: str | None, ax: Any) -> Any:
+def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes, ...]:
     """Draw one picture, or all that the result has data for.
 
     Parameters
@@ -97,7 +97,7 @@ def plot(result: Result, what: str | None, ax: Any) -> Any:
         if polar and frame.name != "polar":
             raise RacewayError(f"`ax`: {name} needs polar axes: pyplot.subplots(subplot_kw={{'projection': 'polar'}})")
         _DRAWINGS[name].draw(frame, result)
-        beside = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 2} if polar else {}
+        beside: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 2} if polar else {}
         frame.legend(fontsize=9, frameon=False, **beside)
     return axes[0] if what is not None else axes
 
@@ -106,7 +106,7 @@ def _available(result: Result) -> tuple[str, ...]:
     return tuple(_DRAWINGS) if result.simulation is not None else ("ball_loads",)
 
 
-def _new_axes(names: tuple[str, ...]) -> tuple[Any, ...]:
+def _new_axes(names: tuple[str, ...]) -> tuple[Axes, ...]:
     try:
         from matplotlib import pyplot
     except ImportError:

@@ -188,7 +188,7 @@ def _numbers(part: Any, before: str) -> Iterator[Key]:
             yield from _leaves(value, f"{before}.{field.name}", unit, words)
 
 
-def _leaves(value: Any, path: str, unit: str, words: str) -> Iterator[Key]:
+def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
     if isinstance(value, float):
         yield Key(path, value, unit, words)
     elif attrs.has(type(value)):

@@ -52,7 +52,7 @@ class Given:
     folder: Path | None = None
     changes: tuple[tuple[str, Any], ...] = ()
 
-    def changed(self, *changes: Any) -> Given:
+    def changed(self, *changes: object) -> Given:
         """With further changes, each a ``Change``.
 
         Raises
@@ -120,7 +120,7 @@ class Given:
         return tables
 
 
-def as_given(source: Any) -> Given:
+def as_given(source: object) -> Given:
     """What a user hands in as a scene.
 
     Parameters
@@ -205,7 +205,7 @@ def evolve(scene: Any, *changes: Change) -> Scene:
     return as_scene(scene, *changes)
 
 
-def plain_tables(source: Any, *changes: Change, registry: Registry) -> Tables:
+def plain_tables(source: object, *changes: Change, registry: Registry) -> Tables:
     """The tables of a scene, its title among them, for what makes many scenes of one; not checked.
 
     Raises
@@ -216,7 +216,7 @@ def plain_tables(source: Any, *changes: Change, registry: Registry) -> Tables:
     return as_given(source).changed(*changes).plain(registry)
 
 
-def tidy(value: Any, depth: int = 0) -> Any:
+def tidy(value: object, depth: int = 0) -> Any:
     """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds, quantities text.
 
     Raises

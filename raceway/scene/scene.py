@@ -113,7 +113,7 @@ class Scene(Shown):
 
         return as_scene(tables)
 
-    def with_(self, **tables: Any) -> Scene:
+    def with_(self, **tables: object) -> Scene:
         """This scene with some keys changed; the plug-ins of this process are known.
 
         Parameters

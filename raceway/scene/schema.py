@@ -115,7 +115,7 @@ def key_schema(field: Any) -> Tables:
     return schema
 
 
-def _members(kind: Any) -> list[Any]:
+def _members(kind: object) -> list[Any]:
     if get_origin(kind) in (Union, UnionType):
         return [member for member in get_args(kind) if member is not NoneType]
     return [kind]

@@ -233,7 +233,7 @@ def structure(table: object, cls: type[T], path: str, mistakes: list[Mistake]) -
         return None
 
 
-def _mistakes(error: BaseException, value: object, cls: Any, path: str) -> list[Mistake]:
+def _mistakes(error: BaseException, value: object, cls: object, path: str) -> list[Mistake]:
     if isinstance(error, cattrs.errors.ClassValidationError):
         mistakes: list[Mistake] = []
         noted, plain = error.group_exceptions()

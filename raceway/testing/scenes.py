@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from raceway.scene.scene import Scene
 
 
-def b7206c(**tables: Any) -> dict[str, Any]:
+def b7206c(**tables: object) -> dict[str, Any]:
     """The tables of a B7206C under 1000 N; each keyword replaces or extends one table."""
     scene: dict[str, Any] = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
     for name, table in tables.items():

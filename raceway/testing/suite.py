@@ -120,7 +120,7 @@ def duty(text: str, unless: Callable[[Any], str] | None = None) -> Callable[[Che
                 pytest.xfail(row.message)
             require(row.good, f"{row.duty}: {row.message}")
 
-        def check(self: Suite, plugin: Any) -> str | None:
+        def check(self: Suite, plugin: object) -> str | None:
             return (unless(plugin) if unless else "") or function(self, plugin)
 
         # Not functools.wraps: pytest would take the arguments of the wrapped function for fixtures.
@@ -158,7 +158,7 @@ class Suite:
         return {name.removeprefix("test_"): value for name, value in members if hasattr(value, "duty")}
 
     @classmethod
-    def conformity(cls, plugin: Any, kind: str = "", name: str = "") -> Conformity:
+    def conformity(cls, plugin: object, kind: str = "", name: str = "") -> Conformity:
         """Run every check on a class or instance."""
         suite = type(f"{cls.__name__}Run", (cls,), {"plugin": plugin})()
         rows = [suite.row(check) for check in cls.checks()]

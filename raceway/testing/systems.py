@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
-from typing import Any
 
 import attrs
 import numpy as np
@@ -142,7 +141,7 @@ def counting_system() -> System:
     return attrs.evolve(contact_system(), law=_counting, law_state=np.zeros((2, 1)))
 
 
-def _system(free: list[float], **parts: Any) -> System:
+def _system(free: list[float], **parts: object) -> System:
     scalars = np.zeros(SCALARS)
     # The first trust radius of an equilibrium is taken from it: a typical approach.
     scalars[REST_AXIAL], scalars[TILT_ARM] = 1e-4, 1.0
