@@ -9,6 +9,5 @@ precision   ``raceway.precision``: error against run time;  settings: what is ru
 band        ``raceway.band``;  sensitivities: derivatives by every number of a scene
 follow, parameter, branch, attractor    ``raceway.follow``: the branch of steady orbits over a continuous key
 law         ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'
-commands    of sweeps, comparisons, precision, bands and derivatives;  follow_command, law_command: of branches and laws
 compare_picture, precision_picture, follow_picture    what they draw
 """
