@@ -70,7 +70,7 @@ class Command:
 
     Attributes
     ----------
-    front : "module:function"
+    front : a function, or "module:function", which is imported when the command is asked for
     summary : for the list of commands;  example : command lines
     options : name of an argument -> what the command line says otherwise;  None: the command line does not have it
     folder : what follows the scene's title in the name of the default folder; None: nothing is written without --out
@@ -79,7 +79,7 @@ class Command:
     """
 
     name: str
-    front: str
+    front: str | Callable[..., Value]
     summary: str
     example: str
     options: Mapping[str, Option | None] = attrs.field(factory=dict)
@@ -90,8 +90,10 @@ class Command:
 
     def click(self) -> click.Command:
         """The command, with the module of its front imported."""
-        module, _, name = self.front.partition(":")
-        front = getattr(import_module(module), name)
+        front = self.front
+        if isinstance(front, str):
+            module, _, name = front.partition(":")
+            front = getattr(import_module(module), name)
         signature, words = inspect.signature(front), _parameters(front)
         params = [
             p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
@@ -113,7 +115,7 @@ class Command:
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
             command = out_option("nothing is written" if self.folder is None else default)(command)
         for parameter in reversed(params):
-            command = self._option(parameter, words.get(parameter.name, ""))(command)
+            command = self._option(parameter, _kind(front, parameter), words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             required = signature.parameters["scene"].default is inspect.Parameter.empty
             given = click.argument("scene", type=PATH, required=required)
@@ -128,8 +130,8 @@ class Command:
     def _about(self, parameter: inspect.Parameter) -> Option:
         return self.options.get(parameter.name) or Option()
 
-    def _option(self, parameter: inspect.Parameter, words: str) -> Callable[[Value], Value]:
-        about, kind = self._about(parameter), str(parameter.annotation)
+    def _option(self, parameter: inspect.Parameter, kind: str, words: str) -> Callable[[Value], Value]:
+        about = self._about(parameter)
         default = parameter.default if about.default is None else about.default
         if about.positional:
             return lambda command: command
@@ -145,19 +147,25 @@ class Command:
                 help=text,
             )
         if "Iterable[" in kind:
-            return click.option(
-                *flags, multiple=True, metavar=about.metavar, help=f"{text.removesuffix('.')}; repeat for more."
-            )
+            required = parameter.default is inspect.Parameter.empty
+            several = f"{text.removesuffix('.')}; repeat for more."
+            return click.option(*flags, multiple=True, required=required, metavar=about.metavar, help=several)
         empty = default is inspect.Parameter.empty
         return click.option(
             *flags,
-            type=click.Choice(about.choices) if about.choices else _TYPES.get(kind.removesuffix(" | None"), str),
+            type=click.Choice(about.choices) if about.choices else _TYPES.get(kind, str),
             metavar=about.metavar,
             required=empty,
             default=None if empty else default,
             show_default=not empty and default is not None,
             help=text,
         )
+
+
+def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
+    """The annotation as text, with what an alias of the front's module stands for."""
+    text = str(parameter.annotation).removesuffix(" | None")
+    return str(inspect.unwrap(front).__globals__.get(text, text))
 
 
 def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
@@ -168,7 +176,7 @@ def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
-    arguments = dict(values)
+    arguments = {name: value for name, value in values.items() if value != ()}
     as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
     out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())
     registry, known, title = registry_with(plugins), inspect.signature(front).parameters, ""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from raceway.errors import RacewayError
-from raceway.framework.shown import Shown
+from raceway.framework.shown import Fact, Shown
 from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import Tables
 
@@ -22,8 +22,8 @@ Part: TypeAlias = "str | list[dict[str, str]] | RenderableType"
 class Answer(Shown):
     """Facts for people, plain tables for programs, a figure.
 
-    A subclass states ``to_dict``, ``_shown`` (of ``repr`` and notebooks) and ``report`` (of a terminal); where it has them, ``texts``
-    and ``draw``.
+    A subclass states ``to_dict`` and ``report`` (of a terminal); where it has them, ``draw``, ``texts``, and ``_shown`` of ``repr`` and
+    notebooks.
 
     Attributes
     ----------
@@ -41,6 +41,12 @@ class Answer(Shown):
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
         raise NotImplementedError
+
+    def _shown(self) -> tuple[str, Sequence[Fact]]:
+        """Title and plain numbers of ``to_dict``; answers with more to say state it themselves."""
+        content = self.to_dict()
+        facts = [(name.replace("_", " "), str(value), "") for name, value in content.items() if name != "title"]
+        return str(content.get("title", self.stem)), facts
 
     def report(self) -> Iterable[Part]:
         """What a terminal shows: sentences, rows of tables, or what rich prints."""
