@@ -76,6 +76,13 @@ class Command:
     folder : what follows the scene's title in the name of the default folder; None: nothing is written without --out
     named_by : argument with the file whose name stands for the title
     unchecked : the scene is not read before the front has changed it
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> band = rw.Command("band", "raceway.points.band:uncertainty", "Its range.", "raceway band SCENE", folder="-band")
+    >>> [option.opts for option in band.click().params][2:5]
+    [['--tolerances'], ['--keys'], ['--samples']]
     """
 
     name: str

@@ -28,6 +28,18 @@ class Answer(Shown):
     Attributes
     ----------
     stem : of the names of its files: ``band`` writes band.json and band.png
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> class Stiffness(rw.Answer):
+    ...     stem = "stiffness"
+    ...
+    ...     def to_dict(self):
+    ...         return {"title": "B7206C", "kyy": "235 N/um"}
+    >>> Stiffness()
+    B7206C
+      kyy  235 N/um
     """
 
     __slots__ = ()
