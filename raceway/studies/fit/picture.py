@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def draw(content: ReadTables) -> Figure:
     series = content["series"][:_MOST]
     columns = len(series) + 1
     figure = new_figure(1.2 + 3.6 * columns, 5.2)
-    panels: Any = figure.subplots(2, columns, squeeze=False, height_ratios=(3, 1.4))
+    panels = figure.subplots(2, columns, squeeze=False, height_ratios=(3, 1.4))
     for k, quantity in enumerate(series):
         _curve(panels[0][k], quantity)
         _residuals(panels[1][k], quantity)
@@ -44,8 +44,8 @@ def _curve(panel: Axes, quantity: ReadTables) -> None:
     low, high = factor * (fitted - band)[order], factor * (fitted + band)[order]
     panel.fill_between(x[order], low, high, color=_BLUE, alpha=0.22, linewidth=0)
     panel.plot(x[order], factor * fitted[order], color=_BLUE, label="fit, with its 95 %")
-    marker: dict[str, Any] = {"fmt": "o" if few else ".", "ms": 4 if few else 1, "color": _BLACK}
-    panel.errorbar(x, factor * measured, 1.96 * error if few else None, elinewidth=0.8, label="data", **marker)
+    fmt, size, bars = ("o", 4, 1.96 * error) if few else (".", 1, None)
+    panel.errorbar(x, factor * measured, bars, fmt=fmt, ms=size, color=_BLACK, elinewidth=0.8, label="data")
     panel.set_ylabel(_with_unit(quantity["name"], unit))
     panel.legend(frameon=False, fontsize=8)
 

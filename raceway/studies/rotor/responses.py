@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from ross.results import ForcedResponseResults, TimeResponseResults
 
 _HALVINGS = 6
-#: Options of ROSS's Newmark method that are handed on, with its own defaults.
-_OPTIONS: dict[str, Any] = {"gamma": 0.5, "beta": 0.25, "tol": None, "progress_interval": None}
+#: Options of ROSS's Newmark method that are handed on, beside gamma and beta.
+_OPTIONS = "tol", "progress_interval"
 _MOST, _TOLERANCE, _SMALL = 40, 1e-10, 1e-15
 
 
@@ -191,7 +191,7 @@ def _plain(value: ArrayLike | Quantity) -> ArrayLike:
 
 
 def run_time_response(
-    rotor: Rotor, speed: float, F: np.ndarray, t: np.ndarray, **options: float | None
+    rotor: Rotor, speed: float, F: np.ndarray, t: np.ndarray, gamma: float = 0.5, beta: float = 0.25, **options: float | None
 ) -> TimeResponseResults:
     """ROSS's time response by Newmark's method, each ``RollingBearing`` with its nonlinear force.
 
@@ -200,7 +200,7 @@ def run_time_response(
     rotor : ross.Rotor with one or more ``RollingBearing``
     speed : constant [rad/s]
     F : (m, ndof) forces [N];  t : (m,) [s]
-    options : gamma, beta, tol, progress_interval of ROSS's Newmark method
+    gamma, beta : of Newmark's method;  options : tol, progress_interval of ROSS's
 
     Returns
     -------
@@ -228,15 +228,17 @@ def run_time_response(
         )
     unknown = sorted(set(options) - set(_OPTIONS))
     if unknown:
-        raise RacewayError(f"`{unknown[0]}` is no option here, beside nonlinear bearings: {', '.join(_OPTIONS)} are")
+        raise RacewayError(
+            f"`{unknown[0]}` is no option here, beside nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are"
+        )
     forces, times = np.asarray(F, dtype=float), np.asarray(t, dtype=float)
     if forces.shape != (len(times), rotor.ndof):
         raise RacewayError(
             f"`F` has the shape {forces.shape}; one row a time and one column a degree of freedom make {(len(times), rotor.ndof)}"
         )
-    newmark = {**_OPTIONS, **options}
-    added = _NonlinearForce(rotor, bearings, float(speed), forces, newmark["gamma"], newmark["beta"])
-    return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=added, **options)
+    added = _NonlinearForce(rotor, bearings, float(speed), forces, gamma, beta)
+    newmark = {"gamma": gamma, "beta": beta, **options}
+    return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=added, **newmark)
 
 
 class _NonlinearForce:
