@@ -22,7 +22,7 @@ from raceway.core.contact.laws import linear
 from raceway.core.record import Recorder, Schedule, State
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.core.time.stepped import central_difference
-from raceway.elastic.bearing import ElasticBearing, SteppedElastic
+from raceway.elastic.bearing import ElasticBearing
 from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.contact import penalty_stiffness
 from raceway.planning.resolve import resolve
@@ -80,7 +80,6 @@ def steps(built: ElasticBearing, threads: int, recorded: bool = False) -> tuple[
     assembly, contact = system.assembly, system.contact
     assert contact is not None
     assembly.threads = ThreadPool(threads)
-    stepped = SteppedElastic(system, built.look, built.ball_count)
     held = np.tile([0.0, 0.5 * built.setup.geometry.pitch_diameter], (built.ball_count, 1)) - built.setup.offsets[1]
     y = built.guess(np.array([_PRESSED, 0.0, 0.0, 0.0, 0.0]), held)
     contact.restore(contact.place, np.zeros_like(contact.memory))
@@ -89,9 +88,9 @@ def steps(built: ElasticBearing, threads: int, recorded: bool = False) -> tuple[
         contact.friction.begin((contact.move @ assembly.nodal(y)).reshape(-1, 3))
     zero = np.zeros(system.size)
     schedule = Schedule(_STEP, _STEPS, 1, 1 if recorded else 2 * _STEPS)
-    with stepped.threads:
-        recorder = _Timed(stepped, State(y, zero, zero.copy()), schedule, None)
-        central_difference(stepped, recorder)
+    with system.threads:
+        recorder = _Timed(system, State(y, zero, zero.copy()), schedule, None)
+        central_difference(system, recorder)
     cpu, wall = np.diff(np.array(recorder.clocks), axis=0).min(axis=0)
     return float(cpu), float(wall), recorder.state
 

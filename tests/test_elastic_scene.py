@@ -156,7 +156,7 @@ def test_a_motion_on_an_orbit_starts_as_it_goes_on():
     """In a circle nearly: three balls are no full ring, and contacts are not linear; 20 % of radius, speed and acceleration."""
     model = built(**EXCITED, supports={"tilt": "locked"})
     equilibrium, w = solve_equilibrium(model), 15000.0 * np.pi / 30.0
-    start = from_orbit(model.system, steady_orbit(model.system.surrogate, 2.0 * np.pi / w, equilibrium.displacement), 1e-5)
+    start = from_orbit(model.system, steady_orbit(model.system.surrogate, 2.0 * np.pi / w, equilibrium.displacement))
     y, z = start.q[1:3] - equilibrium.displacement[1:3]
     radius = np.hypot(y, z)
     assert start.v[1:3] == pytest.approx([-w * z, w * y], abs=0.2 * w * radius)

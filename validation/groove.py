@@ -18,7 +18,7 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh, growing
 from raceway.elastic.assembly import Assembly, Body, Frame
 from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.contact import NodalContact, Pair, groove, peak_at_nodes, peak_at_points, penalty_stiffness
+from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, groove, peak_at_nodes, peak_at_points, penalty_stiffness
 from raceway.elastic.newton import TOLERANCE, Settled
 from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
@@ -120,11 +120,11 @@ def model(
     for name, part in (("ball", ball), ("race", block)):
         held = np.zeros((len(part.points), 3), dtype=bool)
         held[part.nodes("side_x"), 0] = held[part.nodes("side_y"), 1] = True
-        frame = Frame.massless(part.nodes("middle"), np.zeros(3), (2,)) if name == "ball" else None
-        if frame is not None and prescribed:
-            frame = attrs.evolve(frame, free=np.zeros(1, dtype=bool))
+        frame = None
         if name == "race":
             held[part.nodes("base")] = True
+        else:
+            frame = Frame(part.nodes("middle"), np.zeros(3), (2,), *np.zeros((3, 1, 1)), free=np.array([not prescribed]))
         operator = HexOperator(part.points, part.cells, YOUNG, POISSON, DENSITY, formulation, hourglass)
         bodies.append(Body(name, operator, held, frame))
     assembly = Assembly(bodies)
@@ -136,12 +136,8 @@ def model(
     facets = Facets(block.points, block.facet_nodes("raceway"))
     points = found[near]
     penalty = float(penalty_stiffness(MODULUS, minor / nodes))
-    contact = NodalContact(
-        [Pair("ball on groove", points, surface, facets, len(ball.points))],
-        assembly.nodes,
-        linear,
-        np.full((len(points.area), 1), penalty),
-    )
+    pair = Pair("ball on groove", points, surface, facets, len(ball.points))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(points.area), 1), penalty)))
     forces = np.zeros(assembly.size)
     forces[0] = 0.0 if prescribed else -0.25 * load
     return Groove(load, nodes, ball, block, ElasticSystem(assembly, contact, MODULUS, forces), penalty)

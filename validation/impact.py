@@ -12,9 +12,10 @@ from raceway.core.contact.laws import linear
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.ball_mesh import ball_mesh
 from raceway.core.mesh.hex_mesh import FACES
+from raceway.core.record import Motion
 from raceway.elastic.assembly import Assembly, Body
-from raceway.elastic.bearing import ElasticSystem, SteppedElastic
-from raceway.elastic.contact import NodalContact, Pair, penalty_stiffness, plane
+from raceway.elastic.bearing import ElasticSystem
+from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, penalty_stiffness, plane
 from raceway.elastic.linear_statics import solve_static
 from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import half_line
@@ -33,18 +34,18 @@ class Impact:
 
     Attributes
     ----------
-    system : SteppedElastic;  ball : nodes of the ball;  velocity : (nodes, 3) of unit speed towards the block
+    system : ElasticSystem;  ball : nodes of the ball;  velocity : (nodes, 3) of unit speed towards the block
     mass : of the whole ball [kg], as meshed
     """
 
-    system: SteppedElastic
+    system: ElasticSystem
     ball: slice
     velocity: np.ndarray
     mass: float
 
     def speed(self, v: np.ndarray) -> float:
         """Mean velocity of the ball away from the block, from the unknowns' velocities [m/s]."""
-        a = self.system.system.assembly
+        a = self.system.assembly
         mass = a.node_mass[self.ball]
         return float(mass @ a.nodal(v).reshape(-1, 3)[self.ball, 2] / mass.sum())
 
@@ -67,12 +68,19 @@ def model(fine: float, zone: float, formulation: str = "one_point", hourglass: f
     points = surface_points(ball[0], under, np.array([0.0, 0.0, RADIUS]))
     pair = Pair("ball on block", points, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
     stiffness = penalty_stiffness(MODULUS, 2.0 * np.sqrt(points.area))
-    contact = NodalContact([pair], assembly.nodes, linear, stiffness[:, None])
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, stiffness[:, None]))
     system = ElasticSystem(assembly, contact, MODULUS, np.zeros(assembly.size))
     velocity = np.zeros((assembly.nodes, 3))
     velocity[:first, 2] = -1.0
     mass = 4.0 * float(assembly.node_mass[:first].sum())
-    return Impact(SteppedElastic(system), slice(0, first), velocity, mass)
+    return Impact(system, slice(0, first), velocity, mass)
+
+
+def moving(stepped: ElasticSystem, velocity: np.ndarray) -> Motion:
+    """Nothing displaced, nodes moving with (nodes, 3) [m/s]: the start of an impact."""
+    a = stepped.assembly
+    still = np.zeros(a.size)
+    return stepped.motion_of(still, np.concatenate([np.zeros(a.frame_size), velocity.reshape(-1)[a.free]]), still)
 
 
 def _ball(fine: float, zone: float, growth: float) -> tuple[np.ndarray, np.ndarray]:

@@ -47,7 +47,7 @@ class Basis:
     @property
     def ball_radius(self) -> np.ndarray | float:
         """D/2 [m]: one number, or (Z,) of rows that differ."""
-        radii = [0.5 * one.ball_diameter for one in self.geometries]
+        radii = [0.5 * geometry.ball_diameter for geometry in self.geometries]
         return radii[0] if len(set(radii)) == 1 else np.array(radii)[self.row]
 
     def of_ball(self, ball: int) -> tuple[Ellipse, Ellipse]:
@@ -58,25 +58,16 @@ class Basis:
 def make_basis(problem: Problem) -> Basis:
     """Geometry and contacts of a scene."""
     b = problem.bearing
-    geometries = tuple(
-        BallBearing(
-            one.ball_diameter,
-            one.pitch_diameter,
-            one.ball_count,
-            one.contact_angle,
-            one.conformity_inner,
-            one.conformity_outer,
-        )
-        for one in b.of_rows
-    )
+    geometries = tuple(BallBearing.of(bearing) for bearing in b.of_rows)
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     azimuth = [
-        radians(one.first_ball_azimuth_deg) + 2.0 * pi * np.arange(one.ball_count) / one.ball_count for one in b.of_rows
+        radians(bearing.first_ball_azimuth_deg) + 2.0 * pi * np.arange(bearing.ball_count) / bearing.ball_count
+        for bearing in b.of_rows
     ]
-    row = np.repeat(np.arange(len(b.rows)), [one.ball_count for one in b.of_rows])
+    row = np.repeat(np.arange(len(b.rows)), [bearing.ball_count for bearing in b.of_rows])
     inner, outer = geometries[0].ellipses(modulus)
     if not b.equal_rows:
-        pairs = [one.ellipses(modulus) for one in geometries]
+        pairs = [geometry.ellipses(modulus) for geometry in geometries]
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = problem.axial_approach
     azimuths = np.concatenate(azimuth)
@@ -101,7 +92,7 @@ def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
     z, rings, balls = len(basis.azimuth), problem.bearing.rings, problem.bearing.balls
 
     def both(a: float | np.ndarray, b: float | np.ndarray) -> np.ndarray:
-        return np.concatenate([np.broadcast_to(one, z) for one in (a, b)]).astype(float)
+        return np.concatenate([np.broadcast_to(value, z) for value in (a, b)]).astype(float)
 
     def every(value: float) -> np.ndarray:
         return np.full(2 * z, value)
@@ -120,20 +111,10 @@ def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
     )
 
 
-def point_pairs(basis: Basis, inner: np.ndarray, area: np.ndarray) -> ContactPairs:
-    """Surface points as a law sees them: whether each (n,) is of an inner race, and its area (n,) [m2]."""
-
-    def either(first: float, second: float) -> np.ndarray:
-        return np.where(inner, first, second).astype(float)
-
-    return ContactPairs(
-        curvature_a=either(basis.inner.curvatures[0], basis.outer.curvatures[0]),
-        curvature_b=either(basis.inner.curvatures[1], basis.outer.curvatures[1]),
-        contact_modulus=np.full(len(area), basis.modulus),
-        hertz_factor=either(basis.inner.factor, basis.outer.factor),
-        reference_load=np.full(len(area), basis.ball_load),
-        area=area,
-    )
+def at_points(pairs: ContactPairs, pair: np.ndarray, area: np.ndarray) -> ContactPairs:
+    """Surface points of contacts (n,) as a law sees them, with their areas (n,) [m2]."""
+    values = {name: array[pair] for name, array in attrs.asdict(pairs, recurse=False).items() if array is not None}
+    return ContactPairs(**{**values, "area": area})
 
 
 def linear_parts(problem: Problem, plan: Plan) -> Tables:

@@ -34,7 +34,7 @@ _GIVES = 0.02
 
 
 @attrs.frozen
-class SectionCost:
+class _SectionCost:
     """Predictions: ``nodes`` of the larger section, ``bytes`` at the peak, ``seconds`` of processor time, nothing kept."""
 
     nodes: int
@@ -42,7 +42,7 @@ class SectionCost:
     seconds: float
 
 
-def section_cost(scene: Scene) -> SectionCost:
+def section_cost(scene: Scene) -> _SectionCost:
     """Predicted cost of the rings of a condensed scene."""
     b = scene.bearing
     length = 0.34 * b.ball_diameter
@@ -58,10 +58,10 @@ def section_cost(scene: Scene) -> SectionCost:
     columns = width / size + 0.7 * b.ball_diameter / along
     rows = wall / size + log(size / along) / log(1.25)
     nodes = ceil(columns * max(rows, 3.0))
-    return SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
+    return _SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
 
 
-def section_faults(scene: Scene) -> list[Mistake]:
+def _section_faults(scene: Scene) -> list[Mistake]:
     """Elements that no memory holds."""
     cost = section_cost(scene)
     if cost.bytes <= _BYTES_LIMIT:
@@ -73,7 +73,7 @@ def section_faults(scene: Scene) -> list[Mistake]:
     return [Mistake("mesh.element_size", getattr(scene.mesh, "element_size", None), why)]
 
 
-def seat_faults(scene: Scene) -> list[Mistake]:
+def _seat_faults(scene: Scene) -> list[Mistake]:
     """Seats so soft that they hold nothing."""
     faults = []
     load = abs(scene.load.axial) + sum(abs(force) for force in scene.load.radial)
@@ -107,7 +107,7 @@ _RUBBING = 3.0
 
 
 @attrs.frozen
-class PatchCost:
+class _PatchCost:
     """Predictions.
 
     Attributes
@@ -124,7 +124,7 @@ class PatchCost:
     step_s: float
 
 
-def patch_cost(scene: Scene) -> PatchCost:
+def patch_cost(scene: Scene) -> _PatchCost:
     """Predicted cost of the contacts of a scene."""
     n = nodes_of(scene)
     balls = scene.bearing.balls_in_all
@@ -134,7 +134,7 @@ def patch_cost(scene: Scene) -> PatchCost:
     size = 2 * balls * 1.3 * points**2 + 2 * 5.0 * rows * (2.0 * rows) ** 2
     share = balls / 12.0
     steps = _RUBBING if scene.contact.friction > 0.0 else 1.0
-    return PatchCost(
+    return _PatchCost(
         points,
         int(8.0 * size),
         _SETUP_S[0] + _SETUP_S[1] * n * n,
@@ -214,10 +214,10 @@ class Condensed:
             faults.append(Mistake(key, value, why))
         unmeshed = unrefined(scene, "sections of condensed bodies")
         faults += unmeshed
-        faults += seat_faults(scene)
+        faults += _seat_faults(scene)
         if unmeshed or scene.contact.discretisation not in scene.contact.law.discretisations:
             return faults
-        return faults + ((mistakes(_PATCHES, scene) if _nodal(scene) else []) or section_faults(scene))
+        return faults + ((mistakes(_PATCHES, scene) if _nodal(scene) else []) or _section_faults(scene))
 
     def traits(self, scene: Scene) -> Traits:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""
@@ -270,15 +270,15 @@ class Condensed:
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(problem, motion) * steps * patches.step_s)
 
-    def same_bodies(self, scene: Scene, other: Scene) -> bool:
+    def same_bodies(self, scene: Scene, changed: Scene) -> bool:
         """Whether sections, contacts and materials, which compliances are computed from, are the same."""
         from raceway.bodies.basis import make_basis
         from raceway.bodies.condensed_bearing import sections
 
-        if (scene.bearing, scene.supports, scene.mesh) == (other.bearing, other.supports, other.mesh):
+        if (scene.bearing, scene.supports, scene.mesh) == (changed.bearing, changed.supports, changed.mesh):
             return True  # all that sections are made of
-        one, two = (sections(each, make_basis(each)) for each in map(resolve, (scene, other)))
-        return one == two
+        first, second = (sections(each, make_basis(each)) for each in map(resolve, (scene, changed)))
+        return first == second
 
     def build(self, problem: Problem, plan: Plan) -> Bearing:
         """See ``raceway.bodies.condensed_bearing`` and ``raceway.bodies.patch_bearing``."""

@@ -11,7 +11,7 @@ import numpy as np
 from raceway.bodies import rigid_bearing as rigid
 from raceway.bodies.basis import Basis, seat_of
 from raceway.bodies.condensed import BETWEEN_BALLS
-from raceway.bodies.contacts import calibration_error, untold
+from raceway.bodies.contacts import calibration_error, elasticity, rigid_rings, untold
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
@@ -101,7 +101,9 @@ def sections(problem: Problem, basis: Basis) -> Hashable:
     shape = b.ball_diameter, b.pitch_diameter, b.ball_count, b.conformity_inner, b.conformity_outer, b.contact_angle
     sizes = b.bore, b.outer_diameter, b.width, b.shoulder_height, b.inner_profile, b.outer_profile
     elastic = b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson
-    pairs = tuple((float(one.factor), *(float(axis) for axis in one.semi_axes(1.0))) for one in (basis.inner, basis.outer))
+    pairs = tuple(
+        (float(ellipse.factor), *(float(axis) for axis in ellipse.semi_axes(1.0))) for ellipse in (basis.inner, basis.outer)
+    )
     return shape, sizes, elastic, pairs, problem.supports.inner_seat, problem.supports.outer_seat, problem.mesh
 
 
@@ -118,28 +120,28 @@ def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> Elas
         Bodies so soft that their contacts are as large as a ball.
     """
     key = (sections(problem, basis), coarser)
-    found = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
-    _BODIES[key] = found  # the last in, and the last to go
+    bodies = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
+    _BODIES[key] = bodies  # the last in, and the last to go
     if len(_BODIES) > _KEPT:
         del _BODIES[next(iter(_BODIES))]
     b, (a, across) = problem.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
-    own, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
-    if not abs(own) * basis.ball_load < b.ball_diameter:
-        soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda one: one[1].young)
+    direct, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
+    if not abs(direct) * basis.ball_load < b.ball_diameter:
+        soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda part: part[1].young)
         why = f"is too soft for {basis.ball_load:.3g} N a ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
         raise SceneError.at(f"bearing.{soft}.young", steel.young, why)
-    return attrs.evolve(found, ball_direct=own, ball_opposite=opposite)
+    return attrs.evolve(bodies, ball_direct=direct, ball_opposite=opposite)
 
 
 def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBodies:
     """Rings and calibrations; the ball's own compliance, which follows the load, is filled in each time."""
     b = problem.bearing
-    typical = typical_load(basis)
+    typical = _typical_load(basis)
     rings, calibrations = [], []
     for inner in (True, False):
         shape = ring_shape(b, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
-        bulk, fine = element_sizes(problem, shape, half)
+        bulk, fine = _element_sizes(problem, shape, half)
         rings.append(
             ring_compliance(
                 shape,
@@ -155,7 +157,7 @@ def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBo
             )  # fmt: skip
         )
         size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
-        steel, balls = (Solid(one.young, one.poisson, bulk=size) for one in (b.rings, b.balls))
+        steel, balls = (Solid(material.young, material.poisson, bulk=size) for material in (b.rings, b.balls))
         body = RingBody(shape, steel, seat_of(problem, inner), (0.0, 0.0))
         both = basis.inner, basis.outer
         calibrations.append(
@@ -164,12 +166,12 @@ def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBo
     return ElasticBodies(rings[0], rings[1], nan, nan, (calibrations[0], calibrations[1]))
 
 
-def typical_load(basis: Basis) -> float:
+def _typical_load(basis: Basis) -> float:
     """The load of ``_PRESSURE`` on the inner race [N]: p0 grows with the cube root of the load."""
     return float((_PRESSURE / basis.inner.peak_pressure(1.0)) ** 3)
 
 
-def element_sizes(problem: Problem, shape: RingShape, half: float) -> tuple[float, float]:
+def _element_sizes(problem: Problem, shape: RingShape, half: float) -> tuple[float, float]:
     """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
     length = reach(shape, problem.bearing.ball_diameter)
     if problem.mesh is None:
@@ -183,7 +185,7 @@ _COARSER = 2.0
 _NOTHING = 1e-6
 
 
-def build(problem: Problem, plan: Plan) -> CondensedBearing:
+def build(problem: Problem, plan: Plan) -> _CondensedBearing:
     """The bearing of a scene with condensed bodies and contact resultants."""
     stiff = rigid.build(problem, plan)
     bodies = elastic_bodies(problem, stiff.basis)
@@ -192,11 +194,11 @@ def build(problem: Problem, plan: Plan) -> CondensedBearing:
     angles = _angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
     guess = place_ring(problem, stiff.basis, system)
-    return CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
+    return _CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
 
 
 @attrs.frozen(eq=False)
-class CondensedBearing(Bearing):
+class _CondensedBearing(Bearing):
     """Condensed rings and balls with contact resultants.
 
     Attributes
@@ -212,21 +214,14 @@ class CondensedBearing(Bearing):
 
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""
-        system: System = surrogate(self.rigid.system)
-        q, ball, _ = system.settle(self.rigid.guess)
-        now = system.evaluate(q, ball=ball)
-        stiffness, _ = system.rows_following(q, now, now.stiffness, now.damping)
+        rigid_table, stiffness = rigid_rings(surrogate(self.rigid.system), self.rigid.guess)
         angle = float(np.nanmean(equilibrium.angle_inner))
         inner, outer = self.compliances.at(angle)
         mesh_error, how = self.mesh_error(model, equilibrium)
-        names = ("x", "y", "z", "tilt_y", "tilt_z")
         return {
             "bodies": "condensed: elastic rings and balls, contacts as resultants calibrated to Hertz",
-            "rigid_rings": {
-                "displacement": dict(zip(names, q.tolist(), strict=True)),
-                "stiffness": stiffness.tolist(),
-            },
-            "elasticity": _differences(equilibrium.stiffness, stiffness),
+            "rigid_rings": rigid_table,
+            "elasticity": elasticity(equilibrium.stiffness, stiffness, _NOTHING),
             "compliance": {
                 "contact_angle_deg": float(np.degrees(angle)),
                 "inner_m_per_n": inner,
@@ -256,10 +251,10 @@ class CondensedBearing(Bearing):
             q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
         except ConvergenceError as why:
             return None, Estimate.COARSER_MESH_FAILED(why=why)
-        chosen = np.flatnonzero(model.system.free > 0.0)
-        fine = np.diag(equilibrium.stiffness_rows_held)[chosen]
-        other = np.diag(system.evaluate(q, ball=ball).stiffness)[chosen]
-        return float(np.abs(other / fine - 1.0).max()), Estimate.COARSER_MESH()
+        free = np.flatnonzero(model.system.free > 0.0)
+        fine = np.diag(equilibrium.stiffness_rows_held)[free]
+        diagonal = np.diag(system.evaluate(q, ball=ball).stiffness)[free]
+        return float(np.abs(diagonal / fine - 1.0).max()), Estimate.COARSER_MESH()
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
@@ -270,23 +265,14 @@ class CondensedBearing(Bearing):
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""
         basis, shape = self.rigid.basis, ring_shape(model.problem.bearing, inner)
-        half = float((basis.inner if inner else basis.outer).semi_axes(typical_load(basis))[0])
-        bulk, fine = element_sizes(model.problem, shape, half)
+        half = float((basis.inner if inner else basis.outer).semi_axes(_typical_load(basis))[0])
+        bulk, fine = _element_sizes(model.problem, shape, half)
         return ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
 
     def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
         """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
         half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
         return half / self.compliances.inner.surface
-
-
-def _differences(elastic: np.ndarray, stiff: np.ndarray) -> list[list[float | None]]:
-    """(5, 5) relative differences of stiffness entries; None where the entry is nothing."""
-    scale = np.sqrt(np.abs(np.outer(np.diag(stiff), np.diag(stiff))))
-    return [
-        [float(elastic[i, j] / stiff[i, j] - 1.0) if abs(stiff[i, j]) > _NOTHING * scale[i, j] else None for j in range(5)]
-        for i in range(5)
-    ]
 
 
 def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
@@ -299,16 +285,16 @@ def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
         return angles
     centre, _ = system.centre_vectors(q)
     loaded = system.evaluate(q, ball=ball).contact_force[: system.ball_count] > 0.0
-    found = np.arctan2(centre[:, 0], centre[:, 1])
+    directions = np.arctan2(centre[:, 0], centre[:, 1])
     if problem.kinematics.orbiting and loaded.any():
-        return np.full(system.ball_count, found[loaded].mean())
-    return np.where(loaded, found, angles)
+        return np.full(system.ball_count, directions[loaded].mean())
+    return np.where(loaded, directions, angles)
 
 
 def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """A law so stiff that the bodies take off more compliance than its contact has."""
-    taken = min(bodies.at(problem.bearing.contact_angle))
-    if taken >= 0.0:
+    compliance = min(bodies.at(problem.bearing.contact_angle))
+    if compliance >= 0.0:
         return
     basis, system = stiff.basis, surrogate(stiff.system)
     for load in (1.0, 5.0):
@@ -318,30 +304,30 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
         system.law(
             gap, np.zeros_like(gap), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, d_gap, d_rate
         )
-        if (-d_gap * -taken).max() >= 1.0:
+        if (-d_gap * -compliance).max() >= 1.0:
             thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
             remedy = thin if problem.contact.kind == "hertz" else "Use 'hertz', or a softer law"
             raise SceneError.at(
                 "contact.kind",
                 problem.contact.kind,
                 f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
-                f"{-1e9 * taken:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
+                f"{-1e9 * compliance:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
             )
 
 
 def _refuse_dashpots(problem: Problem, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
-    taken = -min(bodies.at(problem.bearing.contact_angle))
-    if plan.time_step_s is None or problem.integrator.method.steady or taken <= 0.0:
+    compliance = -min(bodies.at(problem.bearing.contact_angle))
+    if plan.time_step_s is None or problem.integrator.method.steady or compliance <= 0.0:
         return
     # A rate is 1.5 / dt of a displacement; the contact's own stiffness needs the other half.
-    bound = 0.5 * plan.time_step_s / (1.5 * taken)
-    told = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * taken:.3g} nm/N off them"
+    bound = 0.5 * plan.time_step_s / (1.5 * compliance)
+    words = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * compliance:.3g} nm/N off them"
     if problem.contact.dashpot > bound:
-        why = f"{told}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
+        why = f"{words}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
         raise SceneError.at("contact.damping", problem.contact.damping, why)
-    load = float(typical_load(stiff.basis))
-    stiffness = max(1.5 * load / float(one.approach(load)) for one in (stiff.basis.inner, stiff.basis.outer))
+    load = float(_typical_load(stiff.basis))
+    stiffness = max(1.5 * load / float(ellipse.approach(load)) for ellipse in (stiff.basis.inner, stiff.basis.outer))
     if problem.time_constant * stiffness > bound:
-        why = f"{told}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
+        why = f"{words}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
         raise SceneError.at("contact.time_constant", problem.time_constant, why)

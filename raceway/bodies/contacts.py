@@ -8,13 +8,14 @@ import numpy as np
 
 from raceway.bodies.basis import Basis
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.ring.ring import Ring
-from raceway.core.ring.system import surrogate
+from raceway.core.ring.ring import COORDINATES, Ring
+from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import is_foundation, renews
 from raceway.framework.estimate import Estimate
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import groove_depth, load_at_edge
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,7 +46,7 @@ def contact_angles(
 
 def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
     """A sentence for each race whose contact ellipses run over the groove's edge; angles (Z,), forces (2 Z,)."""
-    edges, found = groove_edges(problem, basis), []
+    edges, warnings = groove_edges(problem, basis), []
     overs = ellipse_ends(basis, inner, outer, force)
     for race, (word, angle, over) in enumerate(zip(("inner", "outer"), (inner, outer), overs, strict=True)):
         beyond = over - edges
@@ -55,17 +56,17 @@ def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: 
             depth = groove_depth(bearing)
             begins = load_at_edge(basis.of_ball(ball)[race], 0.5 * bearing.ball_diameter, edge - abs(angle[ball]))
             assumed = "" if problem.bearing.shoulder_height else ", assumed 0.2 D"
-            found.append(
+            warnings.append(
                 f"the contact ellipse on the {word} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
                 f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
                 f"contact angle from {begins:.3g} N a ball"
             )
-    return found
+    return warnings
 
 
 def groove_edges(problem: Problem, basis: Basis) -> np.ndarray:
     """(Z,) angle from the groove's bottom to its edge, seen from the ball's centre, of every ball's row [rad]."""
-    rows = [np.arccos(1.0 - groove_depth(one) / (0.5 * one.ball_diameter)) for one in problem.bearing.of_rows]
+    rows = [np.arccos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter)) for bearing in problem.bearing.of_rows]
     return np.asarray(np.array(rows)[basis.row])
 
 
@@ -102,7 +103,7 @@ def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str,
 _HALVINGS = 80
 
 
-def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
 
     Parameters
@@ -112,8 +113,8 @@ def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray
     system, n = surrogate(ring), len(approach)
     row, z = race * system.ball_count, system.ball_count
     # A number of contacts that is that of the balls is theirs: rows may differ.
-    chosen = np.arange(row, row + z) if n == z else np.full(n, row)
-    params, state = (np.ascontiguousarray(each[chosen]) for each in (system.law_params, system.law_state))
+    rows = np.arange(row, row + z) if n == z else np.full(n, row)
+    params, state = (np.ascontiguousarray(each[rows]) for each in (system.law_params, system.law_state))
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
     system.law(-np.ascontiguousarray(approach), np.zeros(n), params, state, state.copy(), 0.0, force, d_gap, d_rate)
     return force, -d_gap
@@ -123,11 +124,11 @@ def approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.
     """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
     load = np.asarray(load, dtype=float)
     low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
-    while (short := law_of_pair(ring, race, high)[0] < load).any():
+    while (short := _law_of_pair(ring, race, high)[0] < load).any():
         high = np.where(short, 2.0 * high, high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        below = law_of_pair(ring, race, middle)[0] < load
+        below = _law_of_pair(ring, race, middle)[0] < load
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.where(load > 0.0, high, 0.0)
 
@@ -147,14 +148,31 @@ def contact_ellipse(
     contact = problem.contact
     if not problem.bearing.equal_rows and len(load) != len(basis.azimuth):
         # Loads of no particular balls: of the row in which they press hardest.
-        each = [one.ellipses(basis.modulus)[race] for one in basis.geometries]
-        ellipse = max(each, key=lambda one: float(one.peak_pressure(1.0)))
+        each = [geometry.ellipses(basis.modulus)[race] for geometry in basis.geometries]
+        ellipse = max(each, key=lambda geometry: float(geometry.peak_pressure(1.0)))
     if not problem.traits.resultants or not is_foundation(contact.law):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at(ring, basis.geometry.ball_diameter, race, load)
-    slope = law_of_pair(ring, race, approach)[1]
+    slope = _law_of_pair(ring, race, approach)[1]
     return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)
+
+
+def rigid_rings(rigid: System, guess: np.ndarray) -> tuple[Tables, np.ndarray]:
+    """The table ``model.rigid_rings`` of result.json, of the same scene with rigid bodies, and its stiffness (5, 5)."""
+    q, ball, _ = rigid.settle(guess)
+    now = rigid.evaluate(q, ball=ball)
+    stiffness, _ = rigid.rows_following(q, now, now.stiffness, now.damping)
+    return {"displacement": dict(zip(COORDINATES, q.tolist(), strict=True)), "stiffness": stiffness.tolist()}, stiffness
+
+
+def elasticity(elastic: np.ndarray, rigid: np.ndarray, least: float) -> list[list[float | None]]:
+    """(5, 5) relative differences of stiffness entries; None where rigid bodies have less than ``least`` sqrt(K_ii K_jj)."""
+    scale = np.sqrt(np.abs(np.outer(np.diag(rigid), np.diag(rigid))))
+    return [
+        [float(elastic[i, j] / rigid[i, j] - 1.0) if abs(rigid[i, j]) > least * scale[i, j] else None for j in range(5)]
+        for i in range(5)
+    ]
 
 
 def calibration_error(
@@ -177,8 +195,8 @@ def calibration_error(
     inner, outer = force[:z][loaded], force[z:][loaded]
     give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
     give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
-    left = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
-    return float((left / give).max()), Estimate.CALIBRATED()
+    error = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
+    return float((error / give).max()), Estimate.CALIBRATED()
 
 
 #: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
@@ -196,7 +214,7 @@ def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
     approach = -equilibrium.gap
     off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
     slope = np.concatenate([
-        law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
+        _law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
     ])  # fmt: skip
     stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
     if max(off, stiffness) < _ROUNDING:
@@ -207,11 +225,11 @@ def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
 def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told:
     """Largest share of a loaded contact's approach that the surfaces overlap; ``columns`` : those of the balls."""
     loaded = equilibrium.contact_force > 0.0
-    left, approach = (
+    penetration, approach = (
         np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
         for name in ("approach_penetration", "approach")
     )
-    share = float((left / np.maximum(approach, 1e-300)).max())
+    share = float((penetration / np.maximum(approach, 1e-300)).max())
     return share, Estimate.OVERLAP()
 
 

@@ -60,7 +60,7 @@ _IMPORTS_S = 1.5
 
 
 @attrs.frozen
-class ElasticCost:
+class _ElasticCost:
     """Predictions.
 
     Attributes
@@ -80,7 +80,7 @@ class ElasticCost:
     step_s: float
 
 
-def elastic_cost(scene: Scene) -> ElasticCost | None:
+def elastic_cost(scene: Scene) -> _ElasticCost | None:
     """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
     mesh = predicted_mesh(scene)
     if mesh is None:
@@ -93,21 +93,25 @@ def elastic_cost(scene: Scene) -> ElasticCost | None:
     setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
     memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
     first = _IMPORTS_S + cells * _BUILD_S + setup + _EQUILIBRIUM * solve
-    whole = int(scene.contact.discretisation == "resultant")
-    neighbour = _NEIGHBOUR[whole] * solve
+    resultants = int(scene.contact.discretisation == "resultant")
+    neighbour = _NEIGHBOUR[resultants] * solve
     if not method.inertial:
-        return ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
+        return _ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
     plain = int(scene.bodies.formulation != "one_point")
-    step = _STEP[whole] * solve + 0.2 * (1 - whole) * setup if method.implicit else cells * _FORCE_S[plain] + _PYTHON_S
+    step = (
+        _STEP[resultants] * solve + 0.2 * (1 - resultants) * setup
+        if method.implicit
+        else cells * _FORCE_S[plain] + _PYTHON_S
+    )
     start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
-    return ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
+    return _ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
 
 
-def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> ElasticCost:
+def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> _ElasticCost:
     """With pressures at points: equal balls and sectors are factored once, for statics and for the steps of a motion."""
     method, count = scene.integrator.method, scene.bearing.ball_count
     parts = {str(body["name"]): int(body["cells"]) for body in mesh["bodies"]}
-    if equal_sectors(scene):
+    if _equal_sectors(scene):
         parts |= {name: parts[name] // count for name in ("inner_ring", "outer_ring") if name in parts}
     sizes = {
         name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))
@@ -117,17 +121,17 @@ def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> 
     memory = _BYTES + _POINT_BYTES * cells + _PEAK_BYTES * largest ** (4.0 / 3.0)
     first, solve = _IMPORTS_S + factor + _POINT_S * cells, _ALL_S * cells
     if not method.inertial or scene.excitation is None:
-        return ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
+        return _ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
     plain = int(scene.bodies.formulation != "one_point")
     start = 4.0 * solve if scene.integrator.start == "orbit" else 0.0
     step = cells * _FORCE_S[plain] + _PYTHON_S
     if method.implicit:
         memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
         start, step = start + factor, _STEP_S * cells
-    return ElasticCost(cells, unknowns, int(memory), _stable_step(scene), first, start, step)
+    return _ElasticCost(cells, unknowns, int(memory), _stable_step(scene), first, start, step)
 
 
-def equal_sectors(scene: Scene) -> bool:
+def _equal_sectors(scene: Scene) -> bool:
     """Whether the mesh of a ring is known to be as many equal sectors as there are balls, before it is made."""
     return scene.mesh is not None and scene.mesh.name == "structured" and scene.bearing.ball_count >= 3
 
@@ -145,13 +149,10 @@ def _stable_step(scene: Scene) -> float:
     from raceway.core.contact.hertz import contact_modulus
 
     b, mesh, law = scene.bearing, scene.mesh, scene.contact.law
-    row = BallBearing(
-        b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer
-    )
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     carried = axial_approach(b, scene.load.axial)[1] or 300.0
     load = getattr(mesh, "ball_load", None) or carried
-    ellipses = row.ellipses(modulus)
+    ellipses = BallBearing.of(b).ellipses(modulus)
     minors = [float(e.semi_axes(load)[1]) for e in ellipses]
     size = float(getattr(mesh, "element_size", inf))
     fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4)) if refined(scene) else size
@@ -200,10 +201,10 @@ def _own_bytes() -> float:
         import resource
 
         limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-        taken = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        resident = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     except (ImportError, ValueError, OSError):
         return inf
-    return inf if limit == resource.RLIM_INFINITY else float(limit - taken)
+    return inf if limit == resource.RLIM_INFINITY else float(limit - resident)
 
 
 _OTHER = "or take bodies.kind = 'condensed'"
@@ -243,7 +244,7 @@ _RULES: tuple[Rule[Scene], ...] = (
 )  # fmt: skip
 
 
-def memory_faults(scene: Scene) -> list[Mistake]:
+def _memory_faults(scene: Scene) -> list[Mistake]:
     """Meshes whose matrices this process cannot hold."""
     cost = elastic_cost(scene)
     most = _SHARE * allowed_bytes()
@@ -257,7 +258,7 @@ def memory_faults(scene: Scene) -> list[Mistake]:
     return [Mistake("mesh.kind", scene.mesh.name, why)]
 
 
-def words(cost: ElasticCost) -> str:
+def words(cost: _ElasticCost) -> str:
     """Size of the bodies in a sentence."""
     return f"{cost.cells} hexahedra, {cost.unknowns / 1e3:.0f} thousand unknowns, about {cost.bytes / 2**30:.2g} GiB"
 
@@ -304,7 +305,7 @@ class Elastic:
         faults += [Mistake(f"mounting.{key}", value, _SHAPES) for key, value in scene.mounting.changes.items()]
         points = [] if scene.contact.discretisation == "resultant" else unrefined(scene, "pressures at surface points")
         unmeshed = points or mesh_faults(scene)
-        return faults + (unmeshed or ([] if faults else memory_faults(scene)))
+        return faults + (unmeshed or ([] if faults else _memory_faults(scene)))
 
     def traits(self, scene: Scene) -> Traits:
         """Stepped from Python; a run is too dear to be made twice."""
@@ -338,7 +339,7 @@ class Elastic:
         parts.keep("other mirror half", why)
         count = problem.bearing.ball_count
         why = f"the {count} balls are one ball turned, and each ring {count} equal sectors: one of each is factored"
-        if nodal and equal_sectors(problem.scene):
+        if nodal and _equal_sectors(problem.scene):
             parts.leave_out("factors of equal balls and sectors", why)
         elif nodal:
             why = f"mesh.kind is {problem.mesh.name}: " if problem.mesh is not None else ""

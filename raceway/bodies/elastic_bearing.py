@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, make_basis, point_pairs
+from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
 from raceway.bodies.elastic_contacts import ElasticBodies, ElasticPoints, ElasticResultants
 from raceway.bodies.mesh import check_sets, mesh_scene, scene_mesher
 from raceway.bodies.mounting import place_ring
-from raceway.bodies.rigid_bearing import probe, rigid_system
-from raceway.contact_laws.hertz import Hertz
+from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.elastic.bearing import ElasticBearing
 from raceway.elastic.bearing_data import BearingData
+from raceway.elastic.resultant import ResultantContact
 from raceway.elastic.ring import ElasticRing
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import law_params
@@ -40,16 +39,13 @@ def build(problem: Problem, plan: Plan) -> ElasticBodies:
     MeshError
         Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
     """
-    basis, whole = make_basis(problem), problem.contact.discretisation == "resultant"
-    as_rigid = problem
-    if not whole:
-        contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-        as_rigid = problem.changed(contact=contact)
+    basis, resultants = make_basis(problem), problem.contact.discretisation == "resultant"
+    as_rigid = problem if resultants else with_hertz(problem)
     rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
     setup = _setup(problem, basis, rigid)
-    if whole:
+    if resultants:
         from raceway.bodies.condensed_bearing import elastic_bodies
 
         params = rigid.law_params
@@ -61,12 +57,12 @@ def build(problem: Problem, plan: Plan) -> ElasticBodies:
     meshes = mesh_scene(problem.scene)
     check_sets(scene_mesher(problem.scene), meshes, problem.supports)
     bodies = ElasticBearing(meshes, setup)
-    if whole:
+    if resultants:
         _refuse_stiff_law(problem, basis, bodies)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
     held_by = problem.load.axial if problem.supports.axial == "displacement" else None
     system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
-    if whole:
+    if resultants:
         return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
     return ElasticPoints(basis, system, guess, bodies, rigid)
 
@@ -81,13 +77,14 @@ def _angles(problem: Problem, plan: Plan, rigid: System, guess: np.ndarray) -> n
     inner = outer = rigid.centre_vectors(q)[0]
     if plan.centrifugal:
         inner, outer = inner - ball[:, :2], ball[:, :2]
-    found = np.concatenate([np.arctan2(way[:, 0], way[:, 1]) for way in (inner, outer)])
-    return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, found, angles)
+    loaded = np.concatenate([np.arctan2(way[:, 0], way[:, 1]) for way in (inner, outer)])
+    return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, loaded, angles)
 
 
 def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) -> None:
     """A law that has less compliance than the mesh under its contacts."""
-    contact: Any = bodies.system.contact
+    contact = bodies.system.contact
+    assert isinstance(contact, ResultantContact)
     n, load = len(contact.local), _ENOUGH * basis.ball_load
     gap = np.full(n, -float(basis.inner.approach(load)))
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
@@ -137,19 +134,14 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
 
 def _stick(problem: Problem, basis: Basis) -> float | None:
     """Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse; None where nothing is given."""
-    given = problem.contact.stick_stiffness
-    if given is None:
+    stiffness = problem.contact.stick_stiffness
+    if stiffness is None:
         return None
     along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
-    return given / (np.pi * along * across)
+    return stiffness / (np.pi * along * across)
 
 
 def _params(problem: Problem, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
-    z = len(basis.azimuth)
-
-    def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
-        pairs = point_pairs(basis, pair < z, area)
-        return law_params(problem.contact.law, pairs, "surface point")
-
-    return params
+    law, pairs = problem.contact.law, contact_pairs(problem, basis)
+    return lambda pair, area: law_params(law, at_points(pairs, pair, area), "surface point")

@@ -5,22 +5,23 @@ from __future__ import annotations
 import itertools
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
-from raceway.bodies.contacts import calibration_error, overlap, untold
+from raceway.bodies.contacts import calibration_error, overlap, rigid_rings, untold
 from raceway.bodies.elastic_stress import below_contacts
 from raceway.bodies.mesh import locking
 from raceway.bodies.model import Bearing, Told
 from raceway.core.record import Motion
 from raceway.core.ring.orbit import Orbit
-from raceway.core.ring.ring import COORDINATES, Ring
+from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System, surrogate
 from raceway.elastic import ring as start
 from raceway.elastic.bearing import ElasticBearing
-from raceway.elastic.contact import deepest_penetration, peak_at_nodes, peak_at_points, points_in_contact
+from raceway.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
+from raceway.elastic.resultant import ResultantContact
 from raceway.elastic.ring import ElasticRing
 from raceway.framework.estimate import Estimate
 from raceway.storage.tables import Tables
@@ -53,11 +54,11 @@ class ElasticBodies(Bearing):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Newton's iteration over all nodes."""
         if on_progress is not None:
-            told, count = on_progress, itertools.count(1)
+            report, count = on_progress, itertools.count(1)
             system = self.bearing.system
-            system.on_residual = lambda residual: told(f"equilibrium, residual {residual:.1e}", next(count), 0)
+            system.on_residual = lambda residual: report(f"equilibrium, residual {residual:.1e}", next(count), 0)
             if system.condensed is not None:
-                system.condensed.on_progress = told
+                system.condensed.on_progress = report
         return super().settle()
 
     def orbiting(self, system: Ring) -> Ring:
@@ -66,15 +67,15 @@ class ElasticBodies(Bearing):
 
     def on_orbit(self, system: Ring, orbit: Orbit, dt: float) -> Motion:
         """Near the orbit of rigid bodies."""
-        return start.from_orbit(_elastic(system), orbit, dt)
+        return start.from_orbit(_elastic(system), orbit)
 
     def at_rest(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
         """All nodes at rest."""
-        return start.at_rest(_elastic(system), q, ball, ramped)
+        return start.at_rest(_elastic(system), ramped)
 
     def at_equilibrium(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
         """All nodes in balance."""
-        return start.static_orbit(_elastic(system), q, ball, ramped)
+        return start.static_orbit(_elastic(system), ramped)
 
     def has_places(self, balls: str) -> bool:
         """Always: balls are bodies."""
@@ -92,9 +93,9 @@ class ElasticBodies(Bearing):
         centre = model.system.centre_vectors(equilibrium.displacement)[0]
         for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
             away = centre - equilibrium.ball if race == 0 else equilibrium.ball
-            rest = model.geometry.offset_inner if race == 0 else model.geometry.offset_outer
+            offset = model.geometry.offset_inner if race == 0 else model.geometry.offset_outer
             load = equilibrium.contact_force[race * z : (race + 1) * z]
-            out[f"approach_{word}_m"] = np.where(load > 0.0, np.linalg.norm(away, axis=1) - rest, 0.0)
+            out[f"approach_{word}_m"] = np.where(load > 0.0, np.linalg.norm(away, axis=1) - offset, 0.0)
             out[f"approach_hertz_{word}_m"] = np.asarray(ellipse.approach(load))
         return out
 
@@ -104,23 +105,16 @@ class ElasticBodies(Bearing):
 
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json."""
-        q, ball, _ = self.rigid.settle(self.guess)
-        stiffness = self.rigid.evaluate(q, ball=ball).stiffness
         contacts = self.contact_table(model, equilibrium)
-        system: Any = model.system
-        y, bodies = system.equilibrium, self.bearing.system
+        y, bodies = _elastic(model.system).equilibrium, self.bearing.system
         cage = self.bearing.cage_forces(y)[:, 0]
         across = np.stack([self.bearing.setup.turn(k)[:, 2] for k in range(len(cage))])
         force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
-        load = np.concatenate([model.system.load[:3], model.system.load[3:]])
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
         scene = model.problem
         mesh = contacts.pop("mesh", {})
         return {
-            "rigid_rings": {
-                "displacement": dict(zip(COORDINATES, q.tolist(), strict=True)),
-                "stiffness": stiffness.tolist(),
-            },
+            "rigid_rings": rigid_rings(self.rigid, self.guess)[0],
             "mesh": {
                 "cells": self.bearing.cells,
                 "nodes": bodies.assembly.nodes,
@@ -130,7 +124,7 @@ class ElasticBodies(Bearing):
                 **mesh,
             },
             "reaction_n": dict(zip("xyz", force.tolist(), strict=True)),
-            "unbalanced_n": float(np.abs((force + load[:3]) * model.system.free[:3]).max()),
+            "unbalanced_n": float(np.abs((force + model.system.load[:3]) * model.system.free[:3]).max()),
             "cage_force_n": float(np.abs(cage).max()),
             "energies_j": energies,
             "hourglass_energy_ratio": energies["hourglass"] / max(energies["elastic"], 1e-300),
@@ -156,6 +150,12 @@ def _elastic(system: Ring) -> ElasticRing:
     return system
 
 
+def _at_equilibrium(system: Ring) -> None:
+    """The bodies keep the contacts of the equilibrium."""
+    ring = _elastic(system)
+    ring.in_place(ring.equilibrium)
+
+
 #: Turn of a contact [rad] that puts it a quarter of its ellipse away from where the mesh was asked: the local compliance there is
 #: another by 0.5 % of a contact's, measured on elements of 3.2 mm.
 _FAR_RAD = 0.05
@@ -174,8 +174,14 @@ class ElasticResultants(ElasticBodies):
 
     compliances: Compliances
 
+    @property
+    def contact(self) -> ResultantContact:
+        contact = self.bearing.system.contact
+        assert isinstance(contact, ResultantContact)
+        return contact
+
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
-        contact: Any = self.bearing.system.contact
+        contact = self.contact
         out, z = super().ball_columns(model, equilibrium), model.system.ball_count
         for race, word in enumerate(("inner", "outer")):
             part = slice(race * z, (race + 1) * z)
@@ -183,7 +189,7 @@ class ElasticResultants(ElasticBodies):
         return out
 
     def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
-        contact: Any = self.bearing.system.contact
+        contact = self.contact
         z, beyond = model.system.ball_count, self.bearing.setup.beyond
         assert beyond is not None
         return {
@@ -193,7 +199,7 @@ class ElasticResultants(ElasticBodies):
                 "replaced_outer_m_per_n": float(contact.local[z:].mean()),
                 "calibration_inner_m_per_n": float(np.mean(beyond[:z])),
                 "calibration_outer_m_per_n": float(np.mean(beyond[z:])),
-                "replaced_spread_m_per_n": float(max(one.spread for one in contact.touches)),
+                "replaced_spread_m_per_n": float(max(touch.spread for touch in contact.touches)),
                 "replaced_uncertainty": self._uncertainty(model, equilibrium),
                 "largest_turn_deg": float(np.degrees(self._turned(model, equilibrium))),
             },
@@ -201,38 +207,36 @@ class ElasticResultants(ElasticBodies):
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Meshes that do not tell the contacts' compliance from the bodies', contacts that moved away; elements that lock."""
-        found = []
+        sentences = []
         unsure = self._uncertainty(model, equilibrium)
         if unsure > _UNSURE:
-            found.append(
+            sentences.append(
                 f"the mesh is too coarse to tell its own compliance under a contact to better than {100 * unsure:.2g} % of the "
                 "contact's: take a smaller mesh.element_size, or bodies.kind = 'condensed'"
             )
         turned = self._turned(model, equilibrium)
         if turned > _FAR_RAD:
-            found.append(
+            sentences.append(
                 f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, where the mesh's own compliance "
                 "was looked at: compare with bodies.kind = 'condensed', which follows the angle"
             )
-        return found + super().warnings(model, equilibrium)
+        return sentences + super().warnings(model, equilibrium)
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Of a ball's stiffness by what the calibration leaves, and by how well the mesh knows what is taken off."""
         if not model.traits.calibrated:
             return untold(model)
-        contact: Any = self.bearing.system.contact
-        spread = 0.5 * max(float(one.spread) for one in contact.touches)
+        spread = 0.5 * max(float(touch.spread) for touch in self.contact.touches)
         size, how = calibration_error(self.compliances, model, equilibrium, spread)
         return size, how if size is None else Estimate.CALIBRATED_ON_MESH()
 
     def _uncertainty(self, model: Model, equilibrium: Equilibrium) -> float:
         """Half the spread over depths of what is taken off, over the compliance of the most loaded contact."""
-        contact: Any = self.bearing.system.contact
+        contact = self.contact
         worst = int(np.argmax(equilibrium.contact_force))
         if equilibrium.contact_force[worst] <= 0.0:
             return 0.0
-        system: Any = model.system
-        system.in_place(system.equilibrium)
+        _at_equilibrium(model.system)
         compliance = contact.local[worst] - 1.0 / contact.d_gap[worst]  # the law's own
         return float(0.5 * contact.touches[worst].spread / compliance)
 
@@ -240,9 +244,9 @@ class ElasticResultants(ElasticBodies):
         """Largest angle between a loaded contact's line and that at which its footprints lie [rad]."""
         angles = self.bearing.setup.angles
         assert angles is not None
-        found = np.concatenate([equilibrium.angle_inner, equilibrium.angle_outer])
+        present = np.concatenate([equilibrium.angle_inner, equilibrium.angle_outer])
         loaded = equilibrium.contact_force > 0.0
-        return float(np.abs(found - angles)[loaded].max(initial=0.0))
+        return float(np.abs(present - angles)[loaded].max(initial=0.0))
 
 
 #: Points in a loaded contact below which its pressure is off by tens of percent.
@@ -256,6 +260,12 @@ class ElasticPoints(ElasticBodies):
     #: By displacement: asked for five times a result, each an evaluation of all bodies.
     _columns: dict[bytes, dict[str, np.ndarray]] = attrs.field(init=False, factory=dict)
 
+    @property
+    def contact(self) -> NodalContact:
+        contact = self.bearing.system.contact
+        assert isinstance(contact, NodalContact)
+        return contact
+
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         key = equilibrium.displacement.tobytes()
         if key not in self._columns:
@@ -263,18 +273,17 @@ class ElasticPoints(ElasticBodies):
         return dict(self._columns[key])
 
     def _told(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
-        system: Any = model.system
-        system.in_place(system.equilibrium)
-        contact: Any = self.bearing.system.contact
+        _at_equilibrium(model.system)
+        contact = self.contact
         out, z = super().ball_columns(model, equilibrium), model.system.ball_count
-        found = {
+        table = {
             "peak_pressure_points_{}_pa": peak_at_points(contact),
             "peak_pressure_nodal_{}_pa": peak_at_nodes(contact),
-            "points_{}": points_in_contact(contact).astype(float),
-            "approach_penetration_{}_m": deepest_penetration(contact),
+            "points_{}": np.add.reduceat((contact.pressure > 0.0).astype(float), contact.starts),
+            "approach_penetration_{}_m": np.maximum(-contact.deepest(), 0.0),
         }
         for race, word in enumerate(("inner", "outer")):
-            out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in found.items()}
+            out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in table.items()}
         return out
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
@@ -284,21 +293,21 @@ class ElasticPoints(ElasticBodies):
     def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
         columns = self.ball_columns(model, equilibrium)
         loaded = equilibrium.contact_force > 0.0
-        approach, left = (
+        approach, penetration = (
             np.concatenate([columns[f"{name}_{word}_m"] for word in ("inner", "outer")])[loaded]
             for name in ("approach", "approach_penetration")
         )
-        share = left / np.maximum(approach, 1e-300) if loaded.any() else np.zeros(1)
+        share = penetration / np.maximum(approach, 1e-300) if loaded.any() else np.zeros(1)
         return {
             "bodies": "elastic: every node of rings and balls, pressures at surface points",
-            "max_penetration_m": float(left.max(initial=0.0)),
+            "max_penetration_m": float(penetration.max(initial=0.0)),
             "penetration_share": float(share.max()),
-            "subsurface": [one.table() for one in below_contacts(self, model, equilibrium)],
+            "subsurface": [profile.table() for profile in below_contacts(self, model, equilibrium)],
         }
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts with too few points for their pressure; elements that lock."""
-        found: list[str] = []
+        sentences: list[str] = []
         columns = self.ball_columns(model, equilibrium)
         z = model.system.ball_count
         force = equilibrium.contact_force
@@ -308,8 +317,8 @@ class ElasticPoints(ElasticBodies):
             for word, part in (("inner", slice(0, z)), ("outer", slice(z, 2 * z)))
         )
         if least < _FEW_POINTS:
-            found.append(
+            sentences.append(
                 f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; "
                 "take more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
             )
-        return found + super().warnings(model, equilibrium)
+        return sentences + super().warnings(model, equilibrium)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import largest_shear
-from raceway.elastic.contact import NodalContact
+from raceway.elastic.ring import ElasticRing
 from raceway.elastic.stress import ContactAxis, StressProfile, contact_axes, stress_profile
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.bodies.elastic_contacts import ElasticBodies
+    from raceway.bodies.elastic_contacts import ElasticPoints
     from raceway.bodies.model import Equilibrium, Model
 
 #: Elements down to Hertz's depth, and along each semi-axis of the ellipse, from which a mesh counts as resolving the stresses.
-RESOLVED = 4.0
+_RESOLVED = 4.0
 #: Elements within so many major semi-axes of a contact are looked at; the line ends at so many of Hertz's depths.
 _NEAR, _DEEP = 1.5, 3.0
 
@@ -58,7 +58,7 @@ class BelowContact:
     @property
     def resolved(self) -> bool:
         """Whether the mesh resolves the stresses."""
-        return min(self.cells) >= RESOLVED
+        return min(self.cells) >= _RESOLVED
 
     def table(self) -> Tables:
         """Plain numbers, for result.json."""
@@ -80,14 +80,14 @@ class BelowContact:
         }
 
 
-def below_contacts(bodies: ElasticBodies, model: Model, equilibrium: Equilibrium) -> list[BelowContact]:
+def below_contacts(bodies: ElasticPoints, model: Model, equilibrium: Equilibrium) -> list[BelowContact]:
     """Ball and ring below the most loaded contact of each race, at rest; none of a race that carries nothing."""
-    system: Any = model.system
+    system = model.system
+    assert isinstance(system, ElasticRing)
     system.in_place(system.equilibrium)
-    setup, assembly, contact = bodies.bearing.setup, bodies.bearing.system.assembly, bodies.bearing.system.contact
-    assert isinstance(contact, NodalContact)
+    setup, assembly, contact = bodies.bearing.setup, bodies.bearing.system.assembly, bodies.contact
     moved = assembly.nodal(system.equilibrium)
-    z, found = model.system.ball_count, []
+    z, profiles = model.system.ball_count, []
     for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
         loads = equilibrium.contact_force[race * z : (race + 1) * z]
         ball = int(np.argmax(loads))
@@ -106,5 +106,5 @@ def below_contacts(bodies: ElasticBodies, model: Model, equilibrium: Equilibrium
             u = moved[assembly.part(index)].reshape(-1, 3)
             deep = _DEEP * max(depth, 0.1 * minor)
             profile = stress_profile(axis, assembly.bodies[index].operator, u, _NEAR * major, deep)
-            found.append(BelowContact(word, body, ball, index, load, peak, (major, minor), material[1], axis, profile))
-    return found
+            profiles.append(BelowContact(word, body, ball, index, load, peak, (major, minor), material[1], axis, profile))
+    return profiles

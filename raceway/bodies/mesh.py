@@ -38,7 +38,7 @@ _SETS = {
 _OTHER_SIZE = 0.05
 
 
-def check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) -> None:
+def _check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) -> None:
     """Compare rings and balls with the scene's [bearing]; warn of another size.
 
     Parameters
@@ -52,15 +52,15 @@ def check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) 
     """
     told_of: set[str] = set()  # all balls but for one are copies: one warning is enough
     for name, mesh in meshes.items():
-        for key, expected, found in _sizes(bearing, name, mesh.points):
-            ratio = found / expected
+        for key, expected, measured in _sizes(bearing, name, mesh.points):
+            ratio = measured / expected
             if not 1.0 / _OTHER_UNIT < ratio < _OTHER_UNIT:
-                told = f"the mesh of '{name}' measures {found:.4g} m, but {key} of the bearing is {expected:.4g} m"
-                raise _refusal(mesher, name, told, ratio)
+                words = f"the mesh of '{name}' measures {measured:.4g} m, but {key} of the bearing is {expected:.4g} m"
+                raise _refusal(mesher, name, words, ratio)
             if abs(ratio - 1.0) > _OTHER_SIZE and not key.startswith("the size") and key not in told_of:
                 told_of.add(key)
                 warnings.warn(
-                    f"the mesh of '{name}' measures {found:.4g} m where {key} of the bearing is {expected:.4g} m",
+                    f"the mesh of '{name}' measures {measured:.4g} m where {key} of the bearing is {expected:.4g} m",
                     stacklevel=3,
                 )
 
@@ -78,8 +78,8 @@ def check_sets(mesher: Mesher, meshes: Mapping[str, HexMesh], supports: Supports
         key, value = ("mesh.kind", mesher.name) if path is None else (f"mesh.{body}", path)
         mesh = next((mesh for name, mesh in meshes.items() if name.startswith(body)), None)
         if mesh is None:
-            what = "one ball, a copy of which stands at each place" if body == "ball" else "this ring"
-            raise MeshError.at(f"mesh.{body}", path, f"is required with elastic bodies: the file of {what}")
+            body_words = "one ball, a copy of which stands at each place" if body == "ball" else "this ring"
+            raise MeshError.at(f"mesh.{body}", path, f"is required with elastic bodies: the file of {body_words}")
         held = "seat" if getattr(supports, body.replace("_ring", "_seat"), "") == "rigid" else ""  # its nodes are enough
         for name, where in sets.items():
             try:
@@ -107,19 +107,19 @@ def _sizes(bearing: Bearing, name: str, points: np.ndarray) -> list[tuple[str, f
     return []
 
 
-def _refusal(mesher: Mesher, name: str, told: str, ratio: float) -> MeshError:
+def _refusal(mesher: Mesher, name: str, fault: str, ratio: float) -> MeshError:
     path = str(getattr(mesher, "ball" if name.startswith("ball") else name, ""))
     if path.lower().endswith((".step", ".stp")):
-        return MeshError(f"{told}: '{path}' names its own unit; write it again in the right one")
-    given: float | None = getattr(mesher, "scale", None)
-    if given is None:
-        return MeshError(f"{told}: mesher '{mesher.name}' must return metres")
+        return MeshError(f"{fault}: '{path}' names its own unit; write it again in the right one")
+    present: float | None = getattr(mesher, "scale", None)
+    if present is None:
+        return MeshError(f"{fault}: mesher '{mesher.name}' must return metres")
     # Powers of ten are units; anything else is told as it is.
     power = round(log10(1.0 / ratio))
     exact = abs(log10(1.0 / ratio) - power) < 0.2
-    scale = given * (10.0**power if exact else 1.0 / ratio)
+    scale = present * (10.0**power if exact else 1.0 / ratio)
     unit = " (the file is in millimetres)" if abs(scale / 1e-3 - 1.0) < 1e-6 else ""
-    return MeshError.at("mesh.scale", given, f"{told}: write mesh.scale = {scale:.3g}{unit}")
+    return MeshError.at("mesh.scale", present, f"{fault}: write mesh.scale = {scale:.3g}{unit}")
 
 
 #: Poisson's ratio from which contacts at surface points are too stiff by percents: measured with B7206C, which does not
@@ -131,16 +131,16 @@ def locking(scene: Scene) -> list[str]:
     """A warning for each material that is nearly incompressible."""
     one_point = scene.bodies.name == "elastic" and scene.bodies.formulation == "one_point"
     least = _ONE_POINT if one_point else _FROM
-    found = []
+    warnings = []
     for part in ("rings", "balls"):
         poisson = getattr(scene.bearing, part).poisson
         if poisson >= least:
-            found.append(
+            warnings.append(
                 f"bearing.{part}.poisson = {poisson:g}: elements lock near 0.5, contacts at surface points are too stiff by "
                 f"{'tens of percent' if one_point or poisson > 0.495 else 'percents'} whatever the mesh; take bodies.kind = "
                 "'condensed' with contact.discretisation = 'resultant', or rigid bodies, whose contacts are Hertz's"
             )
-    return found
+    return warnings
 
 
 def scene_mesher(scene: Scene) -> Mesher:
@@ -153,8 +153,8 @@ def scene_mesher(scene: Scene) -> Mesher:
     """
     if scene.mesh is None:
         raise SceneError.at("mesh", None, 'is required here: for instance [mesh] with kind = "structured"')
-    known = {field.name for field in attrs.fields(type(scene.mesh))}
-    if "ball_load" in known and scene.mesh.ball_load is None and scene.load.axial != 0.0:
+    options = {field.name for field in attrs.fields(type(scene.mesh))}
+    if "ball_load" in options and scene.mesh.ball_load is None and scene.load.axial != 0.0:
         return attrs.evolve(scene.mesh, ball_load=axial_approach(scene.bearing, scene.load.axial)[1])
     return scene.mesh
 
@@ -174,18 +174,18 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
 
     mesher = scene_mesher(scene)
     with blamed(f"mesher '{mesher.name}'", "mesh()"):
-        found = mesher.mesh(scene.bearing)
-    if not isinstance(found, Mapping) or not found:
-        raise PluginError(f"mesher '{mesher.name}': mesh() returned {type(found).__name__}; it must be meshes by name")
+        meshes = mesher.mesh(scene.bearing)
+    if not isinstance(meshes, Mapping) or not meshes:
+        raise PluginError(f"mesher '{mesher.name}': mesh() returned {type(meshes).__name__}; it must be meshes by name")
     out: dict[str, HexMesh] = {}
-    for name, mesh in found.items():
+    for name, mesh in meshes.items():
         try:
             parts = mesh.points, mesh.cells, getattr(mesh, "node_sets", {}), getattr(mesh, "facet_sets", {})
             out[str(name)] = mesh if isinstance(mesh, HexMesh) else HexMesh(*parts)
         except (AttributeError, MeshError) as why:
             raise PluginError(f"mesher '{mesher.name}': body '{name}' is no mesh: {why}") from why
         refuse_bad_cells(out[str(name)], str(name))
-    check_size(mesher, scene.bearing, out)
+    _check_size(mesher, scene.bearing, out)
     return out
 
 
@@ -229,13 +229,13 @@ def predicted_mesh(scene: Scene) -> Tables | None:
     PluginError
         A mesher whose prediction is none, or that raises anything but a ``RacewayError``.
     """
-    found = None if scene.mesh is None else _prediction(scene)
-    if found is None:
+    prediction = None if scene.mesh is None else _prediction(scene)
+    if prediction is None:
         return None
     from raceway.core.mesh.quality import body_bytes
 
-    bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in found.bodies.items()]
-    return {"bodies": bodies, "cells": found.cells, "bytes": found.memory_bytes}
+    bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in prediction.bodies.items()]
+    return {"bodies": bodies, "cells": prediction.cells, "bytes": prediction.memory_bytes}
 
 
 def _prediction(scene: Scene) -> Prediction | None:
@@ -246,14 +246,14 @@ def _prediction(scene: Scene) -> Prediction | None:
     from raceway.core.mesh.quality import Prediction, refuse_memory
 
     with blamed(f"mesher '{mesher.name}'", "predict()"):
-        found = mesher.predict(scene.bearing)
-    if found is None:  # it cannot tell before it reads or meshes
+        prediction = mesher.predict(scene.bearing)
+    if prediction is None:  # it cannot tell before it reads or meshes
         return None
-    if isinstance(found, Mapping) and all(isinstance(cells, int) for cells in found.values()):
-        found = Prediction.of({str(name): cells for name, cells in found.items()})
-    if not isinstance(found, Prediction):
+    if isinstance(prediction, Mapping) and all(isinstance(cells, int) for cells in prediction.values()):
+        prediction = Prediction.of({str(name): cells for name, cells in prediction.items()})
+    if not isinstance(prediction, Prediction):
         raise PluginError(
-            f"mesher '{mesher.name}': predict() returned {type(found).__name__}; it must be body -> number of cells"
+            f"mesher '{mesher.name}': predict() returned {type(prediction).__name__}; it must be body -> number of cells"
         )
-    refuse_memory(found, "mesh.kind", mesher.name, "take larger elements")
-    return found
+    refuse_memory(prediction, "mesh.kind", mesher.name, "take larger elements")
+    return prediction

@@ -43,22 +43,22 @@ _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
     guess = first_guess(problem, basis)
-    growth, place = basis.growth, None
+    growth, seek = basis.growth, None
     if problem.bearing.preloaded:
         system.table[:, ring.SHIFT] = _ground_shifts(problem, basis, system.standing(growth))
         guess[0] = 0.0
     if problem.bearing.preloaded and problem.bearing.preload_kind == "spring":
         system.sliding = np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
-        place = partial(_follow_spring, problem, basis, float(system.table[system.sliding[0], ring.SHIFT]))
+        seek = partial(_follow_spring, problem, basis, float(system.table[system.sliding[0], ring.SHIFT]))
     if problem.supports.axial == "displacement":
         loose = _under(system.standing(growth), problem.load.axial)
         start = guess[0] * _AXIAL
-        guess = loose.settle(start)[0] if place is None else place(loose, start)
+        guess = loose.settle(start)[0] if seek is None else seek(loose, start)
     if renews(problem.contact.law) and isinstance(system, System):
-        guess = renew(problem, basis, system, guess, place)
-    if place is not None and system.spin is not None:
-        system.spin = _follow_speed(problem, system, guess, place)
-    return guess if place is None else place(system, guess)
+        guess = renew(problem, basis, system, guess, seek)
+    if seek is not None and system.spin is not None:
+        system.spin = _follow_speed(problem, system, guess, seek)
+    return guess if seek is None else seek(system, guess)
 
 
 def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
@@ -70,23 +70,23 @@ def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
     under its own.  Rows that differ in nothing are solved for once.
     """
     bearing = problem.bearing
-    given = [row.preload for row in bearing.row] or [None] * len(bearing.rows)
-    own = [bearing.preload if force is None else force for force in given]
-    sides = {side: [k for k, (other, _) in enumerate(bearing.rows) if other == side] for side in (1.0, -1.0)}
-    found, known = np.zeros(loose.ball_count), dict[tuple[object, ...], float]()
+    preloads = [row.preload for row in bearing.row] or [None] * len(bearing.rows)
+    row_preloads = [bearing.preload if force is None else force for force in preloads]
+    sides = {side: [k for k, (sign, _) in enumerate(bearing.rows) if sign == side] for side in (1.0, -1.0)}
+    shifts, shift_of = np.zeros(loose.ball_count), dict[tuple[object, ...], float]()
     if bearing.preload_of == "row":
-        groups = [([k], own[k]) for k in range(len(own))]
+        groups = [([k], row_preloads[k]) for k in range(len(row_preloads))]
     else:
         first = bearing.rows[0][0]
         groups = [(sides[first], bearing.preload), (sides[-first], bearing.other_preload)]
     for rows, force in groups:
         same = (len(rows) if bearing.equal_rows else tuple(rows), force)
         balls = np.flatnonzero(np.isin(basis.row, rows))
-        if same not in known:
+        if same not in shift_of:
             start = 0.05 * basis.geometry.centre_distance * _AXIAL
-            known[same] = _under(_some(loose, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
-        found[balls] = known[same]
-    return found
+            shift_of[same] = _under(_some(loose, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
+        shifts[balls] = shift_of[same]
+    return shifts
 
 
 def _under(system: R, axial: float) -> R:
@@ -103,7 +103,7 @@ def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
 
 
 def _follow_speed(
-    problem: Problem, system: Ring, guess: np.ndarray, place: Callable[[Ring, np.ndarray], np.ndarray]
+    problem: Problem, system: Ring, guess: np.ndarray, seek: Callable[[Ring, np.ndarray], np.ndarray]
 ) -> ChangingSpeed:
     """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
     from scipy.interpolate import CubicSpline
@@ -116,7 +116,7 @@ def _follow_speed(
     shifts = []
     for speed in speeds:
         steady = spin.constants(system, float(speed))
-        place(steady, guess)
+        seek(steady, guess)
         shifts.append(steady.table[steady.sliding, ring.SHIFT][0])
     return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
@@ -134,7 +134,7 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
     ConvergenceError
         No such place, or one beyond the spring's travel.
     """
-    second, wanted = system.sliding, problem.bearing.other_preload
+    second, preload = system.sliding, problem.bearing.other_preload
     assert second is not None, "the scene's rows are on a spring"
     side, free = float(system.table[second[0], ring.SIDE]), system.free > 0.0
     low, high = -np.inf, np.inf
@@ -146,13 +146,13 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
         system.table[second, ring.SHIFT] = shift + apart
         q, ball, _ = system.settle(q)
         still = system.without(ring.CAGE)
-        whole, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
-        excess = side * float(rows.force[0]) - wanted
-        if abs(excess) <= _TOLERANCE * wanted:
+        all_rows, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
+        excess = side * float(rows.force[0]) - preload
+        if abs(excess) <= _TOLERANCE * preload:
             _refuse_travel(problem, shift - origin)
             return q
         low, high = (low, shift) if excess > 0.0 else (shift, high)
-        tangent = system.reduced(whole.stiffness + system.stiffness)
+        tangent = system.reduced(all_rows.stiffness + system.stiffness)
         follows = np.linalg.lstsq(tangent, rows.stiffness[free, 0], rcond=None)[0]
         slope = float(rows.stiffness[0, 0] - rows.stiffness[0, free] @ follows)
         trial = shift - excess / slope if slope > 0.0 else np.nan
@@ -162,7 +162,7 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
         shift = trial
     key = "preload" if problem.bearing.second_preload is None else "second_preload"
     raise ConvergenceError(
-        f"no place of the second row was found at which it carries the spring of `bearing.{key}` = {wanted:g} N under these "
+        f"no place of the second row was found at which it carries the spring of `bearing.{key}` = {preload:g} N under these "
         "loads: raise the preload, or take preload_kind = 'rigid'.",
         {"q": q},
     )
@@ -315,8 +315,8 @@ def evaluate_following(problem: Problem, system: Ring, q: np.ndarray, ball: np.n
     if system.sliding is None:
         return system.evaluate(q, ball=ball)
     side, table = float(system.table[system.sliding[0], ring.SIDE]), system.table.copy()
-    place, _, _ = _under(_some(system, system.sliding), side * problem.bearing.other_preload).settle(q)
-    table[system.sliding, ring.SHIFT] += side * (place[0] - q[0])
+    sprung, _, _ = _under(_some(system, system.sliding), side * problem.bearing.other_preload).settle(q)
+    table[system.sliding, ring.SHIFT] += side * (sprung[0] - q[0])
     moved = attrs.evolve(system, table=table)
     now = moved.evaluate(q, ball=ball)
     stiffness, damping = moved.rows_following(q, now, now.stiffness, now.damping)
@@ -325,8 +325,8 @@ def evaluate_following(problem: Problem, system: Ring, q: np.ndarray, ball: np.n
 
 def _row_forces(model: Model, system: Ring, q: np.ndarray, ball: np.ndarray) -> list[float]:
     """Axial force of each row in its seating direction [N]."""
-    still, found = system.without(ring.CAGE), []
+    still, forces = system.without(ring.CAGE), []
     for k, (side, _) in enumerate(model.problem.bearing.rows):
         balls = np.flatnonzero(model.basis.row == k)
-        found.append(side * float(_some(still, balls).evaluate(q, ball=ball[balls]).force[0]))
-    return found
+        forces.append(side * float(_some(still, balls).evaluate(q, ball=ball[balls]).force[0]))
+    return forces

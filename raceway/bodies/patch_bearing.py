@@ -7,20 +7,19 @@ where contacts go further than that, the patches are made wider.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, make_basis, point_pairs
+from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
 from raceway.bodies.condensed import nodes_of
 from raceway.bodies.condensed_bearing import inertia_table
-from raceway.bodies.contacts import overlap
+from raceway.bodies.contacts import elasticity, overlap, rigid_rings
 from raceway.bodies.mesh import locking
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
-from raceway.bodies.rigid_bearing import probe, rigid_system
-from raceway.contact_laws.hertz import Hertz
+from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.patches.pressure import BeyondPatch, ContactState, PointLaw, PressureField, Reach, pressure_field, reach_of
@@ -28,7 +27,7 @@ from raceway.core.patches.system import PatchSystem, Pool
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.ring.ring import COORDINATES, Evaluation, Ring
+from raceway.core.ring.ring import Evaluation, Ring
 from raceway.core.ring.system import System, surrogate
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, RacewayError
@@ -52,7 +51,7 @@ _ENOUGH = 3.0
 
 
 @attrs.frozen(eq=False)
-class NodalBearing(Bearing):
+class _NodalBearing(Bearing):
     """Condensed rings and balls with pressures at surface points.
 
     Attributes
@@ -95,15 +94,16 @@ class NodalBearing(Bearing):
 
     def pressed(self, model: Model, equilibrium: Equilibrium) -> tuple[Evaluation, list[ContactState]]:
         """The state and the contacts' answers at the equilibrium, inner races first."""
-        system: Any = model.system.without(CAGE)
+        system = model.system.without(CAGE)
+        assert isinstance(system, PatchSystem)
         now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)
         return now, system.pressures()
 
     def pressure_field(self, model: Model, equilibrium: Equilibrium, ball: int, inner: bool = True) -> PressureField:
         """Pressures of one contact at the equilibrium."""
         contacts = self.pressed(model, equilibrium)[1]
-        which = ball if inner else ball + model.system.ball_count
-        return pressure_field(self.pool.patches[0 if inner else 1], contacts[which])
+        contact = ball if inner else ball + model.system.ball_count
+        return pressure_field(self.pool.patches[0 if inner else 1], contacts[contact])
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).
@@ -116,45 +116,35 @@ class NodalBearing(Bearing):
         now, contacts = self.pressed(model, equilibrium)
         z, out = model.system.ball_count, {}
         for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
-            chosen = contacts[race * z : (race + 1) * z]
+            states = contacts[race * z : (race + 1) * z]
             load = now.contact_force[race * z : (race + 1) * z]
             approach = np.where(load > 0.0, -now.gap[race * z : (race + 1) * z], 0.0)
-            left = np.array([one.penetration for one in chosen])
+            penetration = np.array([state.penetration for state in states])
             area = self.pool.patches[race].area
-            out[f"peak_pressure_nodal_{word}_pa"] = np.array([one.load.max(initial=0.0) / area for one in chosen])
-            out[f"points_{word}"] = np.array([float(len(one.nodes)) for one in chosen])
+            out[f"peak_pressure_nodal_{word}_pa"] = np.array([state.load.max(initial=0.0) / area for state in states])
+            out[f"points_{word}"] = np.array([float(len(state.nodes)) for state in states])
             across = np.array([float(ellipse.semi_axes(f)[1]) for f in load]) / self.spacing.across
             along = np.array([float(ellipse.semi_axes(f)[0]) for f in load]) / self.spacing.along
             out[f"points_per_semi_axis_{word}"] = np.minimum(across, along)
             out[f"approach_{word}_m"] = approach
             out[f"approach_hertz_{word}_m"] = np.asarray(ellipse.approach(load))
-            out[f"approach_penetration_{word}_m"] = left
-            out[f"approach_structural_{word}_m"] = approach - np.asarray(ellipse.approach(load)) - left
+            out[f"approach_penetration_{word}_m"] = penetration
+            out[f"approach_structural_{word}_m"] = approach - np.asarray(ellipse.approach(load)) - penetration
         return out
 
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json."""
-        q, ball, _ = self.rigid.settle(self.beside)
-        now = self.rigid.evaluate(q, ball=ball)
-        stiffness, _ = self.rigid.rows_following(q, now, now.stiffness, now.damping)
+        rigid_table, stiffness = rigid_rings(self.rigid, self.beside)
         columns = self.ball_columns(model, equilibrium)
         error, how = self._change_from_coarser(model, equilibrium)
         counts = [columns[f"points_per_semi_axis_{word}"] for word in ("inner", "outer")]
         loaded = equilibrium.contact_force[: model.system.ball_count] > 0.0
         approach = columns["approach_inner_m"][loaded]
         share = columns["approach_penetration_inner_m"][loaded] / approach if loaded.any() else np.zeros(1)
-        scale = np.sqrt(np.abs(np.outer(np.diag(stiffness), np.diag(stiffness))))
-        told = np.abs(stiffness) > _NOTHING * scale
         return {
             "bodies": "condensed: finite elements of rings and balls, pressures at surface points",
-            "rigid_rings": {
-                "displacement": dict(zip(COORDINATES, q.tolist(), strict=True)),
-                "stiffness": stiffness.tolist(),
-            },
-            "elasticity": [
-                [float(equilibrium.stiffness[i, j] / stiffness[i, j] - 1.0) if told[i, j] else None for j in range(5)]
-                for i in range(5)
-            ],
+            "rigid_rings": rigid_table,
+            "elasticity": elasticity(equilibrium.stiffness, stiffness, _NOTHING),
             "mesh": {
                 "nodes_per_semi_axis": self.nodes,
                 "at_ball_load_n": self.load,
@@ -212,31 +202,31 @@ class NodalBearing(Bearing):
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few; elements that lock."""
         _, contacts = self.pressed(model, equilibrium)
-        z, radius, found = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.scene)
+        z, radius, sentences = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.scene)
         for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
-            cut = [one for one in contacts[race * z : (race + 1) * z] if one.truncated]
-            if not cut:
+            truncated = [state for state in contacts[race * z : (race + 1) * z] if state.truncated]
+            if not truncated:
                 continue
             sense = self.pool.patches[race].race.sense
-            worst = max(cut, key=lambda one: float(np.hypot(*one.force)))
+            worst = max(truncated, key=lambda state: float(np.hypot(*state.force)))
             angle = float(np.arctan2(-sense * worst.force[0], -sense * worst.force[1]))
             low, high = self.pool.patches[race].race.edges
             edge, angle = (high, angle) if high - angle < angle - low else (-low, -angle)
             begins = load_at_edge(ellipse, radius, edge - angle)
-            found.append(
-                f"{len(cut)} contact(s) on the {word} race are cut off by the groove's edge at {np.degrees(edge):.1f} deg: at "
+            sentences.append(
+                f"{len(truncated)} contact(s) on the {word} race are cut off by the groove's edge at {np.degrees(edge):.1f} deg: at "
                 f"{np.degrees(angle):.1f} deg that begins at {begins:.3g} N a ball; the pressure at the edge depends on the mesh"
             )
         columns = self.ball_columns(model, equilibrium)
         loaded = equilibrium.contact_force[:z] > 0.05 * equilibrium.contact_force[:z].max(initial=1e-300)
         least = float(columns["points_per_semi_axis_inner"][loaded].min(initial=np.inf))
         if least < _ENOUGH:
-            found.insert(
+            sentences.insert(
                 0,
                 f"only {least:.1f} points lie along a semi-axis of a loaded contact: take more mesh.nodes_per_semi_axis for its "
                 "pressure, which is off by percents below 3",
             )
-        return found
+        return sentences
 
 
 #: Size of elements far from the contacts [m] where the scene says nothing.
@@ -245,7 +235,7 @@ BULK = 0.8e-3
 _ROOM = 1.2
 
 
-def build(problem: Problem, plan: Plan) -> NodalBearing:
+def build(problem: Problem, plan: Plan) -> _NodalBearing:
     """The bearing of a scene with condensed bodies and pressures at surface points.
 
     Raises
@@ -254,8 +244,7 @@ def build(problem: Problem, plan: Plan) -> NodalBearing:
         Rings without dimensions, sections that cannot be meshed.
     """
     basis = make_basis(problem)
-    contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-    as_rigid = problem.changed(contact=contact)
+    as_rigid = with_hertz(problem)
     rigid = rigid_system(as_rigid, plan, basis)
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
@@ -272,11 +261,11 @@ def build(problem: Problem, plan: Plan) -> NodalBearing:
         return coarse
 
     fewer = coarser if nodes >= 2.0 else None
-    return NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
+    return _NodalBearing(basis, system, guess, nodes, load, spacing, system.pool, rigid, beside, fewer)
 
 
 def _system(
-    problem: Problem, basis: Basis, like: Ring, reach: Reach, nodes: float, load: float
+    problem: Problem, basis: Basis, ring: Ring, reach: Reach, nodes: float, load: float
 ) -> tuple[PatchSystem, Spacing]:
     """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
     spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
@@ -284,8 +273,8 @@ def _system(
     laws = _point_laws(problem, basis, spacing)
     pool = Pool(make(reach), laws, _widening(basis, reach, make), problem.contact.friction)
     mass = basis.geometry.ball_mass(problem.bearing.balls.density) if problem.kinematics.ball_inertia else 0.0
-    fields = {f.name: getattr(like, f.name) for f in attrs.fields(Ring)}
-    return PatchSystem(**{**fields, "table": like.table.copy()}, rigid=surrogate(like), pool=pool, ball_mass=mass), spacing
+    fields = {f.name: getattr(ring, f.name) for f in attrs.fields(Ring)}
+    return PatchSystem(**{**fields, "table": ring.table.copy()}, rigid=surrogate(ring), pool=pool, ball_mass=mass), spacing
 
 
 def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
@@ -312,13 +301,13 @@ def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarra
         now = still.evaluate(q, ball=ball, t=t)
         centre = still.centre_vectors(q, t)[0]
         z = still.ball_count
-        place = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
-        for race, vector in enumerate((centre - place, place)):
+        centres = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
+        for race, vector in enumerate((centre - centres, centres)):
             angles[race].append(np.arctan2(vector[:, 0], vector[:, 1]))
             loads[race].append(now.contact_force[race * z : (race + 1) * z])
     free = basis.geometry.contact_angle
-    given = [(np.concatenate(a), np.concatenate(f)) for a, f in zip(angles, loads, strict=True)]
-    return reach_of(given[0], given[1], (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
+    inner, outer = ((np.concatenate(a), np.concatenate(f)) for a, f in zip(angles, loads, strict=True))
+    return reach_of(inner, outer, (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
 
 
 def _layout(problem: Problem, reach: Reach) -> tuple[float, float]:
@@ -366,9 +355,9 @@ def _widening(
     """What a pool calls when a contact leaves its patch."""
     now = [reach]
 
-    def wider(left: BeyondPatch) -> tuple[Patch, Patch]:
-        ellipse = basis.inner if left.sense < 0.0 else basis.outer
-        now[0] = now[0].grown(left, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
+    def wider(beyond: BeyondPatch) -> tuple[Patch, Patch]:
+        ellipse = basis.inner if beyond.sense < 0.0 else basis.outer
+        now[0] = now[0].grown(beyond, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
         return make(now[0])
 
     return wider
@@ -379,7 +368,7 @@ def _point_laws(problem: Problem, basis: Basis, spacing: Spacing) -> tuple[Point
     law = problem.contact.law
     if is_constraint(law):
         return None, None
-    pairs = point_pairs(basis, np.array([True, False]), np.full(2, spacing.area))
+    pairs = at_points(contact_pairs(problem, basis), np.array([0, len(basis.azimuth)]), np.full(2, spacing.area))
     params = law_params(law, pairs, "race")
     kernel = plugin_kernel(law, "contact law", LAW, "LAW")
     first, second = (PointLaw(kernel, row, spacing.area) for row in params)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
 from raceway.bodies.contacts import against_hertz
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
+from raceway.contact_laws.hertz import Hertz
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.kernels import layout as ring
@@ -48,6 +50,11 @@ def build(problem: Problem, plan: Plan) -> RigidBearing:
     probe(problem, basis, system)
     system = by_address(system)
     return RigidBearing(basis, system, place_ring(problem, basis, system))
+
+
+def with_hertz(problem: Problem) -> Problem:
+    """The problem with Hertz's law and one force a contact, where other bodies start from."""
+    return problem.changed(contact=attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant"))
 
 
 def rigid_system(problem: Problem, plan: Plan, basis: Basis) -> System:
@@ -136,9 +143,9 @@ def _ball_table(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
     inner, outer, azimuth, row = basis.inner, basis.outer, basis.azimuth, basis.row
     z, centrifugal = len(azimuth), np.zeros(len(basis.geometries))
     if plan.centrifugal:
-        for k, one in enumerate(basis.geometries):
-            cage = one.cage_speed(problem.spin_speed)
-            centrifugal[k] = one.ball_mass(problem.bearing.balls.density) * 0.5 * one.pitch_diameter * cage**2
+        for k, geometry in enumerate(basis.geometries):
+            cage = geometry.cage_speed(problem.spin_speed)
+            centrifugal[k] = geometry.ball_mass(problem.bearing.balls.density) * 0.5 * geometry.pitch_diameter * cage**2
     softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
     share = softness[1] / sum(softness)
     table = np.zeros((z, ring.COLUMNS))
@@ -150,7 +157,7 @@ def _ball_table(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
     )
     table[:, [ring.SIDE, ring.LEVER]] = np.array(problem.bearing.rows)[row]
     if not problem.bearing.equal_rows:
-        grooves = np.array([_grooves(problem, one) for one in basis.geometries])
+        grooves = np.array([_grooves(problem, geometry) for geometry in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
     table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
     return table

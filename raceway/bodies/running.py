@@ -45,23 +45,24 @@ def running_pairs(
     """
     z, load = len(basis.azimuth), np.array(force, dtype=float)
     alpha = np.array(angles, dtype=float)
-    for row, one in enumerate(basis.geometries):
-        chosen = basis.row == row
+    for row, geometry in enumerate(basis.geometries):
+        in_row = basis.row == row
         for race in (0, 1):
             of_row = load[race * z : (race + 1) * z]
             if problem.kinematics.orbiting:
-                of_row[chosen] = of_row[chosen].mean()
-            of_row[chosen] = np.maximum(of_row[chosen], _LEAST * of_row[chosen].max())
-            open_, known = chosen & np.isnan(alpha[race]), chosen & ~np.isnan(alpha[race])
-            alpha[race, open_] = alpha[race, known].mean() if known.any() else one.contact_angle
+                of_row[in_row] = of_row[in_row].mean()
+            of_row[in_row] = np.maximum(of_row[in_row], _LEAST * of_row[in_row].max())
+            open_, closed = in_row & np.isnan(alpha[race]), in_row & ~np.isnan(alpha[race])
+            alpha[race, open_] = alpha[race, closed].mean() if closed.any() else geometry.contact_angle
     pitch, ball = (
-        np.array([getattr(one, name) for one in basis.geometries])[basis.row] for name in ("pitch_diameter", "ball_diameter")
+        np.array([getattr(geometry, name) for geometry in basis.geometries])[basis.row]
+        for name in ("pitch_diameter", "ball_diameter")
     )
     speeds = entraining_speed(problem.spin_speed if speed is None else speed, pitch, ball, *alpha)
     # A set of which no ball is loaded runs as one that is about to be.
     load = np.where(load > 0.0, load, _LEAST * basis.ball_load)
-    known = contact_pairs(problem, basis) if mounted is None else mounted
-    return attrs.evolve(known, entraining_speed=np.concatenate(speeds), load=load)
+    pairs = contact_pairs(problem, basis) if mounted is None else mounted
+    return attrs.evolve(pairs, entraining_speed=np.concatenate(speeds), load=load)
 
 
 def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
@@ -78,13 +79,13 @@ def renew(
     basis: Basis,
     system: System,
     guess: np.ndarray,
-    place: Callable[[System, np.ndarray], np.ndarray] | None,
+    seek: Callable[[System, np.ndarray], np.ndarray] | None,
 ) -> np.ndarray:
     """(5,) equilibrium with the law's parameters at the running speed, which are built into the system.
 
     Parameters
     ----------
-    place : finds the equilibrium of a sprung set, whose rows slide; None: rows stay
+    seek : finds the equilibrium of a sprung set, whose rows slide; None: rows stay
 
     Raises
     ------
@@ -94,7 +95,7 @@ def renew(
     law, q, before = problem.contact.law, guess, np.zeros(2 * system.ball_count)
     for trial in range(_LIMIT):
         try:
-            q = q if place is None else place(system, q)
+            q = q if seek is None else seek(system, q)
             q, ball, _ = system.settle(q)
         except ConvergenceError as why:
             if trial == 0:  # at standstill
@@ -111,9 +112,9 @@ def renew(
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
         angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
         pairs = running_pairs(problem, basis, force, angles)
-        found = system.running(law_params(law, pairs), reach_of(law, pairs))
-        system.table, system.law_params = found.table, found.law_params
-        system.mounted_params, system.reach = found.mounted_params, found.reach
+        renewed = system.running(law_params(law, pairs), reach_of(law, pairs))
+        system.table, system.law_params = renewed.table, renewed.law_params
+        system.mounted_params, system.reach = renewed.mounted_params, renewed.reach
         if system.spin is not None:
             system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force

@@ -19,7 +19,7 @@ from raceway.core.threads import ThreadPool, usable_cores
 from raceway.elastic.linear_statics import MOTIONS
 from raceway.elastic.superelement import Copies, Group
 from raceway.elastic.surface import surface_points
-from raceway.elastic.unknowns import MeanMotions, Selection, gather, spread
+from raceway.elastic.unknowns import MeanMotions, Selection, gather, of_nodes, spread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +36,7 @@ class Cage:
     Attributes
     ----------
     rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
-    stiffness : (m,) k [N/m, N m/rad];  names : (m,) words for them
+    stiffness : (m,) k [N/m, N m/rad]
     nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
 
     Notes
@@ -46,7 +46,6 @@ class Cage:
 
     rows: csr_matrix
     stiffness: np.ndarray
-    names: tuple[str, ...]
     nodal: np.ndarray
 
     def force(self, u: np.ndarray) -> np.ndarray:
@@ -56,12 +55,7 @@ class Cage:
     def internal(self, u: np.ndarray) -> np.ndarray:
         return np.asarray(self.rows.T @ self.force(u))
 
-    def energy(self, u: np.ndarray) -> float:
-        return float(0.5 * self.force(u) @ (self.rows @ u))
 
-
-#: What a ball's cage holds, in the order of its rows.
-NAMES = ("along its orbit", "turning about its orbit", "turning about its radius", "turning about the bearing's axis")
 #: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
 SHARE = 0.1
 #: With friction: of a motion in which a ball rolls, and of turning in the meridian plane, where it does not.
@@ -86,7 +80,7 @@ def cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray
 
 
 def cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, and of the turns in ``NAMES``.
+    """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
 
     Notes
     -----
@@ -123,12 +117,6 @@ class Frame:
     damping: np.ndarray
     stiffness: np.ndarray
     free: np.ndarray
-
-    @classmethod
-    def massless(cls, nodes: np.ndarray, centre: np.ndarray, motions: tuple[int, ...]) -> Frame:
-        k = len(motions)
-        zero = np.zeros((k, k))
-        return cls(np.asarray(nodes), np.asarray(centre, dtype=float), motions, zero, zero, zero, np.ones(k, dtype=bool))
 
     def basis(self, points: np.ndarray) -> np.ndarray:
         """(3 n, k) displacements of points (n, 3) under unit motions of the frame, linear in the rotations."""
@@ -174,7 +162,7 @@ _NUMBERS = int64[:, ::1]
 
 
 @jit(void(int64, int64, _NUMBERS, CUBE, VECTOR, CUBE), releases=True)
-def gather_copies(first, last, numbers, turns, u, moved):  # type: ignore[no-untyped-def]
+def _gather_copies(first, last, numbers, turns, u, moved):  # type: ignore[no-untyped-def]
     """Displacements of nodes ``first`` to ``last - 1`` of every copy, turned back to the first: moved (n, 3, c)."""
     for i in range(first, last):
         for c in range(turns.shape[0]):
@@ -184,7 +172,7 @@ def gather_copies(first, last, numbers, turns, u, moved):  # type: ignore[no-unt
 
 
 @jit(void(int64, int64, int64[::1], _NUMBERS, CUBE, CUBE, VECTOR), releases=True)
-def spread_copies(first, last, nodes, numbers, turns, force, out):  # type: ignore[no-untyped-def]
+def _spread_copies(first, last, nodes, numbers, turns, force, out):  # type: ignore[no-untyped-def]
     """The way back of forces (m, 3, c) on nodes[first:last], written to ``out`` (3 nodes of all copies,)."""
     for row in range(first, last):
         for c in range(turns.shape[0]):
@@ -210,19 +198,19 @@ class CopiedStiffness:
 
     def __init__(self, copies: Copies, operator: HexOperator) -> None:
         points, cells, numbers = copies.points, copies.cells, copies.nodes
-        own = np.ones(len(points), dtype=bool)
-        own[copies.behind] = False
+        belongs = np.ones(len(points), dtype=bool)
+        belongs[copies.behind] = False
         if len(copies.behind):
             beyond = cells[np.isin(cells, copies.behind).any(axis=1)]  # of the sector before, at the first cut plane
             more = np.setdiff1d(beyond, copies.behind)
-            place = np.empty(len(points), dtype=np.int64)
-            place[copies.behind], place[more] = copies.before, len(points) + np.arange(len(more))
+            number = np.empty(len(points), dtype=np.int64)
+            number[copies.behind], number[more] = copies.before, len(points) + np.arange(len(more))
             points = np.concatenate([points, copies.points[more] @ copies.turns[-1].T])
-            cells = np.concatenate([cells, place[beyond]])
+            cells = np.concatenate([cells, number[beyond]])
             numbers = np.concatenate([numbers, np.roll(copies.nodes, 1, axis=0)[:, more]], axis=1)
         mesh = operator.of_mesh(points, cells)
         self.rows = BlockRows.assemble(mesh.cells, len(points), mesh.element_stiffness)
-        self._own = np.flatnonzero(own)
+        self._own = np.flatnonzero(belongs)
         self._numbers, self._turns = np.ascontiguousarray(numbers), np.ascontiguousarray(copies.turns)
         self._moved = np.empty((len(points), 3, len(copies.turns)))
         self._force = np.empty((len(self._own), 3, len(copies.turns)))
@@ -235,14 +223,14 @@ class CopiedStiffness:
     def gather(self, part: int, u: np.ndarray) -> None:
         """First round of jobs: displacements (3 nodes,) into the frame of the first copy."""
         last = min((part + 1) * _ROWS, len(self._moved))
-        gather_copies(part * _ROWS, last, self._numbers, self._turns, u, self._moved)
+        _gather_copies(part * _ROWS, last, self._numbers, self._turns, u, self._moved)
 
     def multiply(self, part: int, out: np.ndarray) -> None:
         """Second round: forces into ``out`` (3 nodes,)."""
         first, last = part * _ROWS, min((part + 1) * _ROWS, len(self._own))
         r = self.rows
         add_rows(first, last, self._own, r.starts, r.neighbours, r.data, self._moved, self._force)
-        spread_copies(first, last, self._own, self._numbers, self._turns, self._force, out)
+        _spread_copies(first, last, self._own, self._numbers, self._turns, self._force, out)
 
     def apply(self, u: np.ndarray) -> np.ndarray:
         """(3 nodes,) forces of all copies at u (3 nodes,), zero elsewhere."""
@@ -259,7 +247,7 @@ class CopiedStiffness:
         return self.rows.times(self._own, columns).reshape(moved.shape)
 
 
-def bed_blocks(body: Body) -> tuple[np.ndarray, np.ndarray]:
+def _bed_blocks(body: Body) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (4 k, 4) of the points of a bed's facets, and the stiffness (4 k, 4, 4) between them in each direction [N/m]."""
     assert body.foundation is not None
     quads, stiffness = body.foundation
@@ -269,7 +257,7 @@ def bed_blocks(body: Body) -> tuple[np.ndarray, np.ndarray]:
 
 def bed_of_cells(body: Body) -> tuple[np.ndarray, np.ndarray]:
     """Cells (b,) that a bed's facets belong to, and what it adds to their matrices (b, 24, 24)."""
-    nodes, blocks = bed_blocks(body)
+    nodes, blocks = _bed_blocks(body)
     quads, blocks = nodes[::4], blocks.reshape(-1, 4, 4, 4).sum(axis=1)
     cells = np.asarray(body.operator.cells, dtype=np.int64)
     on_bed = np.zeros(len(body.points), dtype=bool)
@@ -279,13 +267,13 @@ def bed_of_cells(body: Body) -> tuple[np.ndarray, np.ndarray]:
     for cell in near:
         for node in cells[cell][on_bed[cells[cell]]]:
             owner.setdefault(int(node), []).append(int(cell))
-    chosen, matrices = np.empty(len(quads), dtype=np.int64), np.zeros((len(quads), 24, 24))
+    owners, matrices = np.empty(len(quads), dtype=np.int64), np.zeros((len(quads), 24, 24))
     for k, (quad, block) in enumerate(zip(quads, blocks, strict=True)):
-        (chosen[k],) = set.intersection(*(set(owner[int(node)]) for node in quad))
-        place = np.array([int(np.flatnonzero(cells[chosen[k]] == node)[0]) for node in quad])
+        (owners[k],) = set.intersection(*(set(owner[int(node)]) for node in quad))
+        corners = np.array([int(np.flatnonzero(cells[owners[k]] == node)[0]) for node in quad])
         for axis in range(3):
-            matrices[k][np.ix_(3 * place + axis, 3 * place + axis)] = block
-    return chosen, matrices
+            matrices[k][np.ix_(3 * corners + axis, 3 * corners + axis)] = block
+    return owners, matrices
 
 
 #: Elements below which one more thread costs more than it saves: handing over work takes some 50 us, 1000 elements.
@@ -325,12 +313,12 @@ class BodyForces:
         alone = set(range(len(operators))) - {body for group in worth for body in group.members}
         ranges = [(int(n), body, r) for body in sorted(alone) for r, n in enumerate(operators[body].range_sizes)]
         #: Body and range, the largest first: what comes last shall not keep one thread busy alone.
-        self._queue = [(body, r) for _, body, r in sorted(ranges, key=lambda one: -one[0])]
-        self._products = [(one, part) for one in self._copied.values() for part in range(one.parts)]
+        self._queue = [(body, r) for _, body, r in sorted(ranges, key=lambda job: -job[0])]
+        self._products = [(copied, part) for copied in self._copied.values() for part in range(copied.parts)]
         self._parts = [
-            (body, first, min(first + _NODES, len(one.points)), body in alone)
-            for body, one in enumerate(operators)
-            for first in range(0, len(one.points), _NODES)
+            (body, first, min(first + _NODES, len(operator.points)), body in alone)
+            for body, operator in enumerate(operators)
+            for first in range(0, len(operator.points), _NODES)
         ]
         self._force = np.empty(3 * self._starts[-1])
 
@@ -346,8 +334,8 @@ class BodyForces:
                 body, r = self._queue[number - ahead]
                 jobs[body](r)
             else:
-                one, part = products[number - ahead - len(self._queue)]
-                one.gather(part, u)
+                copied, part = products[number - ahead - len(self._queue)]
+                copied.gather(part, u)
 
         pool.do(ahead + len(self._queue) + len(products), work)
         pool.do(len(products), lambda number: products[number][0].multiply(products[number][1], self._force))
@@ -382,15 +370,15 @@ class BodyForces:
 
     def hourglass_energy(self, u: np.ndarray, pool: ThreadPool) -> float:
         """The part of the strain energy at u (3 nodes,) that hourglass control holds [J]."""
-        queue = [(body, r) for body, one in enumerate(self._operators) for r in range(len(one.range_sizes))]
-        found = np.empty(len(queue))
+        queue = [(body, r) for body, operator in enumerate(self._operators) for r in range(len(operator.range_sizes))]
+        energy = np.empty(len(queue))
 
         def work(number: int) -> None:
             body, r = queue[number]
-            found[number] = self._operators[body].range_hourglass_energy(r, self._of(u, body))
+            energy[number] = self._operators[body].range_hourglass_energy(r, self._of(u, body))
 
         pool.do(len(queue), work)
-        return float(found.sum())
+        return float(energy.sum())
 
     def _of(self, values: np.ndarray, body: int) -> np.ndarray:
         return values[3 * self._starts[body] : 3 * self._starts[body + 1]]
@@ -406,7 +394,7 @@ class Assembly:
     Attributes
     ----------
     cage : Cage | None, set by ``hold``
-    groups : of equal parts, set by ``share`` before forces are asked for
+    groups : of equal parts (``raceway.elastic.interface``), set before forces are asked for
 
     Notes
     -----
@@ -440,10 +428,9 @@ class Assembly:
         for index, frame in frames:
             part = slice(begin, begin + len(frame.motions))
             begin = part.stop
-            rows = slice(3 * int(self.starts[index]), 3 * int(self.starts[index + 1]))
-            self.carried[rows, part] = frame.basis(bodies[index].points)
+            self.carried[self.part(index), part] = frame.basis(bodies[index].points)
             if bodies[index].foundation is None:
-                tied[(3 * (frame.nodes + self.starts[index])[:, None] + np.arange(3)).ravel()] = True
+                tied[of_nodes(frame.nodes + self.starts[index])] = True
             self.frame_mass[part, part], self.frame_damping[part, part] = frame.mass, frame.damping
             self.frame_stiffness[part, part], self.frame_free[part] = frame.stiffness, frame.free
         self.carried[held] = 0.0
@@ -469,24 +456,14 @@ class Assembly:
         """Hold mean motions of bodies by a cage."""
         self.cage, self._means = cage, MeanMotions(cage.rows)
 
-    def share(self, groups: list[Group]) -> None:
-        """Compute the forces of equal parts by one matrix (``raceway.elastic.interface``)."""
-        self.groups = groups
-
     def unequal(self) -> list[Body]:
         """One of each group of equal bodies; all where no groups are known."""
         first = [group.members[0] for group in self.groups] or range(len(self.bodies))
         return [self.bodies[index] for index in first]
 
     @cached_property
-    def _forces(self) -> BodyForces:
+    def body_forces(self) -> BodyForces:
         return BodyForces([body.operator for body in self.bodies], self.starts, self.groups)
-
-    def carried_tied(self) -> np.ndarray:
-        """(3 nodes, frame_size) displacement of the tied nodes, the others zero."""
-        out = np.zeros_like(self.carried)
-        out[self.tied] = self._tie
-        return out
 
     def part(self, index: int) -> slice:
         """Rows of a body's displacements in U."""
@@ -518,7 +495,7 @@ class Assembly:
         means = self._means
         moved = np.empty(0 if means is None else means.count)
         first = [beside] if beside else []
-        self._forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, moved)))
+        self.body_forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, moved)))
         amounts = moved if self.cage is None else self.cage.stiffness * moved
         out = np.empty(self.size)
         values = out[self.frame_size :]
@@ -528,7 +505,7 @@ class Assembly:
                 means.add(begin, end, amounts, force)
             gather(*np.searchsorted(self.free, (begin, end)), self.free, force, values)
 
-        force = self._forces.sum(self.threads, join)
+        force = self.body_forces.sum(self.threads, join)
         out[: self.frame_size] = self._tie.T @ force[self.tied]
         frame = self.frame_stiffness @ y[: self.frame_size]
         for matrix, ride, seat in self._seats:
@@ -537,14 +514,6 @@ class Assembly:
             frame -= ride.T @ pull
         out[: self.frame_size] += frame
         return out
-
-    def body_force(self, index: int, u: np.ndarray) -> np.ndarray:
-        """(3 n,) forces K u of one body at u (3 nodes,)."""
-        return self._forces.of_body(index, u)
-
-    def mesh_force(self, index: int, moved: np.ndarray) -> np.ndarray:
-        """(3 n, m) forces K u of one body at m displacements (3 n, m) of its own."""
-        return self._forces.of_mesh(index, moved)
 
     def forces(self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None) -> tuple[np.ndarray, np.ndarray]:
         """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of the contacts; U = G y until the next call."""
@@ -570,10 +539,10 @@ class Assembly:
         if self._stiffness is None:
             from scipy.sparse import block_diag, csr_array
 
-            whole = csr_array(block_diag([body.operator.stiffness() for body in self.bodies], format="csr"))
+            matrix = csr_array(block_diag([body.operator.stiffness() for body in self.bodies], format="csr"))
             for foundation, _ in self.foundations:
-                whole = whole + foundation
-            self._stiffness = whole.tocsr()
+                matrix = matrix + foundation
+            self._stiffness = matrix.tocsr()
         return self._stiffness
 
     def elastic_energy(self, y: np.ndarray, u: np.ndarray) -> float:
@@ -585,7 +554,7 @@ class Assembly:
         u, out = self.nodal(y), np.zeros(3)
         for index, body in enumerate(self.bodies):
             if body.held.any():
-                out += (self.body_force(index, u).reshape(-1, 3) * body.held).sum(axis=0)
+                out += (self.body_forces.of_body(index, u).reshape(-1, 3) * body.held).sum(axis=0)
         for foundation, ride in self.foundations:
             if not ride.any():
                 out -= (foundation @ u).reshape(-1, 3).sum(axis=0)
@@ -593,7 +562,7 @@ class Assembly:
 
     def hourglass_energy(self, u: np.ndarray) -> float:
         """The part that hourglass control holds [J]."""
-        return self._forces.hourglass_energy(u, self.threads)
+        return self.body_forces.hourglass_energy(u, self.threads)
 
     def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
         """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.
@@ -603,7 +572,7 @@ class Assembly:
         A body that touches another counts as held, but for the motions that no contact can hold: a ball's turning and,
         between two rings, its way along the orbit, unless the cage holds them.
         """
-        found = []
+        sentences = []
         touching = {i for pair in contacts for i in pair}
         caged = set() if self.cage is None else {int(i) for i in np.unique(self._owners(self.cage.rows))}
         for index, body in enumerate(self.bodies):
@@ -611,10 +580,10 @@ class Assembly:
                 continue
             why = "it touches nothing" if index not in touching else "contact without friction does not hold them"
             free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
-            found.append(
+            sentences.append(
                 f"{body.name}: {free} ({why}); hold it by the cage, by fixed nodes, or by a bed under one of its surfaces"
             )
-        return found
+        return sentences
 
     def _owners(self, rows: csr_matrix) -> np.ndarray:
         return np.asarray(np.searchsorted(3 * self.starts, rows.tocoo().col, side="right") - 1)
@@ -633,11 +602,11 @@ class Assembly:
         for index, body in enumerate(self.bodies):
             if body.foundation is None:
                 continue
-            nodes, w = bed_blocks(body)
+            nodes, w = _bed_blocks(body)
             nodes = nodes + self.starts[index]
             i = np.broadcast_to(nodes[:, :, None], w.shape).ravel()
             j = np.broadcast_to(nodes[:, None, :], w.shape).ravel()
-            rows, columns = ((3 * k[:, None] + np.arange(3)).ravel() for k in (i, j))
+            rows, columns = (of_nodes(k) for k in (i, j))
             size = 3 * self.nodes
             foundation = coo_array((np.repeat(w.ravel(), 3), (rows, columns)), shape=(size, size)).tocsr()
             ride = self.carried if body.frame is not None else np.zeros_like(self.carried)

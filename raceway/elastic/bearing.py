@@ -10,7 +10,8 @@ import numpy as np
 from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.core.record import Motion, Observation, State, divide
-from raceway.elastic.assembly import NAMES, SHARE, Assembly, Body, Cage, Frame, cage_rows, cage_stiffness
+from raceway.core.threads import ThreadPool
+from raceway.elastic.assembly import SHARE, Assembly, Body, Cage, Frame, cage_rows, cage_stiffness
 from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.contact import CIRCLE, Contact, NodalContact
 from raceway.elastic.interface import equal_parts, free_nodes, touchable
@@ -20,24 +21,32 @@ from raceway.elastic.superelement_solver import CondensedSolver
 from raceway.errors import ConvergenceError, MeshError
 
 #: Relative residual of the linear solves of a time step: Newton's next iteration takes the rest.
-LINEAR_TOLERANCE = 1e-4
+_LINEAR_TOLERANCE = 1e-4
 #: Nodal forces of bodies over those of contacts, one where they balance, below which nothing has deformed yet.
 _PRESSED_BACK = 0.5
 
 
+#: Names of the unknowns in ``Motion.full_state``.
+_UNKNOWNS = ("u", "v", "a", "rest")
+#: Ring displacement, velocity (5,), gaps, contact forces (2 Z,), ball places (Z, 2).
+Seen = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
 class ElasticSystem:
-    """M a + C v + f(y) = load + scale * excitation(t) for the unknowns of an assembly.
+    """M a + C v + f(y) = load + scale * excitation(t) for the unknowns of an assembly: a ``SteppedSystem``.
 
     Parameters
     ----------
     assembly : Assembly;  contact : Contact | None
     modulus : E* of the contacts [Pa]
     load : (size,) constant forces [N, N m]
-    excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
     condensed : solver by superelements, of a bearing in nodal contact; None: conjugate gradients
-    """
+    look : what a record keeps, function of (y, v); None: smallest gap and normal force of every pair, no ring
 
-    conservative = True
+    Attributes
+    ----------
+    excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
+    """
 
     def __init__(
         self,
@@ -45,16 +54,17 @@ class ElasticSystem:
         contact: Contact | None,
         modulus: float,
         load: np.ndarray,
-        excitation: Callable[[float], np.ndarray] | None = None,
         condensed: CondensedSolver | None = None,
+        look: Callable[[np.ndarray, np.ndarray], Seen] | None = None,
     ) -> None:
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
-        self.excitation = excitation
+        self.excitation: Callable[[float], np.ndarray] | None = None
         #: Called with the relative residual of every iteration of ``settle``.
         self.on_residual: Callable[[float], None] | None = None
-        self.condensed = condensed
+        self.condensed, self._look = condensed, look
         self.solver: LinearSolver | CondensedSolver = condensed or LinearSolver(assembly, contact, modulus)
-        self.size = assembly.size
+        self.size: int = assembly.size
+        self.ball_count = 0 if contact is None else (len(contact.counts) + 1) // 2
         m = assembly.frame_size
         # Moments count as the force at the arm of the rotations: columns of rotations hold lengths, of translations ones.
         reach = np.abs(assembly.carried).max(axis=0) if m else np.zeros(0)
@@ -68,13 +78,30 @@ class ElasticSystem:
 
     # Forces
 
+    @property
+    def conservative(self) -> bool:
+        return self.contact is None or self.contact.friction is None
+
+    @property
+    def smooth(self) -> bool:
+        return self.condensed is not None
+
+    @property
+    def threads(self) -> ThreadPool:
+        return self.assembly.threads
+
     def outer_force(self, t: float) -> np.ndarray:
-        """The excitation on the first frame's motions."""
+        out, force = np.zeros(5), self._on_frame(t)[:5]
+        out[: len(force)] = force
+        return out
+
+    def _on_frame(self, t: float) -> np.ndarray:
         return np.zeros(self.assembly.frame_size) if self.excitation is None else np.asarray(self.excitation(t))
 
     def external(self, t: float, scale: float) -> np.ndarray:
-        out = self.load.copy()
-        force = self.outer_force(t)
+        load, force = self.load, self._on_frame(t)
+        out = np.empty(self.size)
+        self.threads.do_shares(self.size, lambda first, last: np.copyto(out[first:last], load[first:last]))
         out[: len(force)] += scale * force
         return out
 
@@ -97,31 +124,38 @@ class ElasticSystem:
         return out
 
     def solve(
-        self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = LINEAR_TOLERANCE
+        self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = _LINEAR_TOLERANCE
     ) -> np.ndarray:
-        return self.solver.solve(c_k, c_c, c_m, right, tolerance)
+        """(size,) increment by which the forces of the last ``internal`` change by ``right``.
 
-    def increment(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray:
-        """(size,) increment by which the forces of the last ``internal`` change by ``right``; without superelements by their tangents."""
+        Parameters
+        ----------
+        tolerance : of conjugate gradients, by which without superelements the tangents of these forces are solved
+        """
         if self.condensed is None:
-            return self.solve(c_k, c_c, c_m, right)
+            return self.solver.solve(c_k, c_c, c_m, right, tolerance)
         v, dt = self._at
         rate = None if v is None else self.assembly.nodal(np.ascontiguousarray(v))
-        return self.condensed.increment(c_k, c_c, c_m, right, self._u, rate, dt, locates=dt == 0.0)
+        return self.condensed.increment(c_k, c_c, c_m, right, self._u, rate, dt)
 
     def mass_times(self, a: np.ndarray) -> np.ndarray:
         m = self.assembly.frame_size
         return np.concatenate([self.assembly.frame_mass @ a[:m], self.assembly.free_mass * a[m:]])
 
-    def divide_mass(self, r: np.ndarray, c: float = 0.0) -> np.ndarray:
-        a = self.assembly
-        m = a.frame_size
-        out = np.concatenate([np.zeros(m), r[m:] / a.free_mass])
-        if m:
-            free = a.frame_free
-            matrix = (a.frame_mass + c * a.frame_damping)[np.ix_(free, free)]
-            out[:m][free] = np.linalg.solve(matrix, r[:m][free])
-        return out
+    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray:
+        """In place of ``inner``: masses of nodes are lumped, those of the frames a small matrix."""
+        assembly = self.assembly
+        m, free = assembly.frame_size, assembly.frame_free
+        frame = np.zeros(m)
+        if free.any():
+            remaining = outer[:m] - inner[:m] + c * (assembly.frame_damping @ a[:m])
+            frame[free] = np.linalg.solve(
+                (assembly.frame_mass + c * assembly.frame_damping)[np.ix_(free, free)], remaining[free]
+            )
+        masses, outside, inside = assembly.free_mass, outer[m:], inner[m:]
+        self.threads.do_shares(len(masses), lambda first, last: divide(first, last, outside, inside, masses))
+        inner[:m] = frame
+        return inner
 
     def measure(self, r: np.ndarray) -> float:
         """Euclidean norm of nodal forces and of the frames' forces; moments over their arm [N]."""
@@ -130,7 +164,7 @@ class ElasticSystem:
     def undeformed(self, y: np.ndarray) -> bool:
         """Whether contacts at surface points press on bodies that do not press back yet: they overlap as rigid ones do."""
         a, contact = self.assembly, self.contact
-        if contact is None or contact.whole:
+        if contact is None or contact.resultants_only:
             return False
         u = a.nodal(y)
         pressing, back = a.reduced(contact.evaluate(0.0, u)), a.internal(y, u)
@@ -168,8 +202,49 @@ class ElasticSystem:
             self.contact.update(self.contact.where, in_motion=True)
 
     def rollback(self) -> None:
-        if self.contact is not None:
-            self.contact.rollback()
+        """Nothing: trials of contacts leave no trace."""
+
+    # Motions
+
+    def begin(self, motion: Motion) -> State:
+        full_state = dict(motion.full_state or {})
+        contact = self.contact
+        if contact is not None and "projected" in full_state:
+            contact.restore(full_state["projected"], full_state["memory"])
+            if contact.friction is not None:
+                contact.friction.restore(full_state)
+        return State(*(np.array(full_state[name]) for name in _UNKNOWNS))
+
+    def motion(self, state: State) -> Motion:
+        s, contact = state.copy(), self.contact
+        net_force = -self.mass_times(s.a) if s.net_force is None else s.net_force
+        full_state = dict(zip(_UNKNOWNS, (s.u, s.v, s.a, net_force), strict=True))
+        if contact is not None:
+            full_state |= {"projected": contact.projected.copy(), "memory": contact.memory.copy()}
+            if contact.friction is not None:
+                full_state |= contact.friction.state()
+        q, v, _, _, ball = self._seen(s.u, s.v)
+        a = self._seen(s.u, s.a)[1]
+        return Motion(q, v, a, ball, ball.copy(), full_state=full_state)
+
+    def motion_of(self, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
+        """A motion with unknowns, velocities and accelerations (size,) whose forces balance."""
+        return self.motion(State(y, v, a, -self.mass_times(a)))
+
+    def observe(self, u: np.ndarray, v: np.ndarray) -> Observation:
+        q, speed, gap, force, ball = self._seen(u, v)
+        return Observation(q, speed, gap, force, ball, self.energies(u, v))
+
+    def _seen(self, u: np.ndarray, v: np.ndarray) -> Seen:
+        if self._look is not None:
+            return self._look(u, v)
+        contact, z = self.contact, self.ball_count
+        gap, force = np.zeros(2 * z), np.zeros(2 * z)
+        if contact is not None:
+            n = len(contact.counts)
+            gap[:n] = contact.deepest()
+            force[:n] = np.linalg.norm(contact.resultants(), axis=1)
+        return np.zeros(5), np.zeros(5), gap, force, np.zeros((z, 2))
 
     # Statics
 
@@ -196,11 +271,11 @@ class ElasticSystem:
         if contact is None:
             yield
             return
-        kept, contact.friction = contact.friction, None
+        friction, contact.friction = contact.friction, None
         try:
             yield
         finally:
-            contact.friction = kept
+            contact.friction = friction
 
     def locate(self, y: np.ndarray) -> bool:
         """Look up where the points lie on the second surfaces at a state; whether that changed anything."""
@@ -241,144 +316,6 @@ class ElasticSystem:
                 )
 
 
-#: Names of the unknowns in ``Motion.full_state``.
-_UNKNOWNS = ("u", "v", "a", "rest")
-#: What ``Seen`` gives: ring displacement, velocity (5,), gaps, contact forces (2 Z,), ball places (Z, 2).
-Seen = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-
-
-class SteppedElastic:
-    """``SteppedSystem`` around an ``ElasticSystem``.
-
-    Parameters
-    ----------
-    system : ElasticSystem
-    look : function of (system, y, v), optional
-        What a record keeps; None: smallest gap and normal force of every pair, no ring.
-    ball_count : int
-        Half the number of contact forces that ``look`` gives.
-    """
-
-    def __init__(
-        self,
-        system: ElasticSystem,
-        look: Callable[[ElasticSystem, np.ndarray, np.ndarray], Seen] | None = None,
-        ball_count: int = 0,
-    ):
-        self.system, self._look = system, look
-        contact = system.contact
-        self.ball_count = ball_count
-        self.conservative = contact is None or contact.friction is None
-        self.smooth = system.condensed is not None
-        self.size: int = system.size
-        self.threads = system.assembly.threads
-        if look is None and contact is not None:
-            self.ball_count = (len(contact.counts) + 1) // 2
-
-    def begin(self, motion: Motion) -> State:
-        whole = dict(motion.full_state or {})
-        contact = self.system.contact
-        if contact is not None and "projected" in whole:
-            contact.restore(whole["projected"], whole["memory"])
-            if contact.friction is not None:
-                contact.friction.restore(whole)
-        return State(*(np.array(whole[name]) for name in _UNKNOWNS))
-
-    def motion(self, state: State) -> Motion:
-        s, contact = state.copy(), self.system.contact
-        rest = -self.mass_times(s.a) if s.net_force is None else s.net_force
-        whole = dict(zip(_UNKNOWNS, (s.u, s.v, s.a, rest), strict=True))
-        if contact is not None:
-            whole |= {"projected": contact.projected.copy(), "memory": contact.memory.copy()}
-            if contact.friction is not None:
-                whole |= contact.friction.state()
-        q, v, _, _, ball = self._seen(s.u, s.v)
-        a = self._seen(s.u, s.a)[1]
-        return Motion(q, v, a, ball, ball.copy(), full_state=whole)
-
-    def motion_of(self, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
-        """A motion with unknowns, velocities and accelerations (size,) whose forces balance."""
-        return self.motion(State(y, v, a, -self.mass_times(a)))
-
-    def moving(self, velocity: np.ndarray) -> Motion:
-        """Nothing displaced, nodes moving with (nodes, 3) [m/s]: the start of an impact."""
-        a = self.system.assembly
-        zero = np.zeros(self.size)
-        v = np.concatenate([np.zeros(a.frame_size), velocity.reshape(-1)[a.free]])
-        still = np.zeros((self.ball_count, 2))
-        whole = {"u": zero, "v": v, "a": zero.copy(), "rest": zero.copy()}
-        return Motion(np.zeros(5), np.zeros(5), np.zeros(5), still, still.copy(), full_state=whole)
-
-    def outer_force(self, t: float) -> np.ndarray:
-        out = np.zeros(5)
-        force = self.system.outer_force(t)[:5]
-        out[: len(force)] = force
-        return out
-
-    def external(self, t: float, scale: float) -> np.ndarray:
-        load, force = self.system.load, self.system.outer_force(t)
-        out = np.empty(self.size)
-        self.threads.do_shares(self.size, lambda first, last: np.copyto(out[first:last], load[first:last]))
-        out[: len(force)] += scale * force
-        return out
-
-    def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.internal(t, dt, u, v))
-
-    def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.increment(c_k, c_c, c_m, right))
-
-    def mass_times(self, a: np.ndarray) -> np.ndarray:
-        return np.asarray(self.system.mass_times(a))
-
-    def accelerations(self, outer: np.ndarray, inner: np.ndarray, a: np.ndarray, c: float) -> np.ndarray:
-        """In place of ``inner``: masses of nodes are lumped, those of the frames a small matrix."""
-        assembly = self.system.assembly
-        m, free = assembly.frame_size, assembly.frame_free
-        frame = np.zeros(m)
-        if free.any():
-            rest = outer[:m] - inner[:m] + c * (assembly.frame_damping @ a[:m])
-            frame[free] = np.linalg.solve((assembly.frame_mass + c * assembly.frame_damping)[np.ix_(free, free)], rest[free])
-        masses, outside, inside = assembly.free_mass, outer[m:], inner[m:]
-        self.threads.do_shares(len(masses), lambda first, last: divide(first, last, outside, inside, masses))
-        inner[:m] = frame
-        return inner
-
-    def measure(self, r: np.ndarray) -> float:
-        return float(self.system.measure(r))
-
-    def contacts(self) -> tuple[float, float, float]:
-        depth, peak, total = self.system.contacts()
-        return depth, peak, total
-
-    def stable_step(self) -> float:
-        return float(self.system.stable_step())
-
-    def stiffened(self) -> bool:
-        return bool(self.system.stiffened())
-
-    def commit(self) -> None:
-        self.system.commit()
-
-    def rollback(self) -> None:
-        self.system.rollback()
-
-    def observe(self, u: np.ndarray, v: np.ndarray) -> Observation:
-        q, speed, gap, force, ball = self._seen(u, v)
-        return Observation(q, speed, gap, force, ball, self.system.energies(u, v))
-
-    def _seen(self, u: np.ndarray, v: np.ndarray) -> Seen:
-        if self._look is not None:
-            return self._look(self.system, u, v)
-        contact, z = self.system.contact, self.ball_count
-        gap, force = np.zeros(2 * z), np.zeros(2 * z)
-        if contact is not None:
-            n = len(contact.counts)
-            gap[:n] = contact.deepest()
-            force[:n] = np.linalg.norm(contact.resultants(), axis=1)
-        return np.zeros(5), np.zeros(5), gap, force, np.zeros((z, 2))
-
-
 class ElasticBearing:
     """One row of balls between two rings.
 
@@ -404,7 +341,7 @@ class ElasticBearing:
             held = np.zeros((len(mesh.points), 3), dtype=bool)
             bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
         assembly = Assembly(bodies)
-        assembly.share(equal_parts(assembly, setup.azimuth))
+        assembly.groups = equal_parts(assembly, setup.azimuth)
         if setup.caged:
             assembly.hold(self._cage(assembly))
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
@@ -420,7 +357,7 @@ class ElasticBearing:
         if isinstance(contact, NodalContact):
             _refuse_held_grooves(assembly, touchable(contact, assembly.nodes), (setup.seat_inner, setup.seat_outer))
             condensed = CondensedSolver(assembly, contact)
-        self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed=condensed)
+        self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed, self.look)
 
     @property
     def ball_count(self) -> int:
@@ -459,9 +396,9 @@ class ElasticBearing:
             surfaces[inner, CIRCLE] += self.setup.growth
             system.load += self._centrifugal
 
-    def look(self, system: ElasticSystem, y: np.ndarray, v: np.ndarray) -> Seen:
+    def look(self, y: np.ndarray, v: np.ndarray) -> Seen:
         """Ring displacement and velocity (5,), smallest gaps and normal forces (2 Z,), ball places (Z, 2)."""
-        contact = system.contact
+        contact = self.system.contact
         assert contact is not None
         force = np.linalg.norm(contact.resultants(), axis=1)
         return y[:5].copy(), v[:5].copy(), contact.deepest(), force, self.ball_places(y)
@@ -506,20 +443,19 @@ class ElasticBearing:
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
         springs = cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
-        names, nodal = [], np.zeros(3 * assembly.nodes)
+        nodal = np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
             mass = assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
             along = np.array([0.0, -np.sin(s.azimuth[k]), np.cos(s.azimuth[k])])
-            found = cage_rows(body.points, mass, along)
-            data.append(found.ravel())
-            rows.append(np.repeat(4 * k + np.arange(4), found.shape[1]))
-            columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(found.shape[1]), 4))
+            means = cage_rows(body.points, mass, along)
+            data.append(means.ravel())
+            rows.append(np.repeat(4 * k + np.arange(4), means.shape[1]))
+            columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(means.shape[1]), 4))
             nodal[assembly.part(k + 2)] = SHARE * normal * np.repeat(mass / mass.sum(), 3)
-            names += [f"{body.name}: {motion}" for motion in NAMES]
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-        return Cage(matrix, np.tile(springs, len(s.azimuth)), tuple(names), nodal)
+        return Cage(matrix, np.tile(springs, len(s.azimuth)), nodal)
 
 
 def _refuse_held_grooves(assembly: Assembly, under: np.ndarray, seats: tuple[float | str, float | str]) -> None:

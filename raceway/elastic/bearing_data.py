@@ -10,6 +10,7 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
+from raceway.elastic.superelement import turn
 
 if TYPE_CHECKING:
     from raceway.core.jit import Kernel
@@ -95,5 +96,4 @@ class BearingData:
 
     def turn(self, ball: int) -> np.ndarray:
         """(3, 3) about the axis, from azimuth zero to a ball's."""
-        y, z = self.radial(ball)[1:]
-        return np.array([[1.0, 0.0, 0.0], [0.0, y, -z], [0.0, z, y]])
+        return turn(float(self.azimuth[ball]))

@@ -12,8 +12,9 @@ from numba import boolean, int64, void
 from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
-from raceway.elastic.friction import Friction
+from raceway.elastic.friction import CoulombFriction
 from raceway.elastic.surface import Facets, SurfacePoints
+from raceway.elastic.unknowns import of_nodes
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
@@ -125,7 +126,7 @@ def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stif
 
 
 @jit(void(CUBE, VECTOR), releases=True)
-def row_sums(stiffness, out):  # type: ignore[no-untyped-def]
+def _row_sums(stiffness, out):  # type: ignore[no-untyped-def]
     """Largest row sum (n,) of the sizes of matrices (n, 3, 3)."""
     for i in range(stiffness.shape[0]):
         out[i] = 0.0
@@ -136,7 +137,7 @@ def row_sums(stiffness, out):  # type: ignore[no-untyped-def]
 
 
 @jit(boolean(MATRIX, MATRIX, VECTOR), releases=True)
-def has_moved(where, before, far):  # type: ignore[no-untyped-def]
+def _has_moved(where, before, far):  # type: ignore[no-untyped-def]
     """Whether a point (n, 3) has moved along an axis by more than ``far`` (n,)."""
     for i in range(where.shape[0]):
         for a in range(3):
@@ -159,6 +160,22 @@ def penalty_stiffness(modulus: float, size: np.ndarray | float) -> np.ndarray:
 _STIFFER = 1.02
 
 
+@attrs.frozen(eq=False)
+class PlaceLaw:
+    """Normal force of the places of a contact.
+
+    Attributes
+    ----------
+    kernel, params, state_size : of signature ``LAW``, (n, k) its parameters, columns of its memory
+    damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
+    """
+
+    kernel: Kernel
+    params: np.ndarray
+    state_size: int = 0
+    damping: float = 0.0
+
+
 class Contact(ABC):
     """Places at which forces act between two bodies: points of a surface, or contact resultants.
 
@@ -166,9 +183,7 @@ class Contact(ABC):
     ----------
     place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for resultants
     counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.elastic.contact``
-    law, params, state_size : kernel of signature ``LAW``, (n, k) its parameters, columns of its memory
-    damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
-    friction : Friction | None
+    law : PlaceLaw;  friction : CoulombFriction | None
 
     Attributes
     ----------
@@ -181,7 +196,7 @@ class Contact(ABC):
     """
 
     #: Whether each place is a contact resultant: few of them, and each on many nodes.
-    whole = False
+    resultants_only = False
 
     def __init__(
         self,
@@ -189,19 +204,16 @@ class Contact(ABC):
         area: np.ndarray,
         counts: np.ndarray,
         surfaces: np.ndarray,
-        law: Kernel,
-        params: np.ndarray,
-        state_size: int = 0,
-        damping: float = 0.0,
-        friction: Friction | None = None,
+        law: PlaceLaw,
+        friction: CoulombFriction | None = None,
     ) -> None:
-        self.place, self.area, self.counts, self.law = place, area, counts, law
-        self.params = np.ascontiguousarray(params, dtype=float)
-        self.damping, self.friction = float(damping), friction
-        self.pair = np.repeat(np.arange(len(counts)), counts)
+        self.place, self.area, self.counts, self.law = place, area, counts, law.kernel
+        self.params = np.ascontiguousarray(law.params, dtype=float)
+        self.damping, self.friction = float(law.damping), friction
+        self.pair, self.starts = np.repeat(np.arange(len(counts)), counts), np.r_[0, np.cumsum(counts)[:-1]]
         self.surfaces = np.ascontiguousarray(surfaces)
         n = len(area)
-        self.memory = np.zeros((n, state_size))
+        self.memory = np.zeros((n, law.state_size))
         self._trial = self.memory.copy()
         self.gap, self.pressure, self.d_gap, self.d_rate = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
         self.normal, self.bend = np.zeros((n, 3)), np.zeros((n, 3, 3))
@@ -280,7 +292,7 @@ class Contact(ABC):
         gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
         if share > 0.0:
-            deepest = np.minimum.reduceat(gap, np.r_[0, np.cumsum(self.counts)[:-1]])
+            deepest = np.minimum.reduceat(gap, self.starts)
             gap = np.where(gap > share * np.minimum(deepest, 0.0)[self.pair], np.maximum(gap, 0.0), gap)
         rate = np.zeros(len(gap))
         if v is not None and dt > 0.0:
@@ -305,12 +317,10 @@ class Contact(ABC):
         """(3 nodes, 3 nodes) sparse B^T D B, of the points whose block is not zero."""
         from scipy.sparse import bsr_array
 
-        chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
-        rows = (3 * chosen[:, None] + np.arange(3)).ravel()
-        move = self.move[rows]
-        size = len(chosen)
+        touching = np.flatnonzero(blocks.any(axis=(1, 2)))
+        move, size = self.move[of_nodes(touching)], len(touching)
         middle = bsr_array(
-            (np.ascontiguousarray(blocks[chosen]), np.arange(size), np.arange(size + 1)), shape=(3 * size, 3 * size)
+            (np.ascontiguousarray(blocks[touching]), np.arange(size), np.arange(size + 1)), shape=(3 * size, 3 * size)
         )
         return (move.T @ (middle @ move)).tocsr()
 
@@ -320,7 +330,7 @@ class Contact(ABC):
 
     def deepest(self) -> np.ndarray:
         """(pairs,) smallest gap [m]."""
-        return np.minimum.reduceat(self.gap, np.r_[0, np.cumsum(self.counts)[:-1]])
+        return np.minimum.reduceat(self.gap, self.starts)
 
     def energy(self) -> float:
         """Energy stored by the law and by sticking points at the last gaps [J]; meant for laws without memory."""
@@ -341,7 +351,7 @@ class Contact(ABC):
     def _sizes(self) -> np.ndarray:
         """(n,) largest row sum of each point's stiffness [N/m]."""
         out = np.empty(len(self.area))
-        row_sums(self.stiffness, out)
+        _row_sums(self.stiffness, out)
         return out
 
     def commit(self) -> None:
@@ -349,10 +359,6 @@ class Contact(ABC):
         self.memory, self._trial = self._trial, self.memory
         if self.friction is not None:
             self.friction.commit()
-
-    def rollback(self) -> None:
-        if self.friction is not None:
-            self.friction.rollback()
 
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew: at rest, and in
@@ -384,9 +390,7 @@ class NodalContact(Contact):
 
     Parameters
     ----------
-    pairs : list of Pair
-    nodes : int, of the assembly
-    law, params, state_size, damping, friction : see ``Contact``
+    pairs : list of Pair;  nodes : int, of the assembly;  law, friction : see ``Contact``
 
     Notes
     -----
@@ -394,22 +398,13 @@ class NodalContact(Contact):
     to those of the second one's, with the interpolation's weights.
     """
 
-    def __init__(
-        self,
-        pairs: list[Pair],
-        nodes: int,
-        law: Kernel,
-        params: np.ndarray,
-        state_size: int = 0,
-        damping: float = 0.0,
-        friction: Friction | None = None,
-    ) -> None:
+    def __init__(self, pairs: list[Pair], nodes: int, law: PlaceLaw, friction: CoulombFriction | None = None) -> None:
         self.pairs, self._nodes = pairs, nodes
         counts = np.array([len(pair.points.area) for pair in pairs])
-        place = np.concatenate([pair.points.place for pair in pairs])
+        places = np.concatenate([pair.points.place for pair in pairs])
         area = np.concatenate([pair.points.area for pair in pairs])
         surfaces = np.array([pair.surface for pair in pairs])
-        super().__init__(place, area, counts, surfaces, law, params, state_size, damping, friction)
+        super().__init__(places, area, counts, surfaces, law, friction)
         self.outside = np.zeros(len(area))
         self._projected = np.full((len(area), 3), np.inf)
         #: (n, 8) nodes of the assembly that a point's motion is interpolated from, and their weights.
@@ -429,13 +424,13 @@ class NodalContact(Contact):
         super().restore(projected, memory)
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
-        one = self.pairs[pair]
-        return int(one.points.nodes[0, 0]), one.first_node
+        contact = self.pairs[pair]
+        return int(contact.points.nodes[0, 0]), contact.first_node
 
     def overlap(self, pair: int) -> tuple[str, float, float]:
-        gap, one = self.gap[self.pair == pair], self.pairs[pair]
+        gap, contact = self.gap[self.pair == pair], self.pairs[pair]
         # A facet has four points.
-        return one.name, -float(gap.min()), float(np.sqrt(4.0 * one.points.area[gap.argmin()]))
+        return contact.name, -float(gap.min()), float(np.sqrt(4.0 * contact.points.area[gap.argmin()]))
 
     def refuse(self) -> None:
         """Points find a pressure at any gap."""
@@ -443,7 +438,7 @@ class NodalContact(Contact):
     def update(self, where: np.ndarray, in_motion: bool = False) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
         where = np.ascontiguousarray(where, dtype=float)
-        if not has_moved(where, self._projected, (_IN_MOTION if in_motion else _AT_REST) * self._facet):
+        if not _has_moved(where, self._projected, (_IN_MOTION if in_motion else _AT_REST) * self._facet):
             return False
         from scipy.sparse import csr_array, kron
 
@@ -459,8 +454,8 @@ class NodalContact(Contact):
             columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
         self._projected = where.copy()
         rows = np.arange(0, 8 * n + 1, 8)
-        one = csr_array((weights.ravel().copy(), columns.ravel().copy(), rows), shape=(n, self._nodes))
-        self._weights, self.move = abs(one), kron(one, np.eye(3), format="csr")
+        matrix = csr_array((weights.ravel().copy(), columns.ravel().copy(), rows), shape=(n, self._nodes))
+        self._weights, self.move = abs(matrix), kron(matrix, np.eye(3), format="csr")
         return True
 
     def stable_step(self, mass: np.ndarray) -> float:
@@ -475,38 +470,24 @@ class NodalContact(Contact):
         touching = np.flatnonzero(size)
         if not len(touching):
             return np.inf
-        one = self._weights[touching]
-        rows = one.T @ (size[touching] * np.asarray(one.sum(axis=1)).ravel())
+        weights = self._weights[touching]
+        rows = weights.T @ (size[touching] * np.asarray(weights.sum(axis=1)).ravel())
         return float(2.0 / np.sqrt((rows / mass).max()))
 
 
 def peak_at_points(contact: NodalContact) -> np.ndarray:
     """(pairs,) largest pressure at a quadrature point [Pa], at the last gaps."""
-    return np.maximum.reduceat(contact.pressure, _starts(contact))
+    return np.maximum.reduceat(contact.pressure, contact.starts)
 
 
 def peak_at_nodes(contact: NodalContact) -> np.ndarray:
     """(pairs,) largest nodal pressure [Pa]: force of the points around a node over their area, as facets share them."""
     out = np.empty(len(contact.pairs))
-    for index, (pair, begin) in enumerate(zip(contact.pairs, _starts(contact), strict=True)):
+    for index, (pair, begin) in enumerate(zip(contact.pairs, contact.starts, strict=True)):
         part = slice(begin, begin + contact.counts[index])
-        _, place = np.unique(pair.points.nodes, return_inverse=True)
+        _, number = np.unique(pair.points.nodes, return_inverse=True)
         share = contact.area[part, None] * pair.points.weights
-        area = np.bincount(place.ravel(), share.ravel())
-        force = np.bincount(place.ravel(), (contact.pressure[part, None] * share).ravel())
+        area = np.bincount(number.ravel(), share.ravel())
+        force = np.bincount(number.ravel(), (contact.pressure[part, None] * share).ravel())
         out[index] = (force / area).max()
     return out
-
-
-def points_in_contact(contact: NodalContact) -> np.ndarray:
-    """(pairs,) number of points under pressure."""
-    return np.add.reduceat((contact.pressure > 0.0).astype(int), _starts(contact))
-
-
-def deepest_penetration(contact: NodalContact) -> np.ndarray:
-    """(pairs,) largest overlap of the deformed surfaces [m]: what the penalty takes of the approach."""
-    return np.maximum(-contact.deepest(), 0.0)
-
-
-def _starts(contact: NodalContact) -> np.ndarray:
-    return np.r_[0, np.cumsum(contact.counts)[:-1]]

@@ -21,7 +21,6 @@ Wriggers: Computational Contact Mechanics (2006), section 5.2.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
 
 import numpy as np
 from numba import boolean, float64, void
@@ -30,33 +29,21 @@ from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: Columns of the tangent's coefficients: across and along the slip [N/m3], and mu dp/dg [N/m3].
-ACROSS, ALONG, COUPLING = range(3)
+_ACROSS, _ALONG, _COUPLING = range(3)
 
 
 @jit(void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR), releases=True)
-def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, lost):  # type: ignore[no-untyped-def]
+def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, lost):  # type: ignore[no-untyped-def]
     """Resistances of n points, their tangents and what they lost.
 
     Parameters
     ----------
-    pressure, d_gap : (n,) float
-        Normal pressure [Pa] and its derivative by the gap [N/m3].
-    normal : (n, 3) float
-        Unit normals.
-    shift : (n, 3) float
-        Motion of the points against their partners since the commit [m].
-    before : (n, 3) float
-        Resistances at the commit [Pa].
-    coefficient : float
-        Of friction.
-    stick : (n,) float
-        Stiffness of sticking points [N/m3].
-    resistance : (n, 3) float
-        Out: what the partner pulls the points back with [Pa].
-    direction, factors : (n, 3) float
-        Out: unit directions of slip, and the columns ``ACROSS``, ``ALONG``, ``COUPLING``.
-    lost : (n,) float
-        Out: energy lost since the commit [J/m2], by the mean resistance over the step.
+    pressure, d_gap : (n,) normal pressure [Pa] and its derivative by the gap [N/m3];  normal : (n, 3) unit normals
+    shift : (n, 3) motion of the points against their partners since the commit [m];  before : (n, 3) resistances at the commit [Pa]
+    coefficient : of friction;  stick : (n,) stiffness of sticking points [N/m3]
+    resistance : (n, 3) out: what the partner pulls the points back with [Pa]
+    direction, factors : (n, 3) out: unit directions of slip, and the columns ``_ACROSS``, ``_ALONG``, ``_COUPLING``
+    lost : (n,) out: energy lost since the commit [J/m2], by the mean resistance over the step
     """
     for i in range(pressure.size):
         k = stick[i]
@@ -76,18 +63,18 @@ def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resis
         if size > limit:
             share = limit / size
             factors[i, 0], factors[i, 1], factors[i, 2] = k * share, 0.0, coefficient * d_gap[i]
-        given = 0.0
+        dissipated = 0.0
         for c in range(3):
             trial = resistance[i, c]
             direction[i, c] = trial / size if size > 0.0 else 0.0
             resistance[i, c] = share * trial
-            given += 0.5 * (resistance[i, c] + before[i, c]) * (1.0 - share) * trial
-        lost[i] = given / k
+            dissipated += 0.5 * (resistance[i, c] + before[i, c]) * (1.0 - share) * trial
+        lost[i] = dissipated / k
 
 
 @jit(void(MATRIX, MATRIX, MATRIX, boolean, CUBE), releases=True)
 def tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
-    """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``return_map`` found [N/m3]."""
+    """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``_return_map`` found [N/m3]."""
     for i in range(out.shape[0]):
         for a in range(3):
             for b in range(3):
@@ -104,12 +91,8 @@ class CoulombFriction:
 
     Parameters
     ----------
-    coefficient : float
-        mu > 0.
-    stick : (n,) float
-        Stiffness of sticking points [N/m3].
-    symmetric : bool
-        Whether tangents leave the coupling with the pressure out, for solvers of symmetric systems.
+    coefficient : mu > 0;  stick : (n,) stiffness of sticking points [N/m3]
+    symmetric : whether tangents leave the coupling with the pressure out, for solvers of symmetric systems
 
     Attributes
     ----------
@@ -136,7 +119,7 @@ class CoulombFriction:
         normal : (n, 3);  pressure : (n,) [Pa];  d_gap : (n,) its derivative by the gap [N/m3]
         """
         self._place = np.array(moved)
-        return_map(
+        _return_map(
             pressure, d_gap, normal, self._place - self.place, self.committed, self.coefficient, self.stick,
             self._trial, self._direction, self._factors, self._lost,
         )  # fmt: skip
@@ -147,7 +130,7 @@ class CoulombFriction:
     @property
     def slipping(self) -> np.ndarray:
         """(n,) whether a point slips at the last place, or is open."""
-        return np.asarray(self._factors[:, ALONG] == 0.0)
+        return np.asarray(self._factors[:, _ALONG] == 0.0)
 
     def stored(self) -> np.ndarray:
         """(n,) energy in the sticking springs at the last place [J/m2]."""
@@ -163,9 +146,6 @@ class CoulombFriction:
         self.committed, self.place = self._trial.copy(), self._place.copy()
         self.dissipated = self.dissipated + self._lost
 
-    def rollback(self) -> None:
-        """Trials leave no trace: nothing to undo."""
-
     def state(self) -> dict[str, np.ndarray]:
         """The history as arrays by name."""
         return {
@@ -178,26 +158,3 @@ class CoulombFriction:
         """Set the history to what ``state`` gave."""
         self.committed, self.place = arrays["friction"].copy(), arrays["friction_place"].copy()
         self.dissipated = arrays["friction_dissipated"].copy()
-
-
-class Friction(Protocol):
-    """Tangential traction at the points.
-
-    1. ``evaluate(moved, normal, pressure, d_gap)``: moved (n, 3), displacement of the points against the other surface
-       [m]; traction (n, 3) on the points [Pa] and minus its derivative by ``moved`` (n, 3, 3) [Pa/m].
-    2. ``commit()``, ``rollback()``: as for the system;  ``dissipated``: density (n,) [J/m2] up to the last commit;
-       ``stored()``: density (n,) in what sticks.
-    3. ``begin(moved)``: nothing carries or has lost anything there.  ``state()``: arrays by name that ``restore(arrays)`` takes back.
-    """
-
-    dissipated: np.ndarray
-
-    def evaluate(
-        self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]: ...
-    def stored(self) -> np.ndarray: ...
-    def begin(self, moved: np.ndarray) -> None: ...
-    def commit(self) -> None: ...
-    def rollback(self) -> None: ...
-    def state(self) -> dict[str, np.ndarray]: ...
-    def restore(self, arrays: dict[str, np.ndarray]) -> None: ...

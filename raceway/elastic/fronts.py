@@ -22,12 +22,13 @@ from numpy.typing import NDArray
 
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE
+from raceway.elastic.unknowns import of_nodes
 from raceway.errors import ConvergenceError
 
 Nodes = NDArray[np.int64]
 
 #: Cells that are no longer divided: 64 to 200 cost the same flops, and fewer matrices are quicker.
-LEAF = 128
+_LEAF = 128
 #: Smallest share of the cells on one side of a cut, and what an unbalanced cut costs over a balanced one.
 _SMALLEST, _UNBALANCED = 0.3, 0.5
 #: Directions of the cuts: axes, and planes through edges of a cube.
@@ -45,7 +46,7 @@ class Domain:
     inner : (k,) sorted nodes that belong to these cells alone and to no child's inner ones: eliminated here
     border : (b,) sorted nodes that other cells share, or that are kept
     children : numbers of the two halves, lower than the own one; none of a leaf
-    cells : (first, last + 1) of a leaf in ``Dissection.order``
+    cells : (first, last + 1) of a leaf in ``_Dissection.order``
     """
 
     inner: Nodes
@@ -55,14 +56,14 @@ class Domain:
 
 
 @attrs.frozen(eq=False)
-class Dissection:
+class _Dissection:
     """Domains, children before parents, the whole mesh last, and the order of the cells in which leaves are contiguous."""
 
     domains: list[Domain]
     order: Nodes
 
 
-def dissect(points: np.ndarray, cells: np.ndarray, kept: np.ndarray) -> Dissection:
+def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Dissection:
     """Halves of halves of a mesh, cut where few nodes lie.
 
     Parameters
@@ -83,7 +84,7 @@ def dissect(points: np.ndarray, cells: np.ndarray, kept: np.ndarray) -> Dissecti
     # Rounded: layers of cells stay together.
     measures = [np.round(x / size, 7) for x in (*(centre @ _DIRECTIONS.T).T, radius, np.abs(centre).max(axis=1))]
     uses = np.bincount(numbers.ravel(), minlength=len(points))
-    uses[kept] = len(numbers) + 1
+    uses[interface] = len(numbers) + 1
     domains: list[Domain] = []
     leaves: list[Nodes] = []
     placed = 0
@@ -94,7 +95,7 @@ def dissect(points: np.ndarray, cells: np.ndarray, kept: np.ndarray) -> Dissecti
         local = local.reshape(-1, 8)
         inside = np.bincount(local.ravel()) >= uses[nodes]
         border = nodes[~inside]
-        if len(part) <= LEAF:
+        if len(part) <= _LEAF:
             leaves.append(part)
             domains.append(Domain(nodes[inside], border, (), (placed, placed + len(part))))
             placed += len(part)
@@ -106,7 +107,7 @@ def dissect(points: np.ndarray, cells: np.ndarray, kept: np.ndarray) -> Dissecti
         return len(domains) - 1
 
     visit(np.arange(len(numbers)))
-    return Dissection(domains, np.concatenate(leaves))
+    return _Dissection(domains, np.concatenate(leaves))
 
 
 def _cut(along: np.ndarray, local: np.ndarray, nodes: int) -> tuple[float, Nodes, Nodes]:
@@ -137,25 +138,25 @@ _SQUARE = float64[::1, :]
 
 
 @jit(void(int64[::1], uint32[:, ::1], CUBE, _SQUARE))
-def add_cells(place, cells, matrices, front):  # type: ignore[no-untyped-def]
+def _add_cells(position, cells, matrices, front):  # type: ignore[no-untyped-def]
     """Add element matrices (m, 24, 24) to the lower triangle of a front; ``place`` (3 nodes,) of an unknown in it, or -1."""
     for e in range(cells.shape[0]):
         for i in range(24):
-            row = place[3 * cells[e, i // 3] + i % 3]
+            row = position[3 * cells[e, i // 3] + i % 3]
             if row >= 0:
                 for j in range(24):
-                    column = place[3 * cells[e, j // 3] + j % 3]
+                    column = position[3 * cells[e, j // 3] + j % 3]
                     if 0 <= column <= row:
                         front[row, column] += matrices[e, i, j]
 
 
 @jit(void(int64[::1], _SQUARE, _SQUARE))
-def add_front(place, child, front):  # type: ignore[no-untyped-def]
+def _add_front(position, child, front):  # type: ignore[no-untyped-def]
     """Add the lower triangle of a child's (k, k) to that of a front, at ``place`` (k,)."""
-    for j in range(place.size):
-        column = place[j]
-        for i in range(j, place.size):
-            row = place[i]
+    for j in range(position.size):
+        column = position[j]
+        for i in range(j, position.size):
+            row = position[i]
             front[max(row, column), min(row, column)] += child[i, j]
 
 
@@ -244,7 +245,7 @@ class Fronts:
 
 
 def factored(
-    dissection: Dissection,
+    dissection: _Dissection,
     cells: np.ndarray,
     matrices: Callable[[slice], np.ndarray],
     free: np.ndarray,
@@ -254,7 +255,7 @@ def factored(
 
     Parameters
     ----------
-    dissection : Dissection
+    dissection : _Dissection
     cells : (m, 8) uint32, in the order of the dissection
     matrices : function of a slice of these cells -> (k, 24, 24)
     free : (3 n,) bool, unknowns; the others are zero
@@ -265,7 +266,7 @@ def factored(
     ConvergenceError
         A singular matrix: a motion that neither the kept nodes nor supports hold.
     """
-    place = np.full(len(free), -1, dtype=np.int64)
+    position = np.full(len(free), -1, dtype=np.int64)
     waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     fronts: list[Front] = []
     count = len(dissection.domains)
@@ -273,26 +274,26 @@ def factored(
     for number, domain in enumerate(dissection.domains):
         inner, border = _unknowns(domain.inner, free), _unknowns(domain.border, free)
         s, size = len(inner), len(inner) + len(border)
-        place[inner], place[border] = np.arange(s), np.arange(s, size)
+        position[inner], position[border] = np.arange(s), np.arange(s, size)
         front = np.zeros((size, size), order="F")
         if domain.cells is not None and size:
             part = slice(*domain.cells)
-            add_cells(place, cells[part], matrices(part), front)
+            _add_cells(position, cells[part], matrices(part), front)
         for child in domain.children:
             unknowns, schur = waiting.pop(child)
             if size:  # no unknown where all nodes are held
-                add_front(place[unknowns], schur, front)
-        place[inner] = place[border] = -1
+                _add_front(position[unknowns], schur, front)
+        position[inner] = position[border] = -1
         waiting[number] = border, _eliminate(front, s, inner, border, fronts)
         if on_front is not None:
             on_front(work[number], work[-1])
-    kept, schur = waiting.pop(count - 1)
-    return Fronts(fronts, kept, np.tril(schur) + np.tril(schur, -1).T)
+    interface, schur = waiting.pop(count - 1)
+    return Fronts(fronts, interface, np.tril(schur) + np.tril(schur, -1).T)
 
 
 def _unknowns(nodes: np.ndarray, free: np.ndarray) -> np.ndarray:
-    found = (3 * nodes[:, None] + np.arange(3)).ravel()
-    return found[free[found]]
+    unknowns = of_nodes(nodes)
+    return unknowns[free[unknowns]]
 
 
 def _operations(domain: Domain) -> int:
@@ -313,7 +314,11 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
     if failed or (np.diagonal(lower) ** 2 < _ROUNDING * diagonal).any():
         raise ConvergenceError("the stiffness of a body is singular: something is held by nothing")
     across = dtrsm(1.0, lower, np.asfortranarray(front[s:, :s].T), lower=1, overwrite_b=1)
-    rest = np.asfortranarray(front[s:, s:])
+    complement = np.asfortranarray(front[s:, s:])
     del front
     fronts.append(Front(inner, border, *(np.asarray(x, dtype=np.float32, order="F") for x in (lower, across))))
-    return np.asarray(dsyrk(-1.0, across, beta=1.0, c=rest, trans=1, lower=1, overwrite_c=1)) if len(border) else rest
+    return (
+        np.asarray(dsyrk(-1.0, across, beta=1.0, c=complement, trans=1, lower=1, overwrite_c=1))
+        if len(border)
+        else complement
+    )

@@ -13,6 +13,7 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.elastic.assembly import Assembly, bed_of_cells
 from raceway.elastic.contact import NodalContact
 from raceway.elastic.superelement import REFINED, Closed, Copies, Group, Loose, Part, gather_turned, same_bodies, sectors
+from raceway.elastic.unknowns import of_nodes
 from raceway.errors import MeshError
 from raceway.storage.array_cache import kept
 
@@ -54,8 +55,7 @@ class Ring:
                 force[part] = inertia * ride[:, k]
                 behind[:, k] = self._solved(force, apply)[part]
         self.follow = ride - behind
-        places = (3 * element.nodes.reshape(-1, 1) + np.arange(3)).ravel() - part.start
-        self.carried = self.follow[places]
+        self.carried = self.follow[of_nodes(element.nodes.ravel()) - part.start]
         #: (m, m) what the ring's free nodes add to the frame's matrix: R^T M (R - W) d / c.
         self.added = ride.T @ (inertia[:, None] * self.follow)
 
@@ -75,19 +75,19 @@ class Ring:
 
     def backward(self, carried: Any, moved: np.ndarray, frame: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (3 k,) and of the frame (m,)."""
-        own = moved - self.carried @ frame
-        self.element.backward(carried, own.reshape(len(self.element.nodes), -1), out)
+        deformed = moved - self.carried @ frame
+        self.element.backward(carried, deformed.reshape(len(self.element.nodes), -1), out)
         out[self.part] += self.follow @ frame
 
     def _solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        found = np.zeros_like(force)
+        solution = np.zeros_like(force)
         for _ in range(REFINED):
-            loads, carried = self.element.forward(force - apply(found))
+            loads, carried = self.element.forward(force - apply(solution))
             back: Any = carried
             step = np.zeros_like(force)
             self.element.backward(back, self.element.respond(loads), step)
-            found += step
-        return found
+            solution += step
+        return solution
 
 
 def equal_parts(assembly: Assembly, azimuth: np.ndarray) -> list[Group]:
@@ -112,8 +112,8 @@ def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
         seat[body.foundation[0].ravel()] = True
     cells = np.asarray(body.operator.cells, dtype=np.int64)
     marks = np.column_stack([free_nodes(assembly, index), seat])
-    found = sectors(body.points, cells, azimuth, marks, first)
-    return Copies.single(body.points, cells, first) if found is None else found
+    ring_sectors = sectors(body.points, cells, azimuth, marks, first)
+    return Copies.single(body.points, cells, first) if ring_sectors is None else ring_sectors
 
 
 class Balls:
@@ -189,99 +189,91 @@ class Balls:
 #: Cells of a part from which factors take seconds, and reading them pays.
 LEAST_CELLS = 8000
 #: The code that the numbers depend on.
-SOURCES = ("core/hexahedron", *(f"elastic/{name}.py" for name in ("fronts", "linear_statics", "superelement", "interface")))
+SOURCES = (
+    "core/hexahedron",
+    *(f"elastic/{name}.py" for name in ("fronts", "linear_statics", "superelement", "interface", "unknowns")),
+)
 
 Arrays = dict[str, np.ndarray]
 #: Called with what is done, how much of it, and how much there is.
 OnProgress = Callable[[str, int, int], None]
-Bed = tuple[np.ndarray, np.ndarray]
-
-
-def kept_ring(
-    name: str,
-    copies: Copies,
-    operator: HexOperator,
-    contact: np.ndarray,
-    free: np.ndarray,
-    mass: float,
-    bed: Bed | None,
-    on_progress: OnProgress | None = None,
-) -> Loose | Closed:
-    """A ring, or its sectors.  Parameters: see ``Part.of``; ``name`` is for people."""
-    kind: type[Loose] | type[Closed] = Closed if len(copies.turns) > 1 else Loose
-
-    def make() -> Arrays:
-        return kind.of(Part.of(copies, operator, contact, free, mass, bed, _telling(name, copies, on_progress))).arrays()
-
-    inputs = {"free": free, "bed": list(bed or ()), "turns": copies.turns, "planes": [copies.before, copies.behind]}
-    return kind.of_arrays(copies, contact, _kept(name, copies, operator, contact, mass, inputs, make))
-
-
-def kept_ball(
-    name: str,
-    copies: Copies,
-    operator: HexOperator,
-    contact: np.ndarray,
-    mass: float,
-    caged: np.ndarray,
-    apply: Callable[[np.ndarray], np.ndarray],
-    on_progress: OnProgress | None = None,
-) -> tuple[Loose, np.ndarray]:
-    """A ball, held by springs on its mean motions, which the caller takes off again, and its answers (3 n, c) to its cage.
-
-    Parameters
-    ----------
-    caged : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
-    """
-    free = np.ones(len(copies.points), dtype=bool)
-
-    def make() -> Arrays:
-        told = _telling(name, copies, on_progress)
-        loose = Loose.of(Part.of(copies, operator, contact, free, mass, None, told), held=True)
-        return loose.arrays() | {"response": loose.solved(caged, apply)}
-
-    arrays = _kept(name, copies, operator, contact, mass, {"held": True, "caged": caged}, make)
-    return Loose.of_arrays(copies, contact, arrays), arrays["response"]
-
-
-def _telling(name: str, copies: Copies, on_progress: OnProgress | None) -> Callable[[int, int], None] | None:
-    if on_progress is None:
-        return None
-    what = f"factoring {'a sector of the ' if len(copies.before) else ''}{_of_people(name)}, {len(copies.cells)} elements"
-    return partial(on_progress, what)
-
-
-def _of_people(name: str) -> str:
-    return name.rstrip("_0123456789").replace("_", " ")
-
-
-def _kept(
-    name: str,
-    copies: Copies,
-    operator: HexOperator,
-    contact: np.ndarray,
-    mass: float,
-    inputs: dict[str, object],
-    make: Callable[[], Arrays],
-) -> Arrays:
-    cells = len(copies.cells)
-    if cells < LEAST_CELLS:
-        return make()
-    inputs |= {
-        "points": copies.points,
-        "cells": copies.cells,
-        "contact": contact,
-        "mass": float(mass),
-        "moduli": operator.moduli,
-        "density": operator.density if mass else None,
-        "formulation": operator.formulation,
-    }
-    what = f"{_of_people(name)}, {cells} elements, {operator.formulation}" + (f", mass {mass:.6g}/s2" if mass else "")
-    return kept("superelement", what, inputs, SOURCES, make)
 
 
 @attrs.frozen(eq=False)
-class RingFlexibility:
+class _Substructure:
+    """A mesh that is factored, or read from the store.
+
+    Attributes
+    ----------
+    name : of its body;  copies, operator, contact, free, mass, bed : see ``Part.of``
+    """
+
+    name: str
+    copies: Copies
+    operator: HexOperator
+    contact: np.ndarray
+    free: np.ndarray
+    mass: float
+    bed: tuple[np.ndarray, np.ndarray] | None
+    on_progress: OnProgress | None
+
+    def ring(self) -> Loose | Closed:
+        """A ring, or its sectors."""
+        copies = self.copies
+        kind: type[Loose] | type[Closed] = Closed if len(copies.turns) > 1 else Loose
+        inputs = {
+            "free": self.free,
+            "bed": list(self.bed or ()),
+            "turns": copies.turns,
+            "planes": [copies.before, copies.behind],
+        }
+        return kind.of_arrays(copies, self.contact, self._stored(inputs, lambda: kind.of(self._part()).arrays()))
+
+    def ball(self, caged: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> tuple[Loose, np.ndarray]:
+        """A ball, held by springs on its mean motions, which the caller takes off again, and its answers (3 n, c) to its cage.
+
+        Parameters
+        ----------
+        caged : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
+        """
+
+        def make() -> Arrays:
+            loose = Loose.of(self._part(), held=True)
+            return loose.arrays() | {"response": loose.solved(caged, apply)}
+
+        arrays = self._stored({"held": True, "caged": caged}, make)
+        return Loose.of_arrays(self.copies, self.contact, arrays), arrays["response"]
+
+    @property
+    def _title(self) -> str:
+        return self.name.rstrip("_0123456789").replace("_", " ")
+
+    def _part(self) -> Part:
+        on_front = None
+        if self.on_progress is not None:
+            sector = "a sector of the " if len(self.copies.before) else ""
+            on_front = partial(self.on_progress, f"factoring {sector}{self._title}, {len(self.copies.cells)} elements")
+        return Part.of(self.copies, self.operator, self.contact, self.free, self.mass, self.bed, on_front)
+
+    def _stored(self, inputs: dict[str, object], make: Callable[[], Arrays]) -> Arrays:
+        cells, operator, mass = len(self.copies.cells), self.operator, self.mass
+        if cells < LEAST_CELLS:
+            return make()
+        inputs |= {
+            "points": self.copies.points,
+            "cells": self.copies.cells,
+            "contact": self.contact,
+            "mass": float(mass),
+            "moduli": operator.moduli,
+            "density": operator.density if mass else None,
+            "formulation": operator.formulation,
+        }
+        title = f"{self._title}, {cells} elements, {operator.formulation}" + (f", mass {mass:.6g}/s2" if mass else "")
+        return kept("superelement", title, inputs, SOURCES, make)
+
+
+@attrs.frozen(eq=False)
+class _RingFlexibility:
     """A matrix with one dense block for each ring.
 
     Attributes
@@ -305,16 +297,16 @@ class RingFlexibility:
     def under(self, places: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """(3 k, n) displacements under forces (p, n) at sorted places (p,)."""
         out = np.empty((3 * len(self.nodes), forces.shape[1]))
-        for (rows, block), own in zip(self.blocks, self._split(places), strict=True):
-            out[rows] = block[:, places[own] - rows.start] @ forces[own]
+        for (rows, block), of_ring in zip(self.blocks, self._split(places), strict=True):
+            out[rows] = block[:, places[of_ring] - rows.start] @ forces[of_ring]
         return out
 
     def among(self, places: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """(p, n) of these displacements those at ``places`` themselves."""
         out = np.empty_like(forces)
-        for (rows, block), own in zip(self.blocks, self._split(places), strict=True):
-            here = places[own] - rows.start
-            out[own] = block[np.ix_(here, here)] @ forces[own]
+        for (rows, block), of_ring in zip(self.blocks, self._split(places), strict=True):
+            here = places[of_ring] - rows.start
+            out[of_ring] = block[np.ix_(here, here)] @ forces[of_ring]
         return out
 
     def _split(self, places: np.ndarray) -> list[slice]:
@@ -337,9 +329,9 @@ class Motions:
     balls: np.ndarray
     frame: np.ndarray
 
-    def plus(self, part: float, other: Motions) -> Motions:
+    def plus(self, part: float, change: Motions) -> Motions:
         """Self + part * other."""
-        return Motions(self.nodes + part * other.nodes, self.balls + part * other.balls, self.frame + part * other.frame)
+        return Motions(self.nodes + part * change.nodes, self.balls + part * change.balls, self.frame + part * change.frame)
 
 
 class Interface:
@@ -370,7 +362,7 @@ class Interface:
         self.extra = len(balls[0][0].springs)
         self._first = np.cumsum([0, *(len(ring.nodes) for ring in rings)])
         self._balls: dict[int, tuple[Balls, int, int]] = {}
-        self._known: RingFlexibility | None = None
+        self._flexibility: _RingFlexibility | None = None
         begin = int(self._first[-1])
         for group, members in balls:
             for copy, ball in enumerate(members):
@@ -393,9 +385,9 @@ class Interface:
             rows = slice(begin, begin + len(members) * group.size // 3)
             begin = rows.stop
             loads = group.loose.to_first(forces.nodes[rows].reshape(len(members), -1))
-            found = np.concatenate([loads, forces.balls[members]], axis=1) @ group.flexibility
-            out[rows] = group.loose.to_copies(found[:, : group.size]).reshape(-1, 3)
-            balls[members] = found[:, group.size :]
+            motions = np.concatenate([loads, forces.balls[members]], axis=1) @ group.flexibility
+            out[rows] = group.loose.to_copies(motions[:, : group.size]).reshape(-1, 3)
+            balls[members] = motions[:, group.size :]
         return Motions(out, balls, frame)
 
     def on_frame(self, force: np.ndarray) -> np.ndarray:
@@ -413,60 +405,55 @@ class Interface:
     def of_ball(self, ball: int, nodes: np.ndarray) -> np.ndarray:
         """(3 m + e, 3 m + e) flexibility of some nodes (m,) and the mean motions of a ball where it lies."""
         group, copy, begin = self._balls[ball]
-        places, turn = unknowns(nodes - begin), group.loose.part.copies.turns[copy]
+        places, turn = of_nodes(nodes - begin), group.loose.part.copies.turns[copy]
         size, none = len(places), np.zeros(len(nodes), dtype=np.int64)
         inner = np.empty((size, size))
         gather_turned(group.flexibility[None], turn[None], none, nodes - begin, inner)
         beside = (turn @ group.flexibility[places, group.size :].reshape(-1, 3, self.extra)).reshape(size, self.extra)
         return np.block([[inner, beside], [beside.T, group.flexibility[group.size :, group.size :]]])
 
-    def of_rings(self, nodes: np.ndarray) -> RingFlexibility:
+    def of_rings(self, nodes: np.ndarray) -> _RingFlexibility:
         """Of some of the rings' nodes (k,), ``nodes`` (m,) among them.
 
         Notes
         -----
         Contacts move little from iteration to iteration: what was asked for before stays, up to twice of what is asked.
         """
-        known = np.union1d(self._known.nodes, nodes) if self._known else nodes
-        if len(known) > 2 * len(nodes):
-            known = nodes
-        if self._known is None or not np.array_equal(known, self._known.nodes):
-            self._known = self._among(known)
-        return self._known
+        covered = np.union1d(self._flexibility.nodes, nodes) if self._flexibility else nodes
+        if len(covered) > 2 * len(nodes):
+            covered = nodes
+        if self._flexibility is None or not np.array_equal(covered, self._flexibility.nodes):
+            self._flexibility = self._among(covered)
+        return self._flexibility
 
-    def _among(self, nodes: np.ndarray) -> RingFlexibility:
+    def _among(self, nodes: np.ndarray) -> _RingFlexibility:
         carried = np.zeros((3 * len(nodes), self.frame_size))
         blocks, ends = [], 3 * np.searchsorted(nodes, self._first)
         for k, ring in enumerate(self.rings):
             rows = slice(int(ends[k]), int(ends[k + 1]))
-            own = nodes[rows.start // 3 : rows.stop // 3] - self._first[k]
-            blocks.append((rows, ring.element.among(own)))
-            carried[rows, : ring.carried.shape[1]] = ring.carried[unknowns(own)]
-        return RingFlexibility(nodes, blocks, carried)
-
-
-def unknowns(nodes: np.ndarray) -> np.ndarray:
-    """(3 m,) of nodes (m,)."""
-    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
+            local = nodes[rows.start // 3 : rows.stop // 3] - self._first[k]
+            blocks.append((rows, ring.element.among(local)))
+            carried[rows, : ring.carried.shape[1]] = ring.carried[of_nodes(local)]
+        return _RingFlexibility(nodes, blocks, carried)
 
 
 #: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.
 _FURTHER = 1
 
 
-def interface_of(assembly: Assembly, wanted: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
+def interface_of(assembly: Assembly, touched: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
     """Superelements of c K + d M.
 
     Parameters
     ----------
     assembly : inner ring, outer ring, balls, with its groups of equal parts
-    wanted : (nodes,) bool, those that contacts may touch
+    touched : (nodes,) bool, those that contacts may touch
     mass : d / c [1/s2]
     on_progress : told of every body that is factored, optional
     """
-    rings = [_ring(assembly, group, wanted, mass, on_progress) for group in assembly.groups[:2]]
+    rings = [_ring(assembly, group, touched, mass, on_progress) for group in assembly.groups[:2]]
     balls = [
-        (_balls(assembly, group, wanted, mass, on_progress), [ball - 2 for ball in group.members])
+        (_balls(assembly, group, touched, mass, on_progress), [ball - 2 for ball in group.members])
         for group in assembly.groups[2:]
     ]
     return Interface(rings, balls, assembly.nodes)
@@ -485,34 +472,34 @@ def touchable(contact: NodalContact, nodes: int) -> np.ndarray:
     return under
 
 
-def _ring(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_progress: OnProgress | None) -> Ring:
+def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> Ring:
     (index,), copies = group.members, group.copies
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
     free = free_nodes(assembly, index)
     cells = np.asarray(body.operator.cells, dtype=np.int64)
-    own = wanted[rows.start // 3 : rows.stop // 3]
-    touched = np.unique(np.concatenate([np.flatnonzero(own[part - first]) for part in copies.nodes]))
+    mine = touched[rows.start // 3 : rows.stop // 3]
+    contact = np.unique(np.concatenate([np.flatnonzero(mine[part - first]) for part in copies.nodes]))
     cut = np.concatenate([copies.before, copies.behind])
-    if np.isin(touched, cut).any():
+    if np.isin(contact, cut).any():
         copies = Copies.single(body.points, cells, first)
-        touched = np.flatnonzero(own)
+        contact = np.flatnonzero(mine)
     local = copies.nodes[0] - first
-    touched = touched[free[local[touched]]]
-    if not touched.size:
+    contact = contact[free[local[contact]]]
+    if not contact.size:
         raise MeshError(
             f"{body.name}: no node of its groove below a contact is free: its seat reaches into the groove. Mesh the ring with free nodes there"
         )
     bed = None if body.foundation is None else _of_part(bed_of_cells(body), cells, local, copies.cells)
-    element = kept_ring(body.name, copies, body.operator, touched, free[local], mass, bed, on_progress)
+    element = _Substructure(body.name, copies, body.operator, contact, free[local], mass, bed, on_progress).ring()
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
     ride = assembly.carried[rows] if body.frame is not None else np.zeros((rows.stop - rows.start, 0))
 
     def apply(moved: np.ndarray) -> np.ndarray:
         out = np.zeros_like(moved)
-        own = moved[rows]
-        force = assembly.body_force(index, moved) + inertia * own
+        local = moved[rows]
+        force = assembly.body_forces.of_body(index, moved) + inertia * local
         for foundation, _ in assembly.foundations:
-            force += (foundation[rows][:, rows]) @ own
+            force += (foundation[rows][:, rows]) @ local
         out[rows] = force * np.repeat(free, 3)
         return out
 
@@ -524,23 +511,25 @@ def _of_part(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The cells of a sector that stand on the bed, numbered in it."""
     key = {tuple(row): k for k, row in enumerate(local[part])}
-    found = [(key[row], matrix) for row, matrix in zip(map(tuple, cells[bed[0]]), bed[1], strict=True) if row in key]
-    return np.array([k for k, _ in found], dtype=np.int64), np.array([matrix for _, matrix in found])
+    matrices = [(key[row], matrix) for row, matrix in zip(map(tuple, cells[bed[0]]), bed[1], strict=True) if row in key]
+    return np.array([k for k, _ in matrices], dtype=np.int64), np.array([matrix for _, matrix in matrices])
 
 
-def _balls(assembly: Assembly, group: Group, wanted: np.ndarray, mass: float, on_progress: OnProgress | None) -> Balls:
+def _balls(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> Balls:
     copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
-    touched = np.unique(np.concatenate([np.flatnonzero(wanted[nodes]) for nodes in copies.nodes]))
+    contact = np.unique(np.concatenate([np.flatnonzero(touched[nodes]) for nodes in copies.nodes]))
     caged, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
-        own = slice(4 * (index - 2), 4 * (index - 2) + 4)
-        caged, stiffness = assembly.cage.rows[own, rows].toarray(), assembly.cage.stiffness[own]
+        motions = slice(4 * (index - 2), 4 * (index - 2) + 4)
+        caged, stiffness = assembly.cage.rows[motions, rows].toarray(), assembly.cage.stiffness[motions]
     inertia = mass * np.repeat(body.operator.lumped_mass(), 3)[:, None]
 
     def apply(moved: np.ndarray) -> np.ndarray:
-        return assembly.mesh_force(index, moved) + inertia * moved
+        return assembly.body_forces.of_mesh(index, moved) + inertia * moved
 
     forces = np.ascontiguousarray(caged.T)
-    loose, response = kept_ball(body.name, copies, body.operator, touched, mass, forces, apply, on_progress)
+    free = np.ones(len(copies.points), dtype=bool)
+    ball = _Substructure(body.name, copies, body.operator, contact, free, mass, None, on_progress)
+    loose, response = ball.ball(forces, apply)
     return Balls(loose, caged, stiffness, response, mass > 0.0)

@@ -11,11 +11,12 @@ from raceway.core.contact.hertz import ball_compliance
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.elastic.assembly import Assembly, Cage
 from raceway.elastic.bearing_data import BearingData
-from raceway.elastic.contact import Contact, NodalContact, Pair, groove, penalty_stiffness
+from raceway.elastic.contact import Contact, NodalContact, Pair, PlaceLaw, groove, penalty_stiffness
 from raceway.elastic.friction import CoulombFriction
 from raceway.elastic.linear_statics import BlockMatrix, Preconditioner
 from raceway.elastic.resultant import Footprint, LoadedBody, ResultantContact, Touch, footprint
 from raceway.elastic.surface import Facets, SurfacePoints, surface_points
+from raceway.elastic.unknowns import of_nodes
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -24,10 +25,10 @@ if TYPE_CHECKING:
 #: Unknowns up to which factors are made.  Rings and balls couple at their contacts only, so that factors stay small: at
 #: 97 000 unknowns of a coarse bearing 4.4 CPU-s and 0.75 GB, at 15 000 0.7 CPU-s.  One compact body fills up: two of 16 000
 #: unknowns each cost more than multigrid with all its iterations.
-MOST_UNKNOWNS, MOST_OF_A_BODY = 60_000, 15_000
+_MOST_UNKNOWNS, _MOST_OF_A_BODY = 60_000, 15_000
 
 
-class Factorised:
+class _Factorised:
     """LU of a symmetric matrix on the rows that are not held.
 
     Parameters
@@ -125,19 +126,20 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
         reach = REACH * float(ellipse.approach(max(4.0 * s.reference_load, often)))
         for k, ball in enumerate(meshes[2:]):
             middle = 0.5 * g.pitch_diameter * s.radial(k)
-            found = surface_points(ball.points, ball.facet_nodes("surface"), middle)
-            side = (found.place - middle) @ s.line(k, g.contact_angle)
-            found = _near(found, (side < 0.0) == (race == 0), surface, reach)
-            found = SurfacePoints(found.place, found.area, found.nodes + assembly.starts[k + 2], found.weights)
-            pairs.append(Pair(f"ball {k}, {word} race", found, surface, facets, int(assembly.starts[race])))
-    which = np.repeat(np.arange(len(pairs)), [len(p.points.area) for p in pairs])
+            points = surface_points(ball.points, ball.facet_nodes("surface"), middle)
+            side = (points.place - middle) @ s.line(k, g.contact_angle)
+            points = _near(points, (side < 0.0) == (race == 0), surface, reach)
+            points = SurfacePoints(points.place, points.area, points.nodes + assembly.starts[k + 2], points.weights)
+            pairs.append(Pair(f"ball {k}, {word} race", points, surface, facets, int(assembly.starts[race])))
+    pair = np.repeat(np.arange(len(pairs)), [len(p.points.area) for p in pairs])
     area = np.concatenate([p.points.area for p in pairs])
     damping = 0.0
     if s.contact_damping > 0.0:
         a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
         damping = s.contact_damping / (np.pi * float(a) * float(b))
     friction = CoulombFriction(s.friction, sticking(s, area)) if s.friction > 0.0 else None
-    return NodalContact(pairs, assembly.nodes, s.law, s.params(which, area), s.state_size, damping, friction)
+    law = PlaceLaw(s.law, s.params(pair, area), s.state_size, damping)
+    return NodalContact(pairs, assembly.nodes, law, friction)
 
 
 def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> ResultantContact:
@@ -173,11 +175,11 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
             # Balls that are the same mesh know each other's answers.
             turned = s.turn(k) @ s.turn(loaded[k][0]).T
             above = loaded[k][1].replaced(on_ball, turned.T @ -normal, sphere)
-            name, place = f"ball {k}, {word} race", int(assembly.starts[k + 2])
+            name, first = f"ball {k}, {word} race", int(assembly.starts[k + 2])
             touches.append(
                 Touch(
                     name,
-                    _moved(on_ball, place),
+                    _moved(on_ball, first),
                     _moved(on_ring, int(assembly.starts[race])),
                     middle,
                     surface,
@@ -187,7 +189,7 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
                 )  # fmt: skip
             )
     params = s.params(np.arange(len(touches)), np.ones(len(touches)))
-    return ResultantContact(touches, assembly.nodes, s.law, params, s.state_size, s.contact_damping)
+    return ResultantContact(touches, assembly.nodes, PlaceLaw(s.law, params, s.state_size, s.contact_damping))
 
 
 def _loaded_balls(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> list[tuple[int, LoadedBody]]:
@@ -195,10 +197,10 @@ def _loaded_balls(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
     out: list[tuple[int, LoadedBody]] = []
     for k, ball in enumerate(meshes[2:]):
         for first, answers in out:
-            other = meshes[first + 2]
-            there = other.points @ setup.turn(first)
-            same = other.points.shape == ball.points.shape and np.array_equal(other.cells, ball.cells)
-            if same and np.abs(ball.points @ setup.turn(k) - there).max() < _SAME * setup.geometry.ball_diameter:
+            like = meshes[first + 2]
+            expected = like.points @ setup.turn(first)
+            same = like.points.shape == ball.points.shape and np.array_equal(like.cells, ball.cells)
+            if same and np.abs(ball.points @ setup.turn(k) - expected).max() < _SAME * setup.geometry.ball_diameter:
                 out.append((first, answers))
                 break
         else:
@@ -237,17 +239,17 @@ def _near(points: SurfacePoints, side: np.ndarray, surface: np.ndarray, reach: f
     """Points on one side of the ball whose gap in the groove is below ``reach`` [m]; whole facets, four points each."""
     x, radius = points.place[:, 0] - surface[1], np.hypot(points.place[:, 1], points.place[:, 2])
     gap = surface[5] - np.hypot(x, radius - surface[4])
-    chosen = (side & (gap < reach)).reshape(-1, 4).any(axis=1)
-    return points[np.repeat(chosen, 4)]
+    near = (side & (gap < reach)).reshape(-1, 4).any(axis=1)
+    return points[np.repeat(near, 4)]
 
 
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
-MOST_ITERATIONS, MANY_ITERATIONS = 600, 300
+MOST_ITERATIONS, _MANY_ITERATIONS = 600, 300
 #: Iterations of a solve with factors that still fit, and how many more all solves together may take before new factors pay.
-FEW_ITERATIONS, WORTH_FACTORS = 3, 30
+_FEW_ITERATIONS, _WORTH_FACTORS = 3, 30
 #: Nodes of an aggregate.  Flat cells of contacts are put together in pairs or triples, whose six unknowns would make the next
 #: level dearer than the finest one: at 9600 cells 1.3 times the iterations, each at a quarter of the cost.
-FEWEST_NODES = 6
+_FEWEST_NODES = 6
 #: Share of the springs in the cage's place that is left where the cage itself is added, so that loose balls have an inverse.
 _HARDLY = 1e-3
 #: Ratio of the mass' share of the matrix at which the multigrid is made anew.
@@ -268,7 +270,7 @@ class LinearSolver:
 
     def __init__(self, assembly: Assembly, contact: Contact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
-        self._multigrid: Preconditioner | Factorised | None = None
+        self._multigrid: Preconditioner | _Factorised | None = None
         self._whole: LowRankContacts | None = None
         self._built = 0.0
         self._fresh = False
@@ -284,25 +286,25 @@ class LinearSolver:
         """(size,) solution to a relative residual; zero for frames' coordinates that are held."""
         a = self.assembly
         ratio = c_m / c_k
-        stale = self._multigrid is None or self.last_iterations > MANY_ITERATIONS and not self._fresh
+        stale = self._multigrid is None or self.last_iterations > _MANY_ITERATIONS and not self._fresh
         # Factors hold the contacts' stiffness of when they were made, unless whole contacts are added to them.
-        aged = isinstance(self._multigrid, Factorised) and self._whole is None
-        stale = stale or aged and self._extra > WORTH_FACTORS
-        other = (
+        aged = isinstance(self._multigrid, _Factorised) and self._whole is None
+        stale = stale or aged and self._extra > _WORTH_FACTORS
+        heavier = (
             abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
             and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
         )
-        if stale or other:
+        if stale or heavier:
             self._make(c_k, c_m)
-        wanted = np.where(a.unknown, right, 0.0)
+        free_right = np.where(a.unknown, right, 0.0)
         apply = self.image(c_k, c_c, c_m)
         precondition = self._preconditioner(c_k, c_c, apply)
-        found, self.last_iterations = _conjugate_gradients(apply, wanted, precondition, tolerance)
+        solution, self.last_iterations = _conjugate_gradients(apply, free_right, precondition, tolerance)
         self._fresh = False
-        self._extra += max(self.last_iterations - FEW_ITERATIONS, 0)
+        self._extra += max(self.last_iterations - _FEW_ITERATIONS, 0)
         self.iterations += self.last_iterations
         self.solves += 1
-        return found
+        return solution
 
     def forget(self) -> None:
         """The next solve makes its multigrid anew."""
@@ -314,14 +316,14 @@ class LinearSolver:
 
     def _make(self, c_k: float, c_m: float) -> None:
         a, contact = self.assembly, self.contact
-        matrix, whole = a.stiffness(), contact is not None and contact.whole
-        if contact is not None and not whole:
+        matrix, resultants = a.stiffness(), contact is not None and contact.resultants_only
+        if contact is not None and not resultants:
             matrix = matrix + contact.tangent(contact.stiffness)
         extra = c_m / c_k * np.repeat(a.node_mass, 3)
         largest = 3 * int(np.diff(a.starts).max())
-        small = len(a.free) <= MOST_UNKNOWNS and largest <= MOST_OF_A_BODY
+        small = len(a.free) <= _MOST_UNKNOWNS and largest <= _MOST_OF_A_BODY
         # Multigrid does not know the answers of bodies that are hardly held well enough to correct them.
-        cage = a.cage if whole and small else None
+        cage = a.cage if resultants and small else None
         if a.cage is not None:
             extra += (1.0 if cage is None else _HARDLY) * a.cage.nodal
         from scipy.sparse import diags_array
@@ -329,8 +331,8 @@ class LinearSolver:
         held = np.ones(3 * a.nodes, dtype=bool)
         held[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
-        self._multigrid = Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, FEWEST_NODES)
-        self._whole = LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and whole else None
+        self._multigrid = _Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, _FEWEST_NODES)
+        self._whole = LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and resultants else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)
@@ -361,9 +363,9 @@ class LinearSolver:
         blocks = None
         if contact is not None:
             blocks = c_k * contact.stiffness + c_c * contact.rate_stiffness
-            chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
-            move = contact.move[(3 * chosen[:, None] + np.arange(3)).ravel()]
-            transposed, blocks = move.T.tocsr(), blocks[chosen]
+            touching = np.flatnonzero(blocks.any(axis=(1, 2)))
+            move = contact.move[of_nodes(touching)]
+            transposed, blocks = move.T.tocsr(), blocks[touching]
         frame = c_k * a.frame_stiffness + c_c * 0.5 * (a.frame_damping + a.frame_damping.T) + c_m * a.frame_mass
 
         def apply(y: np.ndarray) -> np.ndarray:
@@ -401,10 +403,10 @@ class LinearSolver:
         follow = self._follow
         inverse = np.zeros((m, m))
         if a.frame_free.any():
-            chosen = np.flatnonzero(a.frame_free)
-            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in chosen], axis=1)
-            block = images[chosen] + follow[:, chosen].T @ images[m:]
-            inverse[np.ix_(chosen, chosen)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
+            free = np.flatnonzero(a.frame_free)
+            images = np.stack([operator(np.concatenate([np.eye(m)[k], follow[:, k]])) for k in free], axis=1)
+            block = images[free] + follow[:, free].T @ images[m:]
+            inverse[np.ix_(free, free)] = np.linalg.pinv(0.5 * (block + block.T), hermitian=True)
 
         def apply(r: np.ndarray) -> np.ndarray:
             out = np.empty_like(r)
@@ -424,26 +426,26 @@ def _conjugate_gradients(
     tolerance: float,
 ) -> tuple[np.ndarray, int]:
     """Solution and iterations; the residual is measured in the preconditioner's norm, in which N and N m may be added."""
-    found, residual = np.zeros_like(right), right.copy()
+    solution, residual = np.zeros_like(right), right.copy()
     direction, before, goal = np.zeros_like(right), 1.0, 0.0
-    for done in range(MOST_ITERATIONS):
+    for iteration in range(MOST_ITERATIONS):
         corrected = precondition(residual)
         now = float(residual @ corrected)
-        if done == 0:
+        if iteration == 0:
             goal = tolerance**2 * now
         if now < 0.0:  # a preconditioner that is indefinite here: along the residual, or with what was found so far
-            if done:
-                return found, done
+            if iteration:
+                return solution, iteration
             corrected, now, goal = residual.copy(), float(residual @ residual), 0.0
         elif now <= goal:
-            return found, done
-        direction = corrected + (now / before if done else 0.0) * direction
+            return solution, iteration
+        direction = corrected + (now / before if iteration else 0.0) * direction
         image = apply(direction)
         curvature = float(direction @ image)
         if curvature <= 0.0:  # a free motion or a buckled state: what was found so far still descends
-            return (found if done else corrected), done
+            return (solution if iteration else corrected), iteration
         step = now / curvature
-        found += step * direction
+        solution += step * direction
         residual -= step * image
         before = now
-    return found, MOST_ITERATIONS
+    return solution, MOST_ITERATIONS

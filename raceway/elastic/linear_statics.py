@@ -33,7 +33,7 @@ COARSEST = 80
 
 
 @attrs.frozen(eq=False)
-class Levels:
+class _Levels:
     """Aggregates from fine to coarse.
 
     Attributes
@@ -46,7 +46,7 @@ class Levels:
     aggregates: list[csr_matrix]
 
 
-def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Levels:
+def _aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
     Parameters
@@ -65,26 +65,26 @@ def aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> Le
     """
     from pyamg.aggregation.aggregate import standard_aggregation
 
-    levels = Levels([], [])
-    strong, whole = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
+    levels = _Levels([], [])
+    strong, belongs = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
     while graph.shape[0] > COARSEST:
         near = _strong(graph, points)
-        found = standard_aggregation(near)[0].tocsr().astype(float)
-        if found.shape[1] > 0.9 * found.shape[0]:  # nothing left to put together
+        aggregates = standard_aggregation(near)[0].tocsr().astype(float)
+        if aggregates.shape[1] > 0.9 * aggregates.shape[0]:  # nothing left to put together
             break
-        if whole is None:
-            strong, whole = near, found
+        if belongs is None:
+            strong, belongs = near, aggregates
         else:
-            whole = (whole @ found).tocsr()
-        points = (found.T @ points) / np.maximum(np.asarray(found.sum(axis=0)).reshape(-1, 1), 1.0)
-        graph = (found.T @ graph @ found).tocsr()
-        if whole.shape[0] >= fewest * whole.shape[1]:
+            belongs = (belongs @ aggregates).tocsr()
+        points = (aggregates.T @ points) / np.maximum(np.asarray(aggregates.sum(axis=0)).reshape(-1, 1), 1.0)
+        graph = (aggregates.T @ graph @ aggregates).tocsr()
+        if belongs.shape[0] >= fewest * belongs.shape[1]:
             levels.strong.append(strong)
-            levels.aggregates.append(whole)
-            whole = None
-    if whole is not None:
+            levels.aggregates.append(belongs)
+            belongs = None
+    if belongs is not None:
         levels.strong.append(strong)
-        levels.aggregates.append(whole)
+        levels.aggregates.append(belongs)
     return levels
 
 
@@ -99,8 +99,8 @@ def _strong(graph: csr_matrix, points: np.ndarray) -> csr_matrix:
     nearest = np.full(len(points), np.inf)
     np.minimum.at(nearest, row, distance)
     near = distance <= REACH * nearest[row]
-    chosen = sp.csr_matrix((np.ones(near.sum()), (row[near], column[near])), shape=graph.shape)
-    strong = (chosen + chosen.T + sp.eye(len(points), format="csr")).tocsr()
+    one_way = sp.csr_matrix((np.ones(near.sum()), (row[near], column[near])), shape=graph.shape)
+    strong = (one_way + one_way.T + sp.eye(len(points), format="csr")).tocsr()
     strong.data[:] = 1.0
     return strong
 
@@ -140,7 +140,7 @@ def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.nd
     return motions.reshape(-1, 6)
 
 
-def free_motions(points: np.ndarray, held: np.ndarray) -> list[int]:
+def _free_motions(points: np.ndarray, held: np.ndarray) -> list[int]:
     """Indices into ``MOTIONS`` of what the supports leave free; rotations are those about the middle of the held points.
 
     Parameters
@@ -210,7 +210,7 @@ class BlockMatrix:
 _DEGREE, _LOWEST, _MARGIN = 4, 1.0 / 30.0, 1.1
 
 
-class WCycle:
+class _WCycle:
     """A symmetric W-cycle.
 
     Parameters
@@ -235,8 +235,8 @@ class WCycle:
         self._smoothers = []
         for level in levels[:-1]:
             bound = float(approximate_spectral_radius(level.A))
-            found = -chebyshev_polynomial_coefficients(_LOWEST * bound, _MARGIN * bound, _DEGREE)[:-1]
-            self._smoothers.append([float(c) for c in found])
+            polynomial = -chebyshev_polynomial_coefficients(_LOWEST * bound, _MARGIN * bound, _DEGREE)[:-1]
+            self._smoothers.append([float(c) for c in polynomial])
         self._coarse = np.linalg.pinv(levels[-1].A.toarray(), hermitian=True).astype(np.float32)
 
     def matvec(self, right: np.ndarray) -> np.ndarray:
@@ -250,14 +250,14 @@ class WCycle:
         if level == len(self._matrices):
             return np.asarray(self._coarse @ right)
         matrix = self._matrices[level]
-        found = self._smooth(level, right)
-        coarse = self._down[level] @ (right - matrix.times(found))
+        solution = self._smooth(level, right)
+        coarse = self._down[level] @ (right - matrix.times(solution))
         correction = self._cycle(level + 1, coarse)
         if level + 1 < len(self._matrices):  # the coarsest system is solved at once
             correction += self._cycle(level + 1, coarse - self._matrices[level + 1].times(correction))
-        found += self._up[level] @ correction
-        found += self._smooth(level, right - matrix.times(found))
-        return found
+        solution += self._up[level] @ correction
+        solution += self._smooth(level, right - matrix.times(solution))
+        return solution
 
     def _smooth(self, level: int, residual: np.ndarray) -> np.ndarray:
         """p(A) residual by Horner's rule."""
@@ -315,12 +315,12 @@ def solve_static(
         A rigid motion that nothing holds, a load or matrix that is not finite, or iterations that end too early.
     """
     mask = np.asarray(held, dtype=bool)
-    given = np.where(mask, np.broadcast_to(values, held.shape), 0.0)
+    prescribed = np.where(mask, np.broadcast_to(values, held.shape), 0.0)
     matrix = stiffness.tocsr()
-    if not (np.isfinite(load).all() and np.isfinite(given).all() and np.isfinite(matrix.data).all()):
+    if not (np.isfinite(load).all() and np.isfinite(prescribed).all() and np.isfinite(matrix.data).all()):
         raise ConvergenceError("the static system has loads, prescribed displacements or stiffness that are not finite")
     _refuse_free_motion(matrix, points, mask.reshape(-1))
-    return StaticSolver(matrix, points, mask).solve(load, given, tolerance)
+    return StaticSolver(matrix, points, mask).solve(load, prescribed, tolerance)
 
 
 class StaticSolver:
@@ -361,11 +361,11 @@ class StaticSolver:
             return Solution(displacement.reshape(-1, 3), 0, 0.0)
         iterations = 0
         if self._precondition is None:
-            found = self._factors.solve(right)
+            solution = self._factors.solve(right)
         else:
-            found, iterations = _conjugate_gradients(self._inner, right, self._precondition, tolerance)
-        residual = float(np.linalg.norm(self._inner @ found - right)) / size
-        displacement[self._free] = found
+            solution, iterations = _conjugate_gradients(self._inner, right, self._precondition, tolerance)
+        residual = float(np.linalg.norm(self._inner @ solution - right)) / size
+        displacement[self._free] = solution
         if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
             message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
             raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
@@ -383,7 +383,7 @@ class Preconditioner:
     matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
     points : (n, 3) float [m]
     held : (3 n,) bool
-    fewest : nodes of an aggregate, see ``aggregated``
+    fewest : nodes of an aggregate, see ``_aggregated``
 
     References
     ----------
@@ -395,19 +395,19 @@ class Preconditioner:
 
         pyamg = _pyamg()
         # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
-        kept = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
-        loose = ~held[kept]
+        free = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
+        loose = ~held[free]
         self._rows = np.flatnonzero(loose)
-        inner = matrix[kept][:, kept]
+        inner = matrix[free][:, free]
         scale = np.where(loose, 1.0 / np.sqrt(inner.diagonal()), 0.0)
         scaled = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
-        motions = rigid_motions(points)[kept]
+        motions = rigid_motions(points)[free]
         candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
         self.scale = scale[loose]
         self._size = len(loose)
         blocks = scaled.tobsr((3, 3))
         graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
-        nodes = aggregated(graph, points[kept[::3]], fewest)
+        nodes = _aggregated(graph, points[free[::3]], fewest)
         state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
         np.random.seed(0)
         try:
@@ -415,7 +415,7 @@ class Preconditioner:
                 blocks,
                 B=candidates,
                 strength=[("predefined", {"C": strong}) for strong in nodes.strong],
-                aggregate=[("predefined", {"AggOp": found}) for found in nodes.aggregates],
+                aggregate=[("predefined", {"AggOp": operator}) for operator in nodes.aggregates],
                 # Weak couplings take no part in the smoothing of the coarse space either, or it would fill up.
                 smooth=("jacobi", {"omega": 4.0 / 3.0, "filter_entries": True}),
                 presmoother=None,
@@ -425,15 +425,15 @@ class Preconditioner:
             )
         finally:
             np.random.set_state(state)
-        self._cycle = WCycle(self.levels.levels)
+        self._cycle = _WCycle(self.levels.levels)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""
         if residual.ndim == 1:
-            whole = np.zeros(self._size)
-            whole[self._rows] = self.scale * residual
-            found: np.ndarray = self.scale * self._cycle.matvec(whole)[self._rows]
-            return found
+            padded = np.zeros(self._size)
+            padded[self._rows] = self.scale * residual
+            correction: np.ndarray = self.scale * self._cycle.matvec(padded)[self._rows]
+            return correction
         return np.column_stack([self(column) for column in residual.T])
 
 
@@ -441,21 +441,21 @@ def _conjugate_gradients(
     matrix: csr_matrix, right: np.ndarray, precondition: Preconditioner, tolerance: float
 ) -> tuple[np.ndarray, int]:
     """Solution and iterations; ends at the tolerance or at ``MOST_ITERATIONS``."""
-    found, residual = np.zeros_like(right), right.copy()
+    solution, residual = np.zeros_like(right), right.copy()
     direction, before = np.zeros_like(right), 1.0
     goal = tolerance * float(np.linalg.norm(right))
-    for done in range(MOST_ITERATIONS):
+    for iteration in range(MOST_ITERATIONS):
         if np.linalg.norm(residual) <= goal:
-            return found, done
+            return solution, iteration
         corrected = precondition(residual)
         now = float(residual @ corrected)
-        direction = corrected + (now / before if done else 0.0) * direction
+        direction = corrected + (now / before if iteration else 0.0) * direction
         image = matrix @ direction
         step = now / float(direction @ image)
-        found += step * direction
+        solution += step * direction
         residual -= step * image
         before = now
-    return found, MOST_ITERATIONS
+    return solution, MOST_ITERATIONS
 
 
 def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray) -> None:
@@ -467,7 +467,7 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
     # Zero blocks may be left out of the matrix, so a node's three rows can be in parts of their own only where they are empty.
     for index in np.unique(part):
         nodes = np.flatnonzero(part == index)
-        loose = free_motions(points[nodes], mask.reshape(-1, 3)[nodes])
+        loose = _free_motions(points[nodes], mask.reshape(-1, 3)[nodes])
         if loose:
             where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
             names = ", ".join(MOTIONS[i] for i in loose)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError
 
+if TYPE_CHECKING:
+    from raceway.elastic.bearing import ElasticSystem
+
 T = TypeVar("T")
 
 #: Trials of one search, and the slope of the potential over that at its start at which it ends.
-TRIALS, FLAT = 12, 0.9
+_TRIALS, _FLAT = 12, 0.9
 
 
 def searched(slope: float, at: Callable[[float], tuple[T, float, bool]]) -> T:
@@ -31,9 +34,9 @@ def searched(slope: float, at: Callable[[float], tuple[T, float, bool]]) -> T:
     only cut, and never lengthened, stops short of where points close, in this iteration and in all that follow.
     """
     part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0
-    for _ in range(TRIALS):
+    for _ in range(_TRIALS):
         state, now, enough = at(part)
-        if abs(now) <= FLAT * abs(slope) or enough or now > 0.0 and np.isinf(beyond):
+        if abs(now) <= _FLAT * abs(slope) or enough or now > 0.0 and np.isinf(beyond):
             break
         if now > 0.0:
             short, at_short = part, now
@@ -45,7 +48,7 @@ def searched(slope: float, at: Callable[[float], tuple[T, float, bool]]) -> T:
 
 
 #: Iterations of one load step, smallest part of the load.
-NEWTON_LIMIT, SMALLEST_PART = 40, 1.0 / 16.0
+NEWTON_LIMIT, _SMALLEST_PART = 40, 1.0 / 16.0
 #: Residual over the forces that balance, and the linear solves' share of it: early ones need not be exact.
 TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
@@ -67,7 +70,7 @@ class Settled:
     residuals: list[float]
 
 
-def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
+def settle(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
     """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
 
     Raises
@@ -89,7 +92,7 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
                 y, used = _newton(system, good, tolerance, history, share if part == 0.0 else 0.0)
             except ConvergenceError as why:
                 step *= 0.5
-                if step < SMALLEST_PART:
+                if step < _SMALLEST_PART:
                     raise ConvergenceError(
                         f"no equilibrium: {why} Last good state: {100 * part:.3g} % of the load, {len(history)} iterations in all. "
                         "Take a softer penalty (`contact.stiffness`), a finer mesh at the contacts, or a smaller load.",
@@ -104,7 +107,7 @@ def settle(system: Any, guess: np.ndarray, tolerance: float = TOLERANCE) -> Sett
         system.load = load
 
 
-def _refuse(system: Any, y: np.ndarray, history: list[float]) -> None:
+def _refuse(system: ElasticSystem, y: np.ndarray, history: list[float]) -> None:
     try:
         if system.contact is not None:
             system.contact.refuse()
@@ -112,43 +115,47 @@ def _refuse(system: Any, y: np.ndarray, history: list[float]) -> None:
         raise ConvergenceError(str(why), {"y": y, "load_part": 1.0, "residuals": history}) from why
 
 
-def _newton(system: Any, guess: np.ndarray, tolerance: float, history: list[float], share: float) -> tuple[np.ndarray, int]:
+def _newton(
+    system: ElasticSystem, guess: np.ndarray, tolerance: float, history: list[float], share: float
+) -> tuple[np.ndarray, int]:
     y = guess.copy()
     system.locate(y)
-    rest = system.load - system.static_internal(y, share)
+    residual = system.load - system.static_internal(y, share)
     forcing, previous = FIRST, np.inf
-    for done in range(NEWTON_LIMIT):
+    for iteration in range(NEWTON_LIMIT):
         scale = system.force_scale()
-        size = system.measure(rest)
+        size = system.measure(residual)
         relative = size / scale if scale > 0.0 else np.inf
         history.append(float(relative))
         if system.on_residual is not None:
             system.on_residual(float(relative))
         if not np.isfinite(size):
             raise ConvergenceError("forces are not finite.")
-        if relative <= tolerance and (done > 0 or share == 0.0):
-            return y, done
-        if done > 0:
+        if relative <= tolerance and (iteration > 0 or share == 0.0):
+            return y, iteration
+        if iteration > 0:
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
         previous = size
         if system.condensed is not None:
-            y = y + system.increment(1.0, 0.0, 0.0, rest)
+            y = y + system.solve(1.0, 0.0, 0.0, residual)
             system.locate(y)
-            rest = system.load - system.static_internal(y)
+            residual = system.load - system.static_internal(y)
             continue
-        step = system.solve(1.0, 0.0, 0.0, rest, tolerance=forcing)
-        y, rest = _along(system, y, step, rest, tolerance * scale)
+        step = system.solve(1.0, 0.0, 0.0, residual, tolerance=forcing)
+        y, residual = _along(system, y, step, residual, tolerance * scale)
         if system.locate(y):
-            rest = system.load - system.static_internal(y)
+            residual = system.load - system.static_internal(y)
     raise ConvergenceError(f"Newton's residual stands at {history[-1]:.1e} of the load after {NEWTON_LIMIT} iterations.")
 
 
-def _along(system: Any, y: np.ndarray, step: np.ndarray, rest: np.ndarray, enough: float) -> tuple[np.ndarray, np.ndarray]:
+def _along(
+    system: ElasticSystem, y: np.ndarray, step: np.ndarray, residual: np.ndarray, enough: float
+) -> tuple[np.ndarray, np.ndarray]:
     """State along a step (size,), and the residual there."""
 
     def at(part: float) -> tuple[tuple[np.ndarray, np.ndarray], float, bool]:
         trial = y + part * step
-        left = system.load - system.static_internal(trial)
-        return (trial, left), float(step @ left), bool(system.measure(left) <= enough)
+        remaining = system.load - system.static_internal(trial)
+        return (trial, remaining), float(step @ remaining), bool(system.measure(remaining) <= enough)
 
-    return searched(float(step @ rest), at)
+    return searched(float(step @ residual), at)

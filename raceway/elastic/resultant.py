@@ -8,15 +8,13 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import normal_displacement
-from raceway.elastic.contact import Contact
+from raceway.elastic.contact import Contact, PlaceLaw
 from raceway.elastic.linear_statics import StaticSolver
 from raceway.elastic.surface import Facets, locate
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
-
-    from raceway.core.jit import Kernel
 
 
 #: Rings of the ellipse, points on each, and points on the circle that gives the motion of the surroundings.
@@ -136,9 +134,7 @@ class ResultantContact(Contact):
 
     Parameters
     ----------
-    touches : list of Touch
-    nodes : int, of the assembly
-    law, params, state_size, damping : see ``Contact``
+    touches : list of Touch;  nodes : int, of the assembly;  law : see ``Contact``
 
     Notes
     -----
@@ -150,15 +146,13 @@ class ResultantContact(Contact):
     there is refused by ``refuse``.
     """
 
-    whole = True
+    resultants_only = True
 
-    def __init__(
-        self, touches: list[Touch], nodes: int, law: Kernel, params: np.ndarray, state_size: int = 0, damping: float = 0.0
-    ) -> None:
+    def __init__(self, touches: list[Touch], nodes: int, law: PlaceLaw) -> None:
         self.touches = touches
-        place, surfaces = np.array([t.centre for t in touches]), np.array([t.surface for t in touches])
-        one = np.ones(len(touches))
-        super().__init__(place, one, one.astype(int), surfaces, law, params, state_size, damping)
+        centres, surfaces = np.array([t.centre for t in touches]), np.array([t.surface for t in touches])
+        ones = np.ones(len(touches))
+        super().__init__(centres, ones, ones.astype(int), surfaces, law)
         self.local = np.array([t.local for t in touches])
         self._carried, self._approach = np.zeros(len(touches)), np.zeros(len(touches))
         self.move = _moves(touches, nodes)
@@ -166,12 +160,12 @@ class ResultantContact(Contact):
         self._last = self._last_gap()
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
-        one = self.touches[pair]
-        return int(one.ball.nodes[0]), int(one.race.nodes[0])
+        touch = self.touches[pair]
+        return int(touch.ball.nodes[0]), int(touch.race.nodes[0])
 
     def overlap(self, pair: int) -> tuple[str, float, float]:
-        one = self.touches[pair]
-        return one.name, float(self._approach[pair]), one.size
+        touch = self.touches[pair]
+        return touch.name, float(self._approach[pair]), touch.size
 
     def stable_step(self, mass: np.ndarray) -> float:
         """See ``Contact``.
@@ -194,29 +188,29 @@ class ResultantContact(Contact):
         return 2.0 / np.sqrt(largest) if largest > 0.0 else np.inf
 
     def press(self, gap: np.ndarray, rate: np.ndarray, dt: float) -> np.ndarray:
-        own, self._approach = np.maximum(gap, self._last), -gap
+        law_gap, self._approach = np.maximum(gap, self._last), -gap
         smallest = _TOLERANCE * max(-float(gap.min()), 1e-300)
         for _ in range(_ITERATIONS):
-            super().press(own, rate, dt)
-            left = np.maximum(1.0 + self.local * self.d_gap, _LEFT)
-            rest = own + self.local * self.pressure - gap
-            beyond = (own <= self._last) & (rest > 0.0)
-            if np.abs(np.where(beyond, 0.0, rest)).max() <= smallest:
-                self.d_gap /= left
-                self.d_rate /= left
-                self.pressure -= np.where(beyond, rest * self.d_gap, 0.0)
-                self.gap, self._carried = own, self.pressure.copy()
-                return own
-            own = np.maximum(own - rest / left, self._last)
+            super().press(law_gap, rate, dt)
+            slope = np.maximum(1.0 + self.local * self.d_gap, _LEFT)
+            misfit = law_gap + self.local * self.pressure - gap
+            beyond = (law_gap <= self._last) & (misfit > 0.0)
+            if np.abs(np.where(beyond, 0.0, misfit)).max() <= smallest:
+                self.d_gap /= slope
+                self.d_rate /= slope
+                self.pressure -= np.where(beyond, misfit * self.d_gap, 0.0)
+                self.gap, self._carried = law_gap, self.pressure.copy()
+                return law_gap
+            law_gap = np.maximum(law_gap - misfit / slope, self._last)
         raise ConvergenceError(f"the law of whole contacts finds no force at gaps down to {1e6 * gap.min():.3g} um.")
 
     def refuse(self) -> None:
         worst = int(np.argmin(self.gap - self._last))
         if self.gap[worst] <= self._last[worst]:
-            one = self.touches[worst]
+            touch = self.touches[worst]
             raise ConvergenceError(
-                f"{one.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
-                f"{1e9 * one.local:.3g} nm/N that the law replaces. Take a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
+                f"{touch.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
+                f"{1e9 * touch.local:.3g} nm/N that the law replaces. Take a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
             )
 
     def _last_gap(self) -> np.ndarray:
@@ -257,7 +251,7 @@ _SLOW = 0.05
 
 
 @attrs.frozen(eq=False)
-class Separation:
+class _Separation:
     """Compliances of a mesh under one contact.
 
     Attributes
@@ -316,7 +310,7 @@ class LoadedBody:
 
     def separated(
         self, contact: Footprint, pole: np.ndarray, normal: np.ndarray, semi_axes: tuple[float, float], reach: float
-    ) -> Separation:
+    ) -> _Separation:
         """Compliances under a contact of ``footprint`` with the same pole, normal and semi-axes.
 
         Parameters
@@ -340,4 +334,4 @@ class LoadedBody:
         half = normal_displacement(depth, np.linalg.norm(places, axis=1), *self._material[:2]) @ force
         difference = np.einsum("nk,nk->n", weights, along[nodes]) - half
         structural = float(difference.mean())
-        return Separation(float(contact.weights @ along[contact.nodes]) - structural, structural, float(np.ptp(difference)))
+        return _Separation(float(contact.weights @ along[contact.nodes]) - structural, structural, float(np.ptp(difference)))

@@ -12,7 +12,7 @@ from raceway.core.record import Motion
 from raceway.core.ring.orbit import Orbit, at_time
 from raceway.core.ring.ring import AT_ONCE, Evaluation, Growth, Increment
 from raceway.core.ring.system import SteppedRing, System
-from raceway.elastic.bearing import ElasticBearing, SteppedElastic
+from raceway.elastic.bearing import ElasticBearing, ElasticSystem
 from raceway.elastic.superelement_solver import CondensedSolver
 from raceway.errors import ConvergenceError
 
@@ -37,17 +37,16 @@ class ElasticRing(SteppedRing):
 
     @property
     def conservative(self) -> bool:
-        contact = self.bodies.system.contact
-        return contact is None or contact.friction is None
+        return self.bodies.system.conservative
 
     @property
     def ball_columns(self) -> int:
         return 2
 
-    def stepped(self) -> SteppedElastic:
+    def stepped(self) -> ElasticSystem:
         """The system that the loops in Python step."""
         self.bodies.system.excitation = self.outer_force
-        return SteppedElastic(self.bodies.system, self.bodies.look, self.ball_count)
+        return self.bodies.system
 
     def settle(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = _TOLERANCE
@@ -112,8 +111,8 @@ class ElasticRing(SteppedRing):
         y = self.equilibrium
         if np.abs(y[:5] - q).max() > 0.0:
             raise ConvergenceError("elastic bodies know the forces at their equilibria only", {"q": np.asarray(q)})
-        force_on_frame, system = self.in_place(y)[:5], self.bodies.system
-        _, _, gap, force, places = self.bodies.look(system, y, np.zeros_like(y))
+        force_on_frame = self.in_place(y)[:5]
+        _, _, gap, force, places = self.bodies.look(y, np.zeros_like(y))
         if self._stiffness is None:
             self._stiffness = self._tangent()
         return Evaluation(
@@ -144,17 +143,17 @@ class ElasticRing(SteppedRing):
         system.load[:5] = load
         try:
             with system.without_friction():
-                found = system.settle(guess, tolerance)
+                equilibrium = system.settle(guess, tolerance)
         finally:
             system.load = before
-        return found.y, found.iterations
+        return equilibrium.y, equilibrium.iterations
 
     def _undeformed(self, rigid: System, q: np.ndarray) -> np.ndarray:
         """(size,) undeformed bodies at the equilibrium of rigid ones near q (5,)."""
-        place, places, _ = rigid.settle(q)
-        if not places[:, 1].any():
-            places = self._on_the_line(place, places)
-        return self.bodies.guess(place, places)
+        displacement, balls, _ = rigid.settle(q)
+        if not balls[:, 1].any():
+            balls = self._on_the_line(displacement, balls)
+        return self.bodies.guess(displacement, balls)
 
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
         """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
@@ -162,20 +161,20 @@ class ElasticRing(SteppedRing):
         rigid = self.surrogate.standing(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
-            found, _ = self.settled(self._undeformed(rigid, q * only), load)
+            y, _ = self.settled(self._undeformed(rigid, q * only), load)
         self.bodies.system.solver.forget()  # it knows how the bodies follow the axial motion
-        return found
+        return y
 
     @contextmanager
     def _letting_free(self, motions: np.ndarray) -> Iterator[None]:
         """Inside, these motions (5,) of the ring are the unknowns, and no others."""
         assembly = self.bodies.system.assembly
-        kept, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
+        frame_free, unknown = assembly.frame_free.copy(), assembly.unknown.copy()
         assembly.frame_free[:], assembly.unknown[:5] = motions, motions
         try:
             yield
         finally:
-            assembly.frame_free[:], assembly.unknown[:] = kept, unknown
+            assembly.frame_free[:], assembly.unknown[:] = frame_free, unknown
 
     def _tangent(self) -> np.ndarray:
         """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free.
@@ -190,9 +189,9 @@ class ElasticRing(SteppedRing):
                 compliance = system.solver.frame_compliance()
             else:
                 forces = np.eye(5, system.size)
-                found = np.stack([system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR) for force in forces])
+                moved = np.stack([system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR) for force in forces])
                 image = system.solver.image(1.0, 0.0, 0.0)
-                compliance = found[:, :5] + found[:, :5].T - found @ np.stack([image(u) for u in found], axis=1)
+                compliance = moved[:, :5] + moved[:, :5].T - moved @ np.stack([image(u) for u in moved], axis=1)
         stiffness = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (stiffness + stiffness.T))
 
@@ -206,15 +205,14 @@ class ElasticRing(SteppedRing):
 _ANGLE = 0.25
 
 
-def from_orbit(ring: ElasticRing, orbit: Orbit, dt: float) -> Motion:
+def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
     """Near the steady orbit of the same ring with rigid bodies, at the first of its times.
 
     Notes
     -----
     The contacts carry the excitation less the inertia of ring and rotor.  Equilibria under these forces a little before and
     after tell velocity and acceleration: of a displacement at the excitation's frequency exactly.  Elastic bodies move
-    further than rigid ones; the inertia is scaled by how much further, found by a first equilibrium.  No step dt back is
-    needed: balls have velocities of their own.
+    further than rigid ones; the inertia is scaled by how much further, found by a first equilibrium.
     """
     speed = 2.0 * np.pi / orbit.period
     still = ring.equilibrium
@@ -225,8 +223,8 @@ def from_orbit(ring: ElasticRing, orbit: Orbit, dt: float) -> Motion:
 
     now, _ = ring.settled(still, load(0.0, 1.0))
     rigid = ring.surrogate.settle(still[:5])[0]
-    moved, wanted = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
-    scale = float(np.linalg.norm(moved) / max(float(np.linalg.norm(wanted)), 1e-300)) if wanted.any() else 1.0
+    moved, rigidly = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
+    scale = float(np.linalg.norm(moved) / max(float(np.linalg.norm(rigidly)), 1e-300)) if rigidly.any() else 1.0
     now, _ = ring.settled(now, load(0.0, scale))
     before, _ = ring.settled(now, load(-step, scale))
     after, _ = ring.settled(now, load(step, scale))
@@ -235,17 +233,16 @@ def from_orbit(ring: ElasticRing, orbit: Orbit, dt: float) -> Motion:
     return _motion(ring, now, v, a)
 
 
-def at_rest(ring: ElasticRing, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+def at_rest(ring: ElasticRing, ramped: bool) -> Motion:
     """At rest in the static equilibrium; without a ramp the excitation acts at once."""
     y = ring.equilibrium
-    outer = np.zeros(ring.bodies.system.size)
+    outer, still = np.zeros_like(y), np.zeros_like(y)
     if not ramped:
         outer[:5] = ring.outer_force(0.0)
-    a = ring.bodies.system.divide_mass(outer)
-    return _motion(ring, y, np.zeros_like(y), a)
+    return _motion(ring, y, still, ring.stepped().accelerations(outer, np.zeros_like(y), still, 0.0))
 
 
-def static_orbit(ring: ElasticRing, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
+def static_orbit(ring: ElasticRing, ramped: bool) -> Motion:
     """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
     y = ring.equilibrium
     if not ramped:

@@ -59,8 +59,8 @@ def contact_axes(
     pole = centre + float(np.linalg.norm(contact.place[part] - centre, axis=1).mean()) * outward
     facets = contact.pairs[pair].facets
     facet, weights, _ = facets.locate((pole + moved - middle)[None])
-    other = weights[0] @ facets.points[facets.quads[facet[0]]]
-    return ContactAxis(pole, _axes(-outward, rolling)), ContactAxis(np.asarray(other), _axes(outward, rolling))
+    partner = weights[0] @ facets.points[facets.quads[facet[0]]]
+    return ContactAxis(pole, _axes(-outward, rolling)), ContactAxis(np.asarray(partner), _axes(outward, rolling))
 
 
 def _axes(inward: np.ndarray, rolling: np.ndarray) -> np.ndarray:
@@ -122,9 +122,9 @@ class StressProfile:
         return float(np.trapezoid(1.0 / np.interp(at, self.depth, self.lengths[:, 2]), at))
 
 
-def cells_near(points: np.ndarray, cells: np.ndarray, place: np.ndarray, reach: float) -> np.ndarray:
+def cells_near(points: np.ndarray, cells: np.ndarray, where: np.ndarray, reach: float) -> np.ndarray:
     """(k,) numbers of the cells (m, 8) that have a node within ``reach`` [m] of a place (3,); arrays of one byte a cell's node."""
-    near = np.einsum("na,na->n", points - place, points - place) < reach * reach
+    near = np.einsum("na,na->n", points - where, points - where) < reach * reach
     return np.flatnonzero(near[cells].any(axis=1))
 
 
@@ -137,11 +137,11 @@ def stress_profile(axis: ContactAxis, body: HexOperator, u: np.ndarray, reach: f
     reach : elements within this distance of the pole are looked at [m], and more where they are few
     deep : end of the line [m]
     """
-    chosen = cells_near(body.points, body.cells, axis.pole, reach)
-    while len(chosen) < min(_FEWEST, len(body.cells)):
+    near = cells_near(body.points, body.cells, axis.pole, reach)
+    while len(near) < min(_FEWEST, len(body.cells)):
         reach *= 1.5
-        chosen = cells_near(body.points, body.cells, axis.pole, reach)
-    cells = body.cells[chosen]
+        near = cells_near(body.points, body.cells, axis.pole, reach)
+    cells = body.cells[near]
     corners = axis.local(body.points[cells])
     # Of the three mean edges of an element, what lies along each axis: the element's own edges where it is aligned.
     edges = np.einsum("ne,kna->kea", CORNERS, corners) / 4.0

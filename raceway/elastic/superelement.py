@@ -13,6 +13,7 @@ from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX
 from raceway.elastic.fronts import Fronts, dissect, factored
 from raceway.elastic.linear_statics import rigid_motions
+from raceway.elastic.unknowns import of_nodes
 
 #: Distance of nodes over the size of a body up to which two meshes are the same: rounding of a turn, no tenth digit.
 SAME = 1e-13
@@ -78,8 +79,8 @@ def same_bodies(
             first_points, first_cells = bodies[group[0]]
             if points.shape != first_points.shape or not np.array_equal(cells, first_cells):
                 continue
-            there = first_points @ turn(azimuth[k] - azimuth[group[0]]).T
-            if np.abs(points - there).max() <= SAME * np.abs(points).max():
+            turned = first_points @ turn(azimuth[k] - azimuth[group[0]]).T
+            if np.abs(points - turned).max() <= SAME * np.abs(points).max():
                 group.append(k)
                 break
         else:
@@ -116,15 +117,15 @@ def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: n
     cell_of = np.flatnonzero(sector == 0)
     if (np.bincount(sector, minlength=count) != len(cell_of)).any():
         return None
-    own, local = np.unique(numbers[cell_of], return_inverse=True)
+    nodes_of_sector, local = np.unique(numbers[cell_of], return_inverse=True)
     local = local.reshape(-1, 8)
     tree, size = cKDTree(points), np.abs(points).max()
     turns = np.array([turn(k * step) for k in range(count)])
-    nodes = np.empty((count, len(own)), dtype=np.int64)
+    nodes = np.empty((count, len(nodes_of_sector)), dtype=np.int64)
     for k in range(count):
-        distance, nodes[k] = tree.query(points[own] @ turns[k].T)
-        there = np.sort(nodes[k][local], axis=1), np.sort(numbers[sector == k], axis=1)
-        if distance.max() > SAME * size or (marks[nodes[k]] != marks[own]).any() or not _same_rows(*there):
+        distance, nodes[k] = tree.query(points[nodes_of_sector] @ turns[k].T)
+        rows = np.sort(nodes[k][local], axis=1), np.sort(numbers[sector == k], axis=1)
+        if distance.max() > SAME * size or (marks[nodes[k]] != marks[nodes_of_sector]).any() or not _same_rows(*rows):
             return None
     before = np.flatnonzero(np.isin(nodes[0], nodes[-1]))
     # The image of a node of the first cut plane is that node's copy in the next sector, which this sector shares.
@@ -132,7 +133,7 @@ def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: n
     behind = order[np.searchsorted(nodes[0][order], nodes[1][before])]
     if not np.array_equal(nodes[0][behind], nodes[1][before]) or np.isin(before, behind).any():
         return None
-    return Copies(points[own], local, first + nodes, turns, before, behind)
+    return Copies(points[nodes_of_sector], local, first + nodes, turns, before, behind)
 
 
 def _cut(away: np.ndarray, step: float) -> float:
@@ -142,12 +143,12 @@ def _cut(away: np.ndarray, step: float) -> float:
     return float(between[np.argmin(np.abs(between - 0.5 * step))])
 
 
-def _same_rows(one: np.ndarray, other: np.ndarray) -> bool:
-    return np.array_equal(one[np.lexsort(one.T)], other[np.lexsort(other.T)])
+def _same_rows(first: np.ndarray, second: np.ndarray) -> bool:
+    return np.array_equal(first[np.lexsort(first.T)], second[np.lexsort(second.T)])
 
 
 #: Called with the work done and that of all.
-OnFront = Callable[[int, int], None]
+_OnFront = Callable[[int, int], None]
 
 
 class Part:
@@ -180,26 +181,24 @@ class Part:
         free: np.ndarray,
         mass: float = 0.0,
         bed: tuple[np.ndarray, np.ndarray] | None = None,
-        on_front: OnFront | None = None,
+        on_front: _OnFront | None = None,
     ) -> Part:
         """Factored.
 
         Parameters
         ----------
         operator : HexOperator, whose material and formulation it has
-        free : (n,) bool, nodes that are not held
-        mass : d / c [1/s2]
+        free : (n,) bool, nodes that are not held;  mass : d / c [1/s2]
         bed : (cells (b,), matrices (b, 24, 24)) that some cells stand on, or None
-        on_front : OnFront, optional
         """
-        kept = np.unique(np.concatenate([contact, copies.before, copies.behind]))
-        dissection = dissect(copies.points, copies.cells, kept[free[kept]])
+        interface = np.unique(np.concatenate([contact, copies.before, copies.behind]))
+        dissection = dissect(copies.points, copies.cells, interface[free[interface]])
         ordered = operator.of_mesh(copies.points, copies.cells[dissection.order])
         added: dict[int, np.ndarray] = {}
         if bed is not None:
-            place = np.empty(len(dissection.order), dtype=np.int64)
-            place[dissection.order] = np.arange(len(place))
-            for cell, matrix in zip(place[bed[0]], bed[1], strict=True):
+            position = np.empty(len(dissection.order), dtype=np.int64)
+            position[dissection.order] = np.arange(len(position))
+            for cell, matrix in zip(position[bed[0]], bed[1], strict=True):
                 added[int(cell)] = added.get(int(cell), 0.0) + matrix
         diagonal = np.arange(24)
 
@@ -228,20 +227,22 @@ class Part:
 
     def places(self, nodes: np.ndarray) -> np.ndarray:
         """Where the unknowns of kept nodes stand among the kept ones, (3 nodes,)."""
-        wanted = (3 * nodes[:, None] + np.arange(3)).ravel()
-        found = np.searchsorted(self.fronts.kept, wanted)
-        assert np.array_equal(self.fronts.kept[np.minimum(found, len(self.fronts.kept) - 1)], wanted), "a held node is kept"
-        return np.asarray(found)
+        unknowns = of_nodes(nodes)
+        position = np.searchsorted(self.fronts.kept, unknowns)
+        assert np.array_equal(self.fronts.kept[np.minimum(position, len(self.fronts.kept) - 1)], unknowns), (
+            "a held node is kept"
+        )
+        return np.asarray(position)
 
     def gathered(self, force: np.ndarray, kind: type = np.float32) -> np.ndarray:
         """(3 n, copies) of nodal forces (3 nodes,), each copy in the frame of the first."""
-        found = np.einsum("cna,cab->cnb", force.reshape(-1, 3)[self.copies.nodes], self.copies.turns) * self.own[:, None]
-        return np.ascontiguousarray(found.reshape(len(found), -1).T, dtype=kind)
+        turned = np.einsum("cna,cab->cnb", force.reshape(-1, 3)[self.copies.nodes], self.copies.turns) * self.own[:, None]
+        return np.ascontiguousarray(turned.reshape(len(turned), -1).T, dtype=kind)
 
     def spread(self, values: np.ndarray, out: np.ndarray) -> None:
         """Write displacements (3 n, copies) to the nodes of all copies in ``out`` (3 nodes,)."""
-        found = values.T.reshape(len(self.copies.turns), -1, 3)
-        out.reshape(-1, 3)[self.copies.nodes] = np.einsum("cnb,cab->cna", found, self.copies.turns)
+        moved = values.T.reshape(len(self.copies.turns), -1, 3)
+        out.reshape(-1, 3)[self.copies.nodes] = np.einsum("cnb,cab->cna", moved, self.copies.turns)
 
 
 #: Solutions in single precision, each with the residual of those before: five digits more each.
@@ -302,7 +303,7 @@ class Loose:
 
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,) [m/N]."""
-        places = (3 * nodes[:, None] + np.arange(3)).ravel()
+        places = of_nodes(nodes)
         return self.flexibility[np.ix_(places, places)]
 
     @property
@@ -312,11 +313,11 @@ class Loose:
 
     def to_first(self, values: np.ndarray) -> np.ndarray:
         """Vectors (copies, 3 k) at the contacts' nodes, in the frame of the first copy."""
-        return turned_vectors(values, self.part.copies.turns.transpose(0, 2, 1))
+        return _turned_vectors(values, self.part.copies.turns.transpose(0, 2, 1))
 
     def to_copies(self, values: np.ndarray) -> np.ndarray:
         """The way back."""
-        return turned_vectors(values, self.part.copies.turns)
+        return _turned_vectors(values, self.part.copies.turns)
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""
@@ -336,15 +337,15 @@ class Loose:
 
     def solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """(3 n, m) displacements of the first copy under forces (3 n, m), refined with ``apply``, which knows no springs."""
-        found, places = np.zeros_like(force), self.unknowns
+        solution, places = np.zeros_like(force), self.unknowns
         for _ in range(REFINED):
-            rest = force - apply(found)
-            rest[places] -= self.hold * self.motions @ (self.motions.T @ found[places])
-            values = np.ascontiguousarray(rest, dtype=np.float32)
+            residual = force - apply(solution)
+            residual[places] -= self.hold * self.motions @ (self.motions.T @ solution[places])
+            values = np.ascontiguousarray(residual, dtype=np.float32)
             self.part.fronts.forward(values)
             moved = self.flexibility @ values[places].astype(float)
-            found += self.inner(values, moved.T)
-        return found
+            solution += self.inner(values, moved.T)
+        return solution
 
 
 def _mean_motions(part: Part, hold: float) -> np.ndarray:
@@ -383,7 +384,7 @@ def gather_turned(blocks, turns, copies, nodes, out):  # type: ignore[no-untyped
                     out[3 * i + a, 3 * j + b] = work[a, 0] * q[b, 0] + work[a, 1] * q[b, 1] + work[a, 2] * q[b, 2]
 
 
-def turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
+def _turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Vectors (copies, 3 k) of the nodes, turned copy by copy."""
     return np.einsum("cab,cnb->cna", turns, values.reshape(len(turns), -1, 3)).reshape(len(turns), -1)
 
@@ -394,8 +395,8 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
     from scipy.linalg.lapack import dpotri, zpotri
 
     factor, lower = cho_factor(matrix, lower=True)
-    found = (zpotri if np.iscomplexobj(factor) else dpotri)(factor, lower=lower)[0]
-    return np.asarray(np.tril(found) + np.tril(found, -1).conj().T)
+    result = (zpotri if np.iscomplexobj(factor) else dpotri)(factor, lower=lower)[0]
+    return np.asarray(np.tril(result) + np.tril(result, -1).conj().T)
 
 
 class Closed:
@@ -437,11 +438,11 @@ class Closed:
         cut = np.concatenate([before, behind])
         planes, across = schur[np.ix_(cut, cut)], schur[np.ix_(cut, order)]
         contacts = schur[np.ix_(order, order)]
-        many = count // 2 + 1
-        factors = np.empty((many, len(before), len(before)), dtype=np.complex64)
-        mixed_all = np.empty((many, len(before), part.size), dtype=np.complex64)
-        harmonics = np.empty((many, part.size, part.size), dtype=complex)
-        for h in range(many):
+        most = count // 2 + 1
+        factors = np.empty((most, len(before), len(before)), dtype=np.complex64)
+        mixed_all = np.empty((most, len(before), part.size), dtype=np.complex64)
+        harmonics = np.empty((most, part.size, part.size), dtype=complex)
+        for h in range(most):
             phase = np.exp(2j * np.pi * h / count)
             half = _folded(planes, phase, onward)
             matrix = _folded(half.conj().T, phase, onward).conj().T
@@ -475,21 +476,21 @@ class Closed:
         By reciprocity, row j of block -c is what a force j does c sectors on.
         """
         turns = self.part.copies.turns
-        local = turned_vectors(loads, turns.transpose(0, 2, 1))
+        local = _turned_vectors(loads, turns.transpose(0, 2, 1))
         columns, rows = self._under(np.asarray(local.any(axis=0)))
         out, few = np.zeros_like(local), local[:, columns]
         for away in range(len(turns)):
             out += np.roll(few @ rows[-away], away, axis=0)
-        return turned_vectors(out, turns)
+        return _turned_vectors(out, turns)
 
     def _under(self, loaded: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Loaded columns (3 k,) bool, and their rows of the blocks: few in a contact, held until others are loaded."""
         if 2 * loaded.sum() > len(loaded):
             return np.ones_like(loaded), self.blocks
-        known = self._loaded
-        if known is None or (loaded & ~known[0]).any() or 2 * loaded.sum() < known[0].sum():
-            known = self._loaded = loaded, self.blocks[:, loaded]
-        return known
+        cached = self._loaded
+        if cached is None or (loaded & ~cached[0]).any() or 2 * loaded.sum() < cached[0].sum():
+            cached = self._loaded = loaded, self.blocks[:, loaded]
+        return cached
 
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""
@@ -502,32 +503,32 @@ class Closed:
         """What nodal forces (3 nodes,) are on the contacts' nodes (copies, 3 k), and what ``backward`` needs."""
         values = self.part.gathered(force)
         self.part.fronts.forward(values)
-        kept = values[self.part.fronts.kept].astype(float)
+        on_interface = values[self.part.fronts.kept].astype(float)
         rows = np.concatenate([self._before, self._behind])
-        left = np.fft.rfft(kept[rows], axis=1)
-        contact = np.fft.rfft(kept[self._order], axis=1)
-        count = kept.shape[1]
-        solved = np.empty((len(self._before), left.shape[1]), dtype=complex)
+        transformed = np.fft.rfft(on_interface[rows], axis=1)
+        contact = np.fft.rfft(on_interface[self._order], axis=1)
+        count = on_interface.shape[1]
+        solved = np.empty((len(self._before), transformed.shape[1]), dtype=complex)
         for h in range(len(self._factors)):
-            folded = _folded(left[:, h : h + 1], np.exp(2j * np.pi * h / count), self._next)
+            folded = _folded(transformed[:, h : h + 1], np.exp(2j * np.pi * h / count), self._next)
             solved[:, h] = self._on_planes(h, folded[:, 0])
             contact[:, h] -= self._across[h].conj().T @ solved[:, h].astype(np.complex64)
-        return turned_vectors(np.fft.irfft(contact, count, axis=1).T, self.part.copies.turns), (values, solved)
+        return _turned_vectors(np.fft.irfft(contact, count, axis=1).T, self.part.copies.turns), (values, solved)
 
     def backward(self, carried: tuple[np.ndarray, np.ndarray], moved: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (copies, 3 k)."""
         values, solved = carried
-        turns, kept = self.part.copies.turns, self.part.fronts.kept
-        contact = turned_vectors(moved, turns.transpose(0, 2, 1)).T
+        turns, interface = self.part.copies.turns, self.part.fronts.kept
+        contact = _turned_vectors(moved, turns.transpose(0, 2, 1)).T
         images = np.fft.rfft(contact, axis=1)
         plane = np.empty_like(solved)
         for h in range(len(self._factors)):
             plane[:, h] = solved[:, h] - self._on_planes(h, self._across[h] @ images[:, h].astype(np.complex64))
         before = np.fft.irfft(plane, len(turns), axis=1)
-        values[kept[self._order]] = contact
-        values[kept[self._before]] = before
+        values[interface[self._order]] = contact
+        values[interface[self._before]] = before
         behind = self._next @ np.roll(before, -1, axis=1).reshape(-1, 3, len(turns))
-        values[kept[self._behind]] = behind.reshape(-1, len(turns))
+        values[interface[self._behind]] = behind.reshape(-1, len(turns))
         self.part.fronts.backward(values)
         self.part.spread(values, out)
 

@@ -13,8 +13,9 @@ from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX
 from raceway.elastic.assembly import Assembly
 from raceway.elastic.contact import Near, NodalContact
-from raceway.elastic.interface import Interface, Motions, OnProgress, interface_of, touchable, unknowns
+from raceway.elastic.interface import Interface, Motions, OnProgress, interface_of, touchable
 from raceway.elastic.newton import searched
+from raceway.elastic.unknowns import of_nodes
 from raceway.errors import ConvergenceError
 
 
@@ -26,7 +27,7 @@ class Beyond(Exception):
         self.nodes = nodes
 
 
-class Pressing:
+class _Pressing:
     """Contacts during one step.
 
     Parameters
@@ -88,7 +89,7 @@ class Pressing:
 
 
 @jit(void(int64[:, ::1], MATRIX, CUBE, MATRIX))
-def add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def]
+def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def]
     """Add B^T D B of points to a matrix (3 k, 3 k).
 
     Parameters
@@ -127,7 +128,7 @@ class BallTangent:
         ball, rings = np.unique(nodes[:, :4]), np.unique(nodes[:, 4:])
         places = [np.searchsorted(ball, nodes[:, :4]), len(ball) + np.searchsorted(rings, nodes[:, 4:])]
         matrix = np.zeros((3 * (len(ball) + len(rings)),) * 2)
-        add_points(np.concatenate(places, axis=1), np.ascontiguousarray(weights), np.ascontiguousarray(blocks), matrix)
+        _add_points(np.concatenate(places, axis=1), np.ascontiguousarray(weights), np.ascontiguousarray(blocks), matrix)
         return cls(ball, rings, matrix)
 
 
@@ -156,13 +157,13 @@ class Linearised:
 
     def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
         self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
-        used = [one.rings for one in tangents.values()]
+        used = [tangent.rings for tangent in tangents.values()]
         nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
         self._rings = face.of_rings(nodes)
         self._nodes, self._carried = self._rings.nodes, self._rings.carried
         self._size = 3 * len(self._nodes)
-        self._balls = {k: _Ball(face, k, one) for k, one in tangents.items()}
-        self._places = {k: unknowns(np.searchsorted(self._nodes, one.rings)) for k, one in tangents.items()}
+        self._balls = {k: _Ball(face, k, tangent) for k, tangent in tangents.items()}
+        self._places = {k: of_nodes(np.searchsorted(self._nodes, tangent.rings)) for k, tangent in tangents.items()}
         shared = sum(map(len, used)) > len(nodes)
         self._inverse = self._factored() if shared or self._size <= _FACTORED else self._iterated()
 
@@ -174,23 +175,23 @@ class Linearised:
         driver : ``nodes`` and ``balls`` are motions, ``frame`` is a force (m,) on the frame
         """
         face = self._face
-        rest, own = np.zeros(self._size), {}
-        for k, one in self._tangents.items():
-            own[k] = self._balls[k].alone(driver.nodes[one.ball], driver.balls[k])
-            rest[self._places[k]] += self._balls[k].across @ own[k][: 3 * len(one.ball)]
-        right = driver.nodes[self._nodes].ravel() - self._rings.times(rest)
-        on_frame = np.where(self._unknown, driver.frame - self._carried.T @ rest, 0.0)
-        found = self._inverse(np.concatenate([right, on_frame]), tolerance)
+        remaining, answers = np.zeros(self._size), {}
+        for k, tangent in self._tangents.items():
+            answers[k] = self._balls[k].alone(driver.nodes[tangent.ball], driver.balls[k])
+            remaining[self._places[k]] += self._balls[k].across @ answers[k][: 3 * len(tangent.ball)]
+        right = driver.nodes[self._nodes].ravel() - self._rings.times(remaining)
+        on_frame = np.where(self._unknown, driver.frame - self._carried.T @ remaining, 0.0)
+        solution = self._inverse(np.concatenate([right, on_frame]), tolerance)
         force, balls = np.zeros_like(driver.nodes), np.zeros_like(driver.balls)
-        for k, one in self._tangents.items():
-            at_rings = found[self._places[k]]
-            at_ball = own[k] - self._balls[k].follows @ at_rings
-            cut = 3 * len(one.ball)
-            pressed = one.matrix @ np.concatenate([at_ball[:cut], at_rings])
-            force[one.ball] += pressed[:cut].reshape(-1, 3)
-            force[one.rings] += pressed[cut:].reshape(-1, 3)
-            balls[k] = face.springs(k, len(one.ball) > 0) * at_ball[cut:]
-        return Motions(force, balls, face.on_frame(force)), np.where(self._unknown, found[self._size :], 0.0)
+        for k, tangent in self._tangents.items():
+            at_rings = solution[self._places[k]]
+            at_ball = answers[k] - self._balls[k].follows @ at_rings
+            cut = 3 * len(tangent.ball)
+            pressed = tangent.matrix @ np.concatenate([at_ball[:cut], at_rings])
+            force[tangent.ball] += pressed[:cut].reshape(-1, 3)
+            force[tangent.rings] += pressed[cut:].reshape(-1, 3)
+            balls[k] = face.springs(k, len(tangent.ball) > 0) * at_ball[cut:]
+        return Motions(force, balls, face.on_frame(force)), np.where(self._unknown, solution[self._size :], 0.0)
 
     def _factored(self) -> Callable[[np.ndarray, float], np.ndarray]:
         from scipy.linalg import lu_factor, lu_solve
@@ -218,9 +219,9 @@ class Linearised:
         rings, balls, at = self._rings, self._balls, self._places
         factors = {}
         for k, places in at.items():
-            own = rings.among(places, balls[k].stiffness)
-            own[np.arange(len(own)), np.arange(len(own))] += 1.0
-            factors[k] = lu_factor(own, overwrite_a=True, check_finite=False)
+            blocks = rings.among(places, balls[k].stiffness)
+            blocks[np.arange(len(blocks)), np.arange(len(blocks))] += 1.0
+            factors[k] = lu_factor(blocks, overwrite_a=True, check_finite=False)
 
         def pressed(moved: np.ndarray) -> np.ndarray:
             out = np.zeros_like(moved)
@@ -239,8 +240,8 @@ class Linearised:
 
         def preconditioned(right: np.ndarray) -> np.ndarray:
             moved = apart(right[:size])
-            rest = right[size:] - np.where(unknown, carried.T @ pressed(moved), 0.0)
-            frame = np.linalg.solve(small, rest)
+            on_frame = right[size:] - np.where(unknown, carried.T @ pressed(moved), 0.0)
+            frame = np.linalg.solve(small, on_frame)
             return np.concatenate([moved + along @ frame, frame])
 
         def applied(moved: np.ndarray) -> np.ndarray:
@@ -253,10 +254,10 @@ class Linearised:
         operator = LinearOperator((size + m, size + m), matvec=applied, dtype=float)
 
         def inverse(right: np.ndarray, tolerance: float) -> np.ndarray:
-            found, fault = gmres(operator, preconditioned(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
-            if fault or not np.isfinite(found).all():
+            solution, fault = gmres(operator, preconditioned(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
+            if fault or not np.isfinite(solution).all():
                 raise ConvergenceError("the contacts' linear equations have no solution: something is held by nothing")
-            return np.asarray(found)
+            return np.asarray(solution)
 
         return inverse
 
@@ -269,13 +270,13 @@ class _Ball:
     stiffness : of the rings' nodes through the ball;  across : force on them of the ball's nodes
     """
 
-    def __init__(self, face: Interface, ball: int, one: BallTangent) -> None:
+    def __init__(self, face: Interface, ball: int, tangent: BallTangent) -> None:
         from scipy.linalg import lu_factor, lu_solve
         from scipy.sparse import csr_array
 
-        cut = 3 * len(one.ball)
-        flexibility = face.of_ball(ball, one.ball)
-        sparse = csr_array(one.matrix[:cut])  # a point couples eight nodes
+        cut = 3 * len(tangent.ball)
+        flexibility = face.of_ball(ball, tangent.ball)
+        sparse = csr_array(tangent.matrix[:cut])  # a point couples eight nodes
         pressed = (
             sparse.T @ flexibility[:cut]
         ).T  # flexibility, which is symmetric, times stiffness, which is not with friction
@@ -284,9 +285,9 @@ class _Ball:
         system[:, cut:] = flexibility[:, cut:] * face.springs(ball, cut > 0)
         system[np.arange(len(system)), np.arange(len(system))] += 1.0
         self._factors = lu_factor(system, overwrite_a=True, check_finite=False)
-        self.across = csr_array(one.matrix[cut:, :cut])
+        self.across = csr_array(tangent.matrix[cut:, :cut])
         self.follows = lu_solve(self._factors, np.asfortranarray(pressed[:, cut:]), overwrite_b=True, check_finite=False)
-        self.stiffness = one.matrix[cut:, cut:] - self.across @ self.follows[:cut]
+        self.stiffness = tangent.matrix[cut:, cut:] - self.across @ self.follows[:cut]
 
     def alone(self, nodes: np.ndarray, motions: np.ndarray) -> np.ndarray:
         from scipy.linalg import lu_solve
@@ -299,13 +300,13 @@ NEWTON_LIMIT = 40
 #: Unbalanced forces of the contacts over what balances at which Newton's method ends: solutions have six digits before refinement.
 TOLERANCE = 1e-10
 #: The same over the forces by which an increment changes them: bodies' single precision leaves as much.
-INCREMENT = 1e-6
+_INCREMENT = 1e-6
 #: Relative error of a step of Newton's method: its own is no smaller.
-ENOUGH = 1e-6
+_ENOUGH = 1e-6
 #: Rounding of a gap over the largest coordinate of a place.
 ROUNDING = 8.0 * float(np.finfo(float).eps)
 #: Relative change of tangents up to which Newton's method goes on with those before: so much of its error is left by an iteration.
-CLOSE = 1e-3
+_CLOSE = 1e-3
 #: What an iteration leaves of the residual from which tangents are made anew.
 SLOW = 0.1
 
@@ -366,18 +367,17 @@ class CondensedSolver:
         u: np.ndarray,
         v: np.ndarray | None,
         dt: float,
-        locates: bool = False,
     ) -> np.ndarray:
         """(size,) increment by which forces change by ``right``: those of the contacts themselves, not their tangents.
 
         Parameters
         ----------
-        u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated;  dt : with this step [s]
-        locates : whether places on the second surfaces are looked up meanwhile
+        u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated
+        dt : with this step [s]; 0 at rest, where places on the second surfaces are looked up meanwhile
         """
         while True:
             try:
-                return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt, locates)
+                return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt)
             except Beyond as beyond:
                 self._widen(beyond.nodes)
 
@@ -393,12 +393,12 @@ class CondensedSolver:
         self._interface = self.last = None
 
 
-def _alike(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...], close: float) -> bool:
+def _alike(arrays: tuple[np.ndarray, ...], present: tuple[np.ndarray, ...], close: float) -> bool:
     """Whether arrays are equal to a part of their largest entry."""
     return all(
         a.shape == b.shape
         and float(np.abs(np.subtract(a, b, dtype=float)).max(initial=0.0)) <= close * float(np.abs(a).max(initial=0.0))
-        for a, b in zip(one, other, strict=True)
+        for a, b in zip(arrays, present, strict=True)
     )
 
 
@@ -440,9 +440,9 @@ class _Step:
         force, frame = self._linearised(close=0.0).forces(self.alone)
         return self._whole(self._moved(force, frame), force)
 
-    def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float, locates: bool) -> np.ndarray:
+    def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float) -> np.ndarray:
         """Newton's method with a line search; every state balances all forces but those of the contacts."""
-        pressed = Pressing(self.contact, self.face, u, v, self.rate, dt)
+        pressed = _Pressing(self.contact, self.face, u, v, self.rate, dt)
         start = pressed.forces()
 
         def unbalanced(state: Motions, force: Motions) -> np.ndarray:
@@ -450,31 +450,31 @@ class _Step:
 
         force, frame = self._linearised().forces(self.alone)
         state = self._moved(force, frame)
-        rest = unbalanced(state, force)
+        residual = unbalanced(state, force)
         # Gaps are differences of places: their last digit is a force, too.
         rounding = ROUNDING * np.abs(self.contact.place).max() * np.abs(self.contact.stiffness).max(initial=0.0)
-        asked = max(INCREMENT * np.abs(force.nodes).max(), rounding)
-        before, close = np.inf, CLOSE
+        enough = max(_INCREMENT * np.abs(force.nodes).max(), rounding)
+        before, close = np.inf, _CLOSE
         for _ in range(NEWTON_LIMIT):
-            if locates and pressed.locate(state.nodes):
-                rest = unbalanced(state, force)
+            if dt == 0.0 and pressed.locate(state.nodes):
+                residual = unbalanced(state, force)
             size = np.abs(start + force.nodes).max()
-            if np.abs(rest).max() <= max(TOLERANCE * size, asked, 1e-300):
+            if np.abs(residual).max() <= max(TOLERANCE * size, enough, 1e-300):
                 return self._whole(state, force)
-            if not np.isfinite(rest).all():
+            if not np.isfinite(residual).all():
                 raise ConvergenceError("forces are not finite.")
             self.solver.iterations += 1
-            if np.abs(rest).max() > SLOW * before:  # what hardly anything holds feels small errors of tangents
+            if np.abs(residual).max() > SLOW * before:  # what hardly anything holds feels small errors of tangents
                 close = 0.0
-            before = np.abs(rest).max()
-            back = self.face.moved(Motions(rest, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
-            driver = Motions(back.nodes, back.balls, self.face.on_frame(rest))
-            pressed_on, turned = self._linearised(close).forces(driver, ENOUGH)
-            change = Motions(pressed_on.nodes - rest, pressed_on.balls, turned)
+            before = np.abs(residual).max()
+            back = self.face.moved(Motions(residual, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
+            driver = Motions(back.nodes, back.balls, self.face.on_frame(residual))
+            pressed_on, turned = self._linearised(close).forces(driver, _ENOUGH)
+            change = Motions(pressed_on.nodes - residual, pressed_on.balls, turned)
             way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
-            state, force, rest = self._along(state, way, force, change, unbalanced, rest)
+            state, force, residual = self._along(state, way, force, change, unbalanced, residual)
         raise ConvergenceError(
-            f"Newton's residual in the contacts stands at {np.abs(rest).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
+            f"Newton's residual in the contacts stands at {np.abs(residual).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
         )
 
     @staticmethod
@@ -484,37 +484,37 @@ class _Step:
         force: Motions,
         change: Motions,
         unbalanced: Callable[[Motions, Motions], np.ndarray],
-        rest: np.ndarray,
+        residual: np.ndarray,
     ) -> tuple[Motions, Motions, np.ndarray]:
         """Motions and forces along a step, and what of the forces is unbalanced there."""
 
         def at(part: float) -> tuple[tuple[Motions, Motions, np.ndarray], float, bool]:
             trial, tried = state.plus(part, way), force.plus(part, change)
-            left = unbalanced(trial, tried)
-            return (trial, tried, left), float((way.nodes * left).sum()), False
+            remaining = unbalanced(trial, tried)
+            return (trial, tried, remaining), float((way.nodes * remaining).sum()), False
 
-        return searched(float((way.nodes * rest).sum()), at)
+        return searched(float((way.nodes * residual).sum()), at)
 
-    def _linearised(self, close: float = CLOSE) -> Linearised:
+    def _linearised(self, close: float = _CLOSE) -> Linearised:
         """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
         contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
-        chosen = np.flatnonzero(blocks.any(axis=(1, 2)))
-        nodes, weights, blocks = face.place[contact.nodes[chosen]], contact.weights[chosen], blocks[chosen]
+        touching = np.flatnonzero(blocks.any(axis=(1, 2)))
+        nodes, weights, blocks = face.place[contact.nodes[touching]], contact.weights[touching], blocks[touching]
         made_of = nodes, weights, blocks, self.frame, self.unknown
         if contact.friction is not None:
             close = 0.0  # a point that begins to slide changes little of its tangent and all of its force
         if solver.last is not None and solver.last[0] is face and _alike(solver.last[1], made_of, close):
             return solver.last[2]
         solver.last = None  # one at a time: they are large
-        ball = contact.pair[chosen] % face.ball_count
+        ball = contact.pair[touching] % face.ball_count
         tangents = {}
         for k in range(face.ball_count):
-            own = ball == k
-            tangents[k] = BallTangent.of(nodes[own], weights[own], blocks[own])
-        found = Linearised(face, tangents, self.frame, self.unknown)
-        solver.last = face, tuple(one.copy() for one in made_of), found
-        return found
+            of_ball = ball == k
+            tangents[k] = BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
+        linearised = Linearised(face, tangents, self.frame, self.unknown)
+        solver.last = face, tuple(array.copy() for array in made_of), linearised
+        return linearised
 
     def _moved(self, force: Motions, frame: np.ndarray) -> Motions:
         back = self.face.moved(Motions(-force.nodes, -force.balls, frame), frame)

@@ -98,10 +98,10 @@ class Facets:
 
     def locate(self, where: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Facets (n,), weights (n, 4) of their nodes, and how far outside of the rim (n,), of points ``where`` (n, 3) [m]."""
-        place = np.ascontiguousarray(where, dtype=float)
-        facet = np.ascontiguousarray(self._tree.query(place)[1], dtype=np.int64)
-        weights, outside = np.empty((len(place), 4)), np.empty(len(place))
-        _walk(place, self.points, self.quads, self._neighbours, facet, weights, outside)
+        at = np.ascontiguousarray(where, dtype=float)
+        facet = np.ascontiguousarray(self._tree.query(at)[1], dtype=np.int64)
+        weights, outside = np.empty((len(at), 4)), np.empty(len(at))
+        _walk(at, self.points, self.quads, self._neighbours, facet, weights, outside)
         return facet, weights, outside
 
 
@@ -137,16 +137,16 @@ def locate(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -> tuple[np
     from scipy.spatial import KDTree
 
     near = KDTree(points[cells].mean(axis=1)).query(where, k=min(_TRIED, len(cells)))[1].reshape(len(where), -1)
-    place = np.zeros((*near.shape, 3))
+    local = np.zeros((*near.shape, 3))
     corners = points[cells[near]]
     for _ in range(_INTERIOR_STEPS):
-        flat = place.reshape(-1, 3)
-        rest = where[:, None] - np.einsum("nkc,nkca->nka", shape_values(flat).reshape(*near.shape, 8), corners)
+        flat = local.reshape(-1, 3)
+        missing = where[:, None] - np.einsum("nkc,nkca->nka", shape_values(flat).reshape(*near.shape, 8), corners)
         slopes = np.einsum("nkcb,nkca->nkab", shape_slopes(flat).reshape(*near.shape, 8, 3), corners)
-        place = np.clip(place + np.linalg.solve(slopes, rest[..., None])[..., 0], -_FAR, _FAR)
-    best = np.abs(place).max(axis=2).argmin(axis=1)
+        local = np.clip(local + np.linalg.solve(slopes, missing[..., None])[..., 0], -_FAR, _FAR)
+    best = np.abs(local).max(axis=2).argmin(axis=1)
     rows = np.arange(len(where))
-    return cells[near[rows, best]], shape_values(place[rows, best])
+    return cells[near[rows, best]], shape_values(local[rows, best])
 
 
 #: (4, 2) signs of a facet's corners in its own coordinates.
@@ -168,8 +168,8 @@ class SurfacePoints:
     nodes: np.ndarray
     weights: np.ndarray
 
-    def __getitem__(self, chosen: np.ndarray) -> SurfacePoints:
-        return SurfacePoints(self.place[chosen], self.area[chosen], self.nodes[chosen], self.weights[chosen])
+    def __getitem__(self, rows: np.ndarray) -> SurfacePoints:
+        return SurfacePoints(self.place[rows], self.area[rows], self.nodes[rows], self.weights[rows])
 
 
 def surface_points(points: np.ndarray, quads: np.ndarray, centre: np.ndarray | None = None) -> SurfacePoints:
@@ -186,7 +186,7 @@ def surface_points(points: np.ndarray, quads: np.ndarray, centre: np.ndarray | N
     """
     root = 1.0 / np.sqrt(3.0)
     corner = points[quads]
-    found = []
+    rules = []
     for at in _CORNERS * root:
         shape = 0.25 * (1.0 + _CORNERS[:, 0] * at[0]) * (1.0 + _CORNERS[:, 1] * at[1])
         ds = 0.25 * _CORNERS[:, 0] * (1.0 + _CORNERS[:, 1] * at[1])
@@ -200,6 +200,6 @@ def surface_points(points: np.ndarray, quads: np.ndarray, centre: np.ndarray | N
             xs, xt = (radius / size * (d - (d * out).sum(axis=1, keepdims=True) * out) for d in (xs, xt))
             x = centre + radius * out
         area = np.linalg.norm(np.cross(xs, xt), axis=1)
-        found.append((x, area, np.broadcast_to(shape, (len(quads), 4))))
-    places, areas, weights = (np.stack(parts, axis=1) for parts in zip(*found, strict=True))
+        rules.append((x, area, np.broadcast_to(shape, (len(quads), 4))))
+    places, areas, weights = (np.stack(parts, axis=1) for parts in zip(*rules, strict=True))
     return SurfacePoints(places.reshape(-1, 3), areas.ravel(), np.repeat(quads, 4, axis=0), weights.reshape(-1, 4))

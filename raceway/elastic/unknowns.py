@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 _PLACES = int64[::1]
 
 
+def of_nodes(nodes: np.ndarray) -> np.ndarray:
+    """(3 n,) numbers of the displacements of nodes (n,)."""
+    return np.asarray((3 * nodes[:, None] + np.arange(3)).ravel())
+
+
 @jit(void(int64, int64, _PLACES, VECTOR, VECTOR), releases=True)
 def spread(first, last, free, values, out):  # type: ignore[no-untyped-def]
     """``out[free[i]] = values[i]`` for i from ``first`` to ``last - 1``."""
@@ -68,9 +73,9 @@ class Selection:
     @classmethod
     def of(cls, entries: np.ndarray, free: np.ndarray, tied: np.ndarray, ride: np.ndarray) -> Selection:
         """``free`` (size - frame_size,), ``tied`` (t,): sorted entries; ``ride`` (t, frame_size) of the tied ones."""
-        mine, place = _among(entries, free)
+        mine, number = _among(entries, free)
         ours, row = _among(entries, tied)
-        return cls(entries, mine, place + ride.shape[1], ours, ride[row])
+        return cls(entries, mine, number + ride.shape[1], ours, ride[row])
 
     def nodal(self, y: np.ndarray) -> np.ndarray:
         """(k,) of G y."""
@@ -91,8 +96,8 @@ def _among(entries: np.ndarray, sorted_ones: np.ndarray) -> tuple[np.ndarray, np
     """Numbers of the entries that are among the sorted ones, and where there."""
     at = np.searchsorted(sorted_ones, entries)
     at[at == len(sorted_ones)] = 0
-    found = np.flatnonzero(sorted_ones[at] == entries) if len(sorted_ones) else np.zeros(0, dtype=np.int64)
-    return found, at[found]
+    members = np.flatnonzero(sorted_ones[at] == entries) if len(sorted_ones) else np.zeros(0, dtype=np.int64)
+    return members, at[members]
 
 
 @jit(void(MATRIX, int64, VECTOR, VECTOR), releases=True)
@@ -117,7 +122,7 @@ def sums(rows, begin, u, out):  # type: ignore[no-untyped-def]
 
 
 @jit(void(int64, int64, MATRIX, int64, VECTOR, VECTOR), releases=True)
-def add_transposed(first, last, rows, begin, amounts, f):  # type: ignore[no-untyped-def]
+def _add_transposed(first, last, rows, begin, amounts, f):  # type: ignore[no-untyped-def]
     """Add rows^T times amounts (k,) to the entries ``first`` to ``last - 1`` of f; row j begins at entry ``begin``."""
     low, high, top = max(first, begin), min(last, begin + rows.shape[1]), rows.shape[0] - 1
     for g in range(0, top + 1, 4):
@@ -145,14 +150,14 @@ class MeanMotions:
     """
 
     def __init__(self, rows: csr_matrix) -> None:
-        found, starts = rows.tocsr(), rows.tocsr().indptr
-        found.sort_indices()
+        matrix, starts = rows.tocsr(), rows.tocsr().indptr
+        matrix.sort_indices()
         self.count = int(rows.shape[0])
         #: First row, first column, and the rows (k, n) themselves, views of L's numbers.
         self.blocks: list[tuple[int, int, np.ndarray]] = []
         spans: list[tuple[int, int]] = []
         for row in range(self.count):
-            columns = found.indices[starts[row] : starts[row + 1]]
+            columns = matrix.indices[starts[row] : starts[row + 1]]
             span = (int(columns[0]), int(columns[-1]) + 1) if len(columns) else (0, 0)
             if span[1] - span[0] != len(columns):
                 raise ValueError(f"row {row} of the mean motions has gaps between its columns {span[0]} and {span[1] - 1}")
@@ -161,19 +166,19 @@ class MeanMotions:
         for row in range(1, self.count + 1):
             if row < self.count and spans[row] == spans[begin]:
                 continue
-            values = found.data[starts[begin] : starts[row]].reshape(row - begin, -1)
+            values = matrix.data[starts[begin] : starts[row]].reshape(row - begin, -1)
             self.blocks.append((begin, spans[begin][0], np.ascontiguousarray(values, dtype=float)))
             begin = row
 
     def jobs(self, u: np.ndarray, out: np.ndarray) -> list[Callable[[], None]]:
         """Jobs that set out (m,) to L u; they may run at the same time."""
-        return [partial(self._sum, one, u, out) for one in self.blocks]
+        return [partial(self._sum, block, u, out) for block in self.blocks]
 
     def add(self, first: int, last: int, amounts: np.ndarray, force: np.ndarray) -> None:
         """Add L^T amounts (m,) to the entries ``first`` to ``last - 1`` of force (n,)."""
         for row, begin, values in self.blocks:
             if begin < last and first < begin + values.shape[1]:
-                add_transposed(first, last, values, begin, amounts[row : row + len(values)], force)
+                _add_transposed(first, last, values, begin, amounts[row : row + len(values)], force)
 
     @staticmethod
     def _sum(block: tuple[int, int, np.ndarray], u: np.ndarray, out: np.ndarray) -> None:

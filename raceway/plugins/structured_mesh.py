@@ -130,15 +130,7 @@ class Structured:
 
         rings, balls = bearing.rings, bearing.balls
         modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
-        row = BallBearing(
-            bearing.ball_diameter,
-            bearing.pitch_diameter,
-            bearing.ball_count,
-            bearing.contact_angle,
-            bearing.conformity_inner,
-            bearing.conformity_outer,
-        )
-        major, minor = row.ellipses(modulus)[0 if inner else 1].semi_axes(self.ball_load or BALL_LOAD)
+        major, minor = BallBearing.of(bearing).ellipses(modulus)[0 if inner else 1].semi_axes(self.ball_load or BALL_LOAD)
         return float(major), float(minor)
 
     def _ball_lines(self, bearing: Bearing) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:

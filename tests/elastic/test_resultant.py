@@ -8,7 +8,7 @@ import pytest
 from raceway import ConvergenceError
 from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.contact.laws import three_halves
-from raceway.elastic.contact import groove, plane
+from raceway.elastic.contact import PlaceLaw, groove, plane
 from raceway.elastic.resultant import Footprint, ResultantContact, Touch
 
 #: A ball of 9.5 mm on a groove of a ring, about; loads of some hundred newtons make it approach by some micrometres.
@@ -39,7 +39,7 @@ def contact(local: np.ndarray = LOCAL, damping: float = 0.0, surface: np.ndarray
         race = one([3 + 3 * k, 4 + 3 * k, 5 + 3 * k], rng)
         touches.append(Touch(f"ball {k}, inner race", one([0, 1, 2], rng), race, centre, surface, float(m), 0.0, 1e-3))
     params = np.tile([HERTZ.factor, 0.0], (len(local), 1))
-    return ResultantContact(touches, 12, three_halves, params, 0, damping)
+    return ResultantContact(touches, 12, PlaceLaw(three_halves, params, 0, damping))
 
 
 def gaps_at(loads: np.ndarray, local: np.ndarray = LOCAL) -> np.ndarray:

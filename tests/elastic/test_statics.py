@@ -44,7 +44,7 @@ class Stop:
     f(y) = y - SOFTER y^2 + k max(y - w, 0)
     """
 
-    contact, on_residual = SimpleNamespace(whole=True, refuse=lambda: None), None
+    contact, on_residual = SimpleNamespace(resultants_only=True, refuse=lambda: None), None
     SOFTER = 0.05
 
     condensed = None

@@ -14,7 +14,7 @@ from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.record import Schedule, drift, largest_share
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.time.schemes import integrate
-from raceway.elastic.bearing import SteppedElastic
+from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.friction import CoulombFriction
 from raceway.elastic.iterative_solver import sticking
 from raceway.elastic.ring import from_orbit
@@ -22,7 +22,7 @@ from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
 from validation.block import Block
 from validation.command_line import EXAMPLES
-from validation.impact import expected, model, structural_compliances
+from validation.impact import MODULUS, expected, model, moving, structural_compliances
 
 pytestmark = pytest.mark.night
 
@@ -43,11 +43,11 @@ CLOSED, OWN = {"basis": "closed form"}, {"basis": "own other method"}
 CONSERVED = {"at_most": 0.005, **CLOSED, "source": "conservation; 0.5 % of what a contact stores"}
 
 
-class Heard(SteppedElastic):
+class Heard(ElasticSystem):
     """Keeps the contact force [N] of every step."""
 
-    def __init__(self, stepped):
-        super().__init__(stepped.system)
+    def __init__(self, system):
+        super().__init__(system.assembly, system.contact, MODULUS, system.load)
         self.force = []
 
     def commit(self):
@@ -57,7 +57,7 @@ class Heard(SteppedElastic):
 
 def fallen(quarter, method, duration):
     """Record, and contact force of the whole ball at every step (steps,) [N]."""
-    start = quarter.system.moving(quarter.velocity)
+    start = moving(quarter.system, quarter.velocity)
     state = quarter.system.begin(start)
     quarter.system.internal(0.0, 1e-9, state.u, state.v)
     steps = IMPLICIT_STEPS if method.implicit else int(duration / (0.8 * quarter.system.stable_step()))
@@ -128,7 +128,7 @@ def bearing():
     built = build_model(scene, make_plan(scene))
     found = solve_equilibrium(built)
     orbit = steady_orbit(built.bearing.orbiting(built.system), built.excitation.period_s, found.displacement)
-    return built, found, from_orbit(built.system, orbit, 0.0)
+    return built, found, from_orbit(built.system, orbit)
 
 
 def test_bearing_by_two_integrators(claim, bearing):

@@ -14,10 +14,11 @@ from raceway.core.mesh.hex_mesh import FACES, boundary
 from raceway.core.record import Schedule, drift
 from raceway.core.time.schemes import integrate
 from raceway.elastic.assembly import Assembly, Body
-from raceway.elastic.bearing import ElasticSystem, SteppedElastic
-from raceway.elastic.contact import NodalContact, Pair, plane
+from raceway.elastic.bearing import ElasticSystem
+from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, plane
 from raceway.elastic.surface import Facets, surface_points
 from raceway.integrators.methods import CentralDifference, Newmark
+from validation.impact import moving
 from validation.reference import elastic
 
 YOUNG, SIDE = 2e11, 2e-3
@@ -42,7 +43,7 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     under, top = (_facets(mesh, height) for mesh, height in zip(meshes, (gap, 0.0), strict=True))
     at = surface_points(meshes[0][0], under)
     pair = Pair("upper on lower", at, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
-    contact = NodalContact([pair], assembly.nodes, linear, np.full((len(at.area), 1), penalty))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(at.area), 1), penalty)))
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
     return ElasticSystem(assembly, contact, MODULUS, assembly.reduced(force.ravel()))
@@ -74,16 +75,15 @@ def test_an_overlap_deeper_than_an_element_is_refused_with_both_lengths():
         cubes(gap=-1.2e-3)
 
 
-def moving(system: ElasticSystem, speed: float = 0.1):
-    stepped = SteppedElastic(system)
+def falling(system: ElasticSystem, speed: float = 0.1):
     velocity = np.zeros((system.assembly.nodes, 3))
     velocity[: system.assembly.starts[1], 2] = -speed
-    return stepped, stepped.moving(velocity)
+    return system, moving(system, velocity)
 
 
 def test_a_step_above_the_stable_limit_of_elements_and_contact_is_refused_with_the_limit():
     system = cubes(gap=-1e-7, penalty=1e16)
-    stepped, start = moving(system)
+    stepped, start = falling(system)
     state = stepped.begin(start)
     stepped.internal(0.0, 1e-9, state.u, state.v)
     limit = stepped.stable_step()
@@ -93,7 +93,7 @@ def test_a_step_above_the_stable_limit_of_elements_and_contact_is_refused_with_t
 
 
 def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one():
-    stepped, start = moving(cubes(gap=1e-7, penalty=1e16))
+    stepped, start = falling(cubes(gap=1e-7, penalty=1e16))
     stepped.begin(start)
     step = 0.8 * stepped.stable_step()
     words = "s at t = .* s, where contacts have closed or stiffened. Take at least"
@@ -103,7 +103,7 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
     assert named < 0.5 * step
     assert np.isfinite(caught.value.state["q"]).all()
     # What the message asks for runs through.
-    again, start = moving(cubes(gap=1e-7, penalty=1e16))
+    again, start = falling(cubes(gap=1e-7, penalty=1e16))
     record = integrate(CentralDifference(), again, start, Schedule(0.8 * named, 400, 1))
     assert record.contact_force.max() > 0.0
     # A whole face touches within one step, which costs a sixth of the energy there; above the limit it grew beyond the first.
@@ -112,10 +112,10 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
 
 @pytest.mark.parametrize("method", [CentralDifference(), Newmark()], ids=["central_difference", "newmark"])
 def test_going_on_equals_never_having_stopped(method):
-    dt = 0.5 * moving(cubes(gap=1e-7))[0].stable_step() if not method.implicit else 2e-7
+    dt = 0.5 * falling(cubes(gap=1e-7))[0].stable_step() if not method.implicit else 2e-7
 
     def run(start, first, steps):
-        stepped, begin = moving(cubes(gap=1e-7))
+        stepped, begin = falling(cubes(gap=1e-7))
         return integrate(method, stepped, begin if start is None else start, Schedule(dt, steps, 1, first=first))
 
     whole, half = run(None, 0, 40), run(None, 0, 20)

@@ -171,10 +171,10 @@ def test_forces_of_one_body_at_many_displacements():
     rows = assembly.part(2)
     columns = np.random.default_rng(2).standard_normal((rows.stop - rows.start, 3))
     wanted = np.stack([assembly.bodies[2].operator.internal_force(u).ravel() for u in columns.T], axis=1)
-    assert np.abs(assembly.mesh_force(2, columns) - wanted).max() < ROUNDING * np.abs(wanted).max()
+    assert np.abs(assembly.body_forces.of_mesh(2, columns) - wanted).max() < ROUNDING * np.abs(wanted).max()
     u = moved_by_chance(assembly)
     ring = assembly.bodies[1].operator.internal_force(u[assembly.part(1)]).ravel()
-    assert np.abs(assembly.body_force(1, u) - ring).max() < ROUNDING * np.abs(ring).max()
+    assert np.abs(assembly.body_forces.of_body(1, u) - ring).max() < ROUNDING * np.abs(ring).max()
 
 
 def test_rows_are_those_of_the_sparse_matrix():

@@ -93,7 +93,7 @@ def test_a_contact_on_nodes_that_are_held_is_said():
     in_groove[: assembly.part(1).start] = in_groove[assembly.part(1).stop :] = False
     assembly.free = assembly.free[~in_groove[assembly.free]]
     with pytest.raises(MeshError, match="outer_ring: no node of its groove below a contact is free: its seat reaches"):
-        system.condensed.increment(1.0, 0.0, 0.0, np.zeros(system.size), np.zeros(3 * system.assembly.nodes), None, 0.0, 0.5)
+        system.condensed.increment(1.0, 0.0, 0.0, np.zeros(system.size), np.zeros(3 * system.assembly.nodes), None, 0.0)
 
 
 @pytest.mark.parametrize("ring", ["inner", "outer"])

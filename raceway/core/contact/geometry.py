@@ -31,6 +31,11 @@ class BallBearing:
     conformity_inner: float
     conformity_outer: float
 
+    @classmethod
+    def of(cls, bearing: object) -> BallBearing:
+        """The lengths of the same names of a scene's bearing, or of one of its rows."""
+        return cls(*(getattr(bearing, field.name) for field in attrs.fields(cls)))
+
     @property
     def centre_distance(self) -> float:
         """B: distance of the groove centres at rest."""

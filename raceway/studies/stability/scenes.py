@@ -270,7 +270,7 @@ def _loaded_at_rest(bench: Bench) -> tuple[Any, Motion, Equilibrium]:
     """Elastic bodies at rest, as a force meets them."""
     model = bench.model()
     equilibrium, system = solve_equilibrium(model), cast("Any", model.system)
-    return system, at_rest(system, equilibrium.displacement, equilibrium.ball, False), equilibrium
+    return system, at_rest(system, False), equilibrium
 
 
 def sudden_force(rows: Rows, bench: Bench, integrator: str) -> None:

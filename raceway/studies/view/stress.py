@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.bodies.elastic_contacts import ElasticBodies
+    from raceway.bodies.elastic_contacts import ElasticBodies, ElasticPoints
     from raceway.core.hexahedron.operator import HexOperator
     from raceway.pipeline.result import Result
 
@@ -196,7 +196,7 @@ def contact_stress_files(result: Result) -> dict[str, bytes]:
     RacewayError
         pyvista or matplotlib is missing.
     """
-    bodies: ElasticBodies = result.model.bearing  # type: ignore[assignment]
+    bodies: ElasticPoints = result.model.bearing  # type: ignore[assignment]
     sides = below_contacts(bodies, result.model, result.equilibrium)
     if not sides:
         return {}
