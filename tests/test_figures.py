@@ -79,8 +79,8 @@ def of_a_comparison() -> list[Figure]:
     dots = [row for row in whole.rows if row.point["excitation.speed_rpm"] == 10000]
     axes = tuple(axis for axis in whole.axes if axis.key != "excitation.speed_rpm")
     return [
-        comparison.draw(attrs.evolve(whole, rows=tuple(far)).to_dict()),
-        comparison.draw(attrs.evolve(whole, axes=axes, rows=tuple(dots)).to_dict()),
+        comparison.draw(attrs.evolve(whole, rows=tuple(far))),
+        comparison.draw(attrs.evolve(whole, axes=axes, rows=tuple(dots))),
     ]
 
 

@@ -1,4 +1,4 @@
-"""Figures of matplotlib: new ones without a window, a caller's axes, PNG files."""
+"""Figures of matplotlib: their look, new ones without a window, a caller's axes, PNG files."""
 
 from __future__ import annotations
 
@@ -12,6 +12,19 @@ from raceway.storage.files import write_whole
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+#: Colours of curves, that of secondary marks, and that of the grid.
+COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3aa6b9", "#b0457b")
+GREY, GRID = "#555f6b", "#e3e7eb"
+MARKERS = "os^DvPX*"
+
+
+def dress(axes: Axes) -> None:
+    """A grid below the curves, and no frame above and to the right."""
+    axes.grid(True, color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
 
 
 def new_figure(width: float, height: float) -> Figure:

@@ -122,7 +122,7 @@ class Comparison(Answer, Findings):
         from raceway.points.compare_picture import draw_on
 
         quantity = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
-        return draw_on(self.to_dict(), quantity, ax)
+        return draw_on(self, quantity, ax)
 
     def _shown(self) -> tuple[str, list[Fact]]:
         names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
@@ -149,7 +149,7 @@ class Comparison(Answer, Findings):
         """All quantities."""
         from raceway.points.compare_picture import draw
 
-        return draw(self.to_dict())
+        return draw(self)
 
     def report(self) -> Iterator[Part]:
         """The effects, the largest first, a line for each point, and the other words."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import new_figure
+from raceway.out.picture import dress, new_figure
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
@@ -39,9 +39,7 @@ def draw(content: ReadTables) -> Figure:
         _curve(panel, content["rows"], column, factor, "")
         _marks(panel, [x for one in (content, *content["doubled"]) for x in one["labels"]], column, factor)
         panel.set_ylabel(words)
-        panel.grid(True, color="#e3e7eb", linewidth=0.8)
-        panel.set_axisbelow(True)
-        panel.spines[["top", "right"]].set_visible(False)
+        dress(panel)
     panels[-1].set_xlabel(content["key"])
     peaks = sorted((x for x in content["labels"] if x["kind"] == "peak"), key=lambda x: -float(x["swing"]))[:_PEAKS]
     for peak in peaks:

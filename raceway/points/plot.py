@@ -16,10 +16,9 @@ import numpy as np
 from raceway import __version__
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.out.picture import new_figure
+from raceway.out.picture import COLOURS, MARKERS, dress, new_figure
 from raceway.out.quantities import AXIAL_DISPLACEMENT, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
-from raceway.points.axes import shown as _text
 from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.storage.files import write_whole
@@ -210,7 +209,7 @@ def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> Non
 def _values(array: np.ndarray) -> list[Any]:
     """Different values as plain Python objects, numbers in rising order."""
     different = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))
-    return sorted(different) if all(is_number(value) for value in different) else different
+    return sorted(different) if _numeric(different) else different
 
 
 def _list_at(dataset: Dataset, fixed: ReadTables) -> Dataset:
@@ -259,11 +258,7 @@ def _ordered(part: Dataset, axes: ReadTables) -> Dataset:
     return part.isel(places).transpose(*axes, ...)
 
 
-_WORDS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3aa6b9", "#b0457b")
-_MARKERS = "os^DvPX*"
-_GRID = "#e3e7eb"
 _NO_RESULT = "#c3cad1"
-_LIST = "point"
 _FORMATS = (".png", ".svg")
 _DOTS_PER_INCH = 150
 
@@ -302,18 +297,18 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
         low, high = low - 0.01 * abs(low or 1.0), high + 0.01 * abs(high or 1.0)
     for panel, (value, part) in enumerate(parts):
         axes = grid.flat[panel]
-        axes.set_title("" if panels is None else f"{panels} = {_text(value)}{_unit(data, panels)}", fontsize=10.5)
+        axes.set_title("" if panels is None else f"{panels} = {shown(value)}{_unit(data, panels)}", fontsize=10.5)
         first = panel % columns == 0
         if kind == "curves":
             _curves(axes, part, x, y, label if first else "")
         elif kind == "map":
-            shown = _map(axes, part, x, y or "", (low, high), first)
+            mappable = _map(axes, part, x, y or "", (low, high), first)
         else:
-            shown = _surface(axes, part, x, y or "", (low, high), label)
+            mappable = _surface(axes, part, x, y or "", (low, high), label)
     for axes in grid.flat[len(parts) :]:
         axes.set_visible(False)
     if kind == "map":
-        bar = figure.colorbar(shown, ax=grid, shrink=0.95, pad=0.015)
+        bar = figure.colorbar(mappable, ax=grid, shrink=0.95, pad=0.015)
         bar.set_label(label, fontsize=11)
         bar.outline.set_visible(False)
     if kind == "curves" and y is not None:
@@ -359,7 +354,7 @@ def _figure(kind: str, count: int) -> Figure:
 
 def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
-    scattered = _LIST in data.dims
+    scattered = LIST in data.dims
     values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
     values = sorted(values) if y is not None and _numeric(values) else values
     places, names = _places(data[x].values)
@@ -368,11 +363,11 @@ def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> N
             series, at = data, places
         elif scattered:
             keep = np.array([coordinate == value for coordinate in data[y].values.tolist()])
-            series, at = data.isel({_LIST: np.flatnonzero(keep)}), places[keep]
+            series, at = data.isel({LIST: np.flatnonzero(keep)}), places[keep]
         else:
             series, at = data.sel({y: value}), places
         axes.plot(
-            at, series.values, label=_text(value), color=_colour(k, values), marker=_MARKERS[k % len(_MARKERS)],
+            at, series.values, label=shown(value), color=_colour(k, values), marker=MARKERS[k % len(MARKERS)],
             markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if scattered or names else 1.6,
         )  # fmt: skip
         if scattered and len(at) > 40:
@@ -387,26 +382,26 @@ def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float
     """A cell round each point; contours where every point has a result."""
     low, high = limits
     axes.set_ylabel(_axis(data, y) if first else "", fontsize=11)
-    if _LIST in data.dims:
+    if LIST in data.dims:
         points = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
         _dress(axes, data, x)
         return points
     at_x, at_y = data[x].values, data[y].values
     values = data.transpose(y, x).values
     axes.set_facecolor(_NO_RESULT)
-    shown = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", cmap="viridis", vmin=low, vmax=high)
+    cells = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", cmap="viridis", vmin=low, vmax=high)
     if np.isfinite(values).all() and min(values.shape) >= 4:
         lines = axes.contour(at_x, at_y, values, levels=8, colors="white", linewidths=0.8, alpha=0.85)
         axes.clabel(lines, fontsize=8.5, fmt="%.4g")
     _dress(axes, data, x)
     axes.grid(False)
-    return shown
+    return cells
 
 
 def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], label: str) -> Collection:
     across, along = np.meshgrid(data[x].values, data[y].values)
     values = data.transpose(y, x).values
-    shown = axes.plot_surface(
+    surface = axes.plot_surface(
         across, along, values, cmap="viridis", vmin=limits[0], vmax=limits[1], rcount=200, ccount=200,
         linewidth=0.3, edgecolor="#ffffff55", antialiased=True,
     )  # fmt: skip
@@ -416,15 +411,13 @@ def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, fl
     axes.tick_params(labelsize=8.5)
     axes.view_init(elev=26.0, azim=-128.0)
     axes.set_box_aspect((1.25, 1.1, 0.8), zoom=1.0)
-    return shown
+    return surface
 
 
 def _dress(axes: Axes, data: DataArray, x: str) -> None:
     axes.set_xlabel(_axis(data, x), fontsize=11)
     axes.tick_params(labelsize=10)
-    axes.grid(True, color=_GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
+    dress(axes)
     for axis in (axes.xaxis, axes.yaxis):
         formatter = axis.get_major_formatter()
         if hasattr(formatter, "set_useOffset"):
@@ -438,14 +431,14 @@ def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     plain = values.tolist()
     if _numeric(plain):
         return np.asarray(values, dtype=float), []
-    names = list(dict.fromkeys(_text(value) for value in plain))
-    return np.array([names.index(_text(value)) for value in plain], dtype=float), names
+    names = list(dict.fromkeys(shown(value) for value in plain))
+    return np.array([names.index(shown(value)) for value in plain], dtype=float), names
 
 
 def _colour(rank: int, values: list[Any]) -> str | tuple[float, float, float, float]:
     """Ordered colours for numbers, distinct ones for words."""
     if not _numeric(values) or len(values) == 1:
-        return _WORDS[rank % len(_WORDS)]
+        return COLOURS[rank % len(COLOURS)]
     from matplotlib import colormaps
 
     return colormaps["viridis"](0.88 * rank / (len(values) - 1))
@@ -544,7 +537,7 @@ def layout(
     if not bool(data.notnull().any()):
         raise RacewayError(f"no point of this part has a {name}: {selection.gaps or 'none was finished'}")
     _refuse_strangers(selection, x, y)
-    numeric = [key for key, values in axes.items() if all(is_number(v) for v in values)]
+    numeric = [key for key, values in axes.items() if _numeric(values)]
     kind = kind or _kind(axes, numeric)
     x = x or _best(axes, [key for key in numeric or axes if key != y], kind)
     other_axes = [key for key in axes if key != x]

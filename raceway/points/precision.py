@@ -19,7 +19,7 @@ from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import given_axes
 from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import PRECISION
+from raceway.out.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
 from raceway.out.wrapping import Words
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
@@ -110,10 +110,8 @@ class Precision(Answer):
         if not reference.values:
             return out
         apart = minus(values, reference.values)
-        size = reference.size
-        scale = {name: size if name in ("z_real", "z_imag") else abs(reference.values[name]) or 1.0 for name in apart}
-        out["errors"] = {name: abs(apart[name]) / scale[name] for name in apart}
-        out["error"] = distance(apart) / size
+        out["errors"] = {name: abs(share) for name, share in reference.relative(apart).items()}
+        out["error"] = distance(apart) / reference.size
         out["at_bound"] = not out["error"] > EXACT * reference.bound
         return out
 
@@ -175,15 +173,14 @@ class Precision(Answer):
             if not rows:
                 continue
             apart = minus(reference.values, base.values)
-            scale = {n: base.size if n in ("z_real", "z_imag") else abs(base.values[n]) or 1.0 for n in apart}
-            known = apart.keys() >= {"z_real"} or ("axial_displacement" in apart and "z_real" not in base.values)
+            known = Z_REAL.name in apart or (AXIAL_DISPLACEMENT.name in apart and Z_REAL.name not in base.values)
             found.append(
                 {
                     "model": rows[0]["model"],
                     "base": physics == self.base,
                     "reference": _reference_table(reference),
                     "difference": distance(apart) / base.size if known else None,
-                    "differences": {name: apart[name] / scale[name] for name in apart},
+                    "differences": base.relative(apart),
                     "front": self.front(physics),
                     "cheapest": self.cheapest(physics),
                 }

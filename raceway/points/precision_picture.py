@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.out.picture import new_figure
+from raceway.out.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure
 from raceway.out.quantities import P0, PEAK_BALL_LOAD, K
 from raceway.storage.tables import Tables
 
@@ -64,9 +64,6 @@ def _places(point: np.ndarray, half: np.ndarray) -> list[tuple[np.ndarray, float
     ]
 
 
-_COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#a83250", "#3a9aa8")
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
-_GREY = "#555f6b"
 #: Errors below are drawn here: a logarithm has no zero.
 _LEAST = 1e-16
 
@@ -184,26 +181,24 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     for k in base:
         series.setdefault(_series(result["rows"][k]), []).append(k)
     for number, (name, members) in enumerate(series.items()):
-        tone, mark = _COLOURS[number % len(_COLOURS)], _MARKERS[(number // 2) % len(_MARKERS)]
+        tone, mark = COLOURS[number % len(COLOURS)], MARKERS[(number // 2) % len(MARKERS)]
         xy = [_point(result["rows"][k], least) for k in members]
         panel.plot(*zip(*xy, strict=True), color=tone, marker=mark, linewidth=1.0, alpha=0.9, label=name)
         labels += [(_rung(result["rows"][k]), point, tone) for k, point in zip(members, xy, strict=True)]
     if foreign:
         xy = [_point(result["rows"][k], least) for k in foreign]
         label = "other models, against their own references"
-        panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=_GREY, label=label)
-        labels += [(_words(result["rows"][k]["setting"]), point, _GREY) for k, point in zip(foreign, xy, strict=True)]
+        panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=GREY, label=label)
+        labels += [(_words(result["rows"][k]["setting"]), point, GREY) for k, point in zip(foreign, xy, strict=True)]
     _front(panel, result, least)
     if bound:
-        panel.axhspan(bound / 30.0, bound, color="#e3e7eb", zorder=0)
-        panel.axhline(bound, color=_GREY, linewidth=0.8, linestyle=":", label="bound of the reference, grey below")
+        panel.axhspan(bound / 30.0, bound, color=GRID, zorder=0)
+        panel.axhline(bound, color=GREY, linewidth=0.8, linestyle=":", label="bound of the reference, grey below")
     panel.set_xscale("log")
     panel.set_yscale("log")
     panel.set_xlabel("time of the run, fastest repeat, compiling apart  [s]")
     panel.set_ylabel("relative error against the reference")
-    panel.grid(True, which="major", color="#e3e7eb", linewidth=0.8)
-    panel.set_axisbelow(True)
-    panel.spines[["top", "right"]].set_visible(False)
+    dress(panel)
     return labels
 
 

@@ -22,6 +22,7 @@ import attrs
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
+from raceway.out.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.engine import measured_once
@@ -212,6 +213,7 @@ _TIGHT = 1e-10
 _FLOOR = 1e-10
 
 Values = dict[str, float]
+_PARTS_OF_Z = (Z_REAL.name, Z_IMAG.name)
 
 
 @attrs.frozen
@@ -227,6 +229,11 @@ class Reference:
         """Size that relative errors of the main quantity refer to."""
         return main_size(self.values)
 
+    def relative(self, difference: Values) -> Values:
+        """Of differences from it: parts of Z over its size, other quantities over themselves."""
+        sizes = {name: self.size if name in _PARTS_OF_Z else abs(self.values[name]) or 1.0 for name in difference}
+        return {name: difference[name] / sizes[name] for name in difference}
+
     @property
     def bound(self) -> float:
         """Relative, of the main quantity."""
@@ -240,9 +247,9 @@ def main_size(values: Mapping[str, float]) -> float:
 
 def distance(values: Mapping[str, float]) -> float:
     """Length of the main quantity, or of a difference of it: Z as a complex number."""
-    if "z_real" in values:
-        return abs(complex(values["z_real"], values["z_imag"]))
-    return abs(values["axial_displacement"])
+    if Z_REAL.name in values:
+        return abs(complex(*(values[name] for name in _PARTS_OF_Z)))
+    return abs(values[AXIAL_DISPLACEMENT.name])
 
 
 def minus(a: Mapping[str, float], b: Mapping[str, float]) -> Values:
@@ -347,7 +354,7 @@ def _finest(group: list[Setting]) -> tuple[int, int]:
 def _all(values: Values, relative: float) -> Values:
     """The same relative bound for every quantity; parts of Z are measured by |Z|."""
     size = main_size(values)
-    return {name: relative * (size if name in ("z_real", "z_imag") else abs(value)) for name, value in values.items()}
+    return {name: relative * (size if name in _PARTS_OF_Z else abs(value)) for name, value in values.items()}
 
 
 def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Reference:
