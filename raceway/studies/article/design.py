@@ -309,7 +309,6 @@ class Curve:
 class Surface:
     """Curves of one setting at all of its axial loads; arrays are (loads, speeds)."""
 
-    setting: Setting
     loads: tuple[float, ...]
     speeds: tuple[float, ...]
     curves: list[Curve]
@@ -343,7 +342,7 @@ class Curves:
 
     def surface(self, setting: Setting) -> Surface:
         loads = self.design.loads_of(setting)
-        return Surface(setting, loads, self.design.speeds_of(setting), [self.curve(setting, load) for load in loads])
+        return Surface(loads, self.design.speeds_of(setting), [self.curve(setting, load) for load in loads])
 
     def surfaces(self, excitation: ReadTables) -> Iterator[tuple[Tables, Surface]]:
         """Every way to model the bearing under an excitation, and its curves."""
