@@ -7,12 +7,12 @@ import json
 import pytest
 
 from raceway import load_scene, scene_from_dict
-from raceway.cli.frame import slug
 from raceway.out.page import Page
 from raceway.plugins.pictures import picture
 from raceway.points.plot import head, select
 from raceway.points.store import row_key
 from raceway.scene.changes import parse_change, titled
+from raceway.storage.files import slug
 from raceway.testing import b7206c, default_registry, run
 from tests.stores import SPEEDS, made
 from validation.command_line import EXAMPLES, invoke

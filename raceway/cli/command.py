@@ -31,13 +31,12 @@ from raceway.cli.frame import (
     set_keys,
     show,
     show_progress,
-    slug,
     tell_faults,
 )
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.answer import Answer, Interrupted
-from raceway.storage.files import writable
+from raceway.storage.files import slug, writable
 
 Value = Any
 #: Types of options by annotation; of others, texts.

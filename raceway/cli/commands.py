@@ -239,7 +239,7 @@ DEVELOPERS = (
 SECTIONS = {
     "Answers": ANSWERS,
     "Trust": TRUST,
-    "Studies": (Later("study", "raceway.studies.command:study", "Whole studies that end in a page, and others' studies."),),
+    "Studies": (Later("study", "raceway.cli.study:study", "Whole studies that end in a page, and others' studies."),),
     "Developers": (Later("dev", "raceway.cli.main:dev", "Plug-ins: templates, conformance, laws, schema, caches."),),
 }
 #: Another name of a command -> the command.

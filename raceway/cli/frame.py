@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import re
-import unicodedata
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
@@ -132,27 +129,6 @@ def keeping(what: str, file: Path) -> Iterator[None]:
         if file.is_file():
             warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
         raise
-
-
-def slug(title: str) -> str:
-    """A folder's name from a title: letters, digits, dots and dashes, at most 80, then what the second line says was changed.
-
-    Notes
-    -----
-    Accents are left out.  A title with letters of another script, or more of them, ends in a hash of it.  Other changes make another name: where
-    letters of them are lost, or more than 100, a hash of all stands at the end.
-    """
-    first, _, changes = title.partition("\n")
-    latin = unicodedata.normalize("NFKD", first)
-    text = re.sub(r"[^A-Za-z0-9._]+", "-", "".join(s for s in latin if not unicodedata.combining(s))).strip("-._")
-    name = text[:80].strip("-._") or "scene"
-    if len(text) > 80 or any(sign.isalnum() and not sign.isascii() for sign in latin):  # titles stay apart
-        name += f"-{hashlib.sha256(first.encode()).hexdigest()[:8]}"
-    plain = changes.replace(" = ", "=").replace(", ", ",")
-    told = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)
-    if told != plain or len(told) > 100:
-        told = f"{told[:100]}-{hashlib.sha256(plain.encode()).hexdigest()[:8]}"
-    return f"{name}-{told}" if told else name
 
 
 def faults(registry: Registry) -> list[str]:

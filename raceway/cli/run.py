@@ -24,14 +24,13 @@ from raceway.cli.frame import (
     require_matplotlib,
     show,
     show_progress,
-    slug,
     tell_faults,
 )
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
 from raceway.out.progress import ProgressBar
-from raceway.storage.files import without_nan, writable, write_json, write_whole
+from raceway.storage.files import slug, without_nan, writable, write_json, write_whole
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Report

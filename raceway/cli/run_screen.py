@@ -20,8 +20,8 @@ from raceway.cli.run_parts import (
     tangent_rows,
 )
 from raceway.framework.shown import percents
+from raceway.out.damping import dry_damping_note
 from raceway.out.quantities import (
-    C_ERROR,
     KYY,
     KYY_TILTS_FOLLOW,
     MASS,
@@ -40,48 +40,6 @@ from raceway.out.table import Row, micro, sections, tilt_words, written
 from raceway.out.wrapping import Words
 from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
-
-#: Damping over stiffness by the rule of thumb of rotor programs [s]: ROSS 2.3 takes c = 1.25e-5 s k for a ball bearing without a
-#: given damping (``ross.BallBearingElement``), the middle of its "typical range" of 0.25e-5 to 2.5e-5 s.
-RULE_OF_THUMB_S = 1.25e-5
-#: Part of the rule's damping below which a damping is next to nothing: a twentieth of the lower end of the typical range.
-_NOTHING = 1e-2
-
-
-#: What to do in the scene.
-_REMEDY = "take contact.damping = 'band', or give contact.time_constant, contact.loss_factor or contact.damping"
-
-
-def dry_damping_note(content: ReadTables) -> str | None:
-    """The sentence for one run.
-
-    Parameters
-    ----------
-    content : of result.json
-
-    Returns
-    -------
-    None where nothing is identified, or where C is not far below the rule of thumb.
-    """
-    found = content["identification"]
-    if found is None:
-        return None
-    error, damping = C_ERROR.of(content), C.of(content)
-    resolved = error is None or abs(damping) > error
-    return dry_damping_words(damping if resolved else None, K.of(content))
-
-
-def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _REMEDY) -> str | None:
-    """The sentence for C [N s/m], None where it is not resolved, and K [N/m]; None where C is not far below the rule of thumb."""
-    rule = RULE_OF_THUMB_S * abs(stiffness)
-    if damping is not None and abs(damping) > _NOTHING * rule:
-        return None
-    told = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
-    return (
-        f"C {told}: a dry bearing damps next to nothing, where the rule of thumb of rotor programs, 1.25e-5 s times K, gives "
-        f"{rule:.2g} N s/m. Lubricant, cage and seats damp more: {remedy}"
-    )
-
 
 #: An orbit whose minor axis is a smaller share of the major one is a line: the rest is rounding.
 _LINE = 1e-9

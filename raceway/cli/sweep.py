@@ -26,7 +26,6 @@ from raceway.cli.frame import (
     set_keys,
     show,
     show_progress,
-    slug,
     tell_faults,
 )
 from raceway.errors import RacewayError, SceneError
@@ -34,7 +33,7 @@ from raceway.framework.registry import registry_with
 from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
 from raceway.out.table import micro, rows_table, written
 from raceway.out.wrapping import Words
-from raceway.storage.files import writable
+from raceway.storage.files import slug, writable
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

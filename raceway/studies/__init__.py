@@ -5,7 +5,6 @@ rotor       coefficients for ROSS, Nastran and Ansys, as CSV and JSON; the beari
 fit         numbers of a scene from measured data, with what these do not determine
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
-command     ``raceway study``
 shaft       the rotor that ``rig`` and ``measured`` set the bearing in
 """
 
@@ -42,7 +41,7 @@ class Rig:
     help: ClassVar[str] = "A test rig's signals, and the bearing read back from them."
 
     def command(self) -> click.Command:
-        from raceway.cli.command import Command
+        from raceway import Command
 
         example = "raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03"
         return Command("rig", "raceway.studies.rig.study:rig", self.help, example, folder="-rig").click()

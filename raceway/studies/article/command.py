@@ -26,12 +26,11 @@ from raceway.cli.frame import (
     set_keys,
     show,
     show_progress,
-    slug,
     tell_faults,
 )
 from raceway.errors import Mistake, SceneError
 from raceway.framework.registry import registry_with
-from raceway.storage.files import writable
+from raceway.storage.files import slug, writable
 
 if TYPE_CHECKING:
     from raceway.out.answer import Answer

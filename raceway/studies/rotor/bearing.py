@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.scene.inputs import SceneSource
+from raceway.storage.files import slug
 from raceway.studies.rotor.node_bearing import NodeBearing, node_bearing
 from raceway.studies.rotor.ross_file import generation, ross, through_points
 

@@ -17,9 +17,9 @@ from collections.abc import Mapping
 import attrs
 import numpy as np
 
-from raceway.cli.run_screen import dry_damping_words
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.doors import member
+from raceway.out.damping import dry_damping_words
 from raceway.points.axes import shown
 from raceway.points.plot import LIST, Selection, listed, only_axes
 from raceway.scene.tables import TIME_CONSTANTS

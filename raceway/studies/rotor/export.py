@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.cli.frame import slug
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.registry import default_registry
@@ -23,7 +22,7 @@ from raceway.points.plot import head, parse_at, select
 from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.scene.inputs import tidy
-from raceway.storage.files import write_whole
+from raceway.storage.files import slug, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, largest, unit
 from raceway.studies.rotor.files import PROGRAMS

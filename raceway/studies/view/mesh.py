@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
-from raceway.cli.frame import slug
 from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
@@ -20,7 +19,7 @@ from raceway.out.answer import Answer, Part
 from raceway.out.table import Row, grouped, number, sections
 from raceway.out.wrapping import Words
 from raceway.plugins.system_libraries import refuse_pictures
-from raceway.storage.files import write_whole
+from raceway.storage.files import slug, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.view.pictures import INK, Plotter, look_from, rendered
 
