@@ -331,11 +331,8 @@ def _point_stress(moduli, B, point, weight, columns, values, stress):
         yz += B[point, 4, j] * value
         zx += B[point, 5, j] * value
     bulk, twice = moduli[0] * (xx + yy + zz), 2.0 * moduli[1]
-    stress[0], stress[1], stress[2] = (
-        weight * (bulk + twice * xx),
-        weight * (bulk + twice * yy),
-        weight * (bulk + twice * zz),
-    )
+    stress[0], stress[1] = weight * (bulk + twice * xx), weight * (bulk + twice * yy)
+    stress[2] = weight * (bulk + twice * zz)
     stress[3], stress[4], stress[5] = weight * moduli[1] * xy, weight * moduli[1] * yz, weight * moduli[1] * zx
 
 

@@ -552,10 +552,8 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
     eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     solution = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
-    closure, limits = (
-        Closure(problem.closing, problem.symmetry.order, rated),
-        Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience),
-    )
+    closure = Closure(problem.closing, problem.symmetry.order, rated)
+    limits = Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience)
     samples = solution.samples(problem.push(path.nodes))
     status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
     if status != SOLVED:

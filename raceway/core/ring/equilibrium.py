@@ -8,6 +8,16 @@ balls p keeps convexity.  The compliance of elastic bodies keeps it as long as t
 off them, which the kernels see to.  So a trust-region Newton iteration finds the one minimum from anywhere.  Tilts are scaled by
 the arm R so that all unknowns are lengths.
 
+``settle`` and ``find_root``, for forces without a potential, are of the signature ``raceway.core.signatures.SETTLE``::
+
+    settle(forces, linear, tolerance, t, state, response, report) -> status
+
+    linear      its stiffness is added to the contacts' (the shaft's against tilts)
+    tolerance   residual over the sum of the inner races' forces and the loads
+    t           time [s]: balls that orbit stand still where they are then
+    report      (2,) out: iterations, relative residual
+    status      CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE or RUN_AWAY (nothing holds the ring)
+
 References
 ----------
 More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (1983).
@@ -282,20 +292,7 @@ def _accept(trial, new, state, now):
 
 @jit(SETTLE, allocates=True)
 def settle(forces, linear, tolerance, t, state, response, report):
-    """Move a state at rest to the equilibrium of ``linear.load`` (5,); the response is the contacts' there.
-
-    Parameters
-    ----------
-    linear : its stiffness is added to the contacts' (the shaft's against tilts)
-    tolerance : residual over the sum of the inner races' forces and the loads
-    t : time [s]: balls that orbit stand still where they are then
-    report : (2,) out: iterations, relative residual
-
-    Returns
-    -------
-    int
-        ``CONVERGED``, ``NOT_CONVERGED``, ``BALLS_FAILED``, ``NOT_FINITE`` or ``RUN_AWAY`` (nothing holds the ring).
-    """
+    """Move a state at rest to the equilibrium of ``linear.load`` (5,), the least potential; the response is the contacts' there."""
     constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work
     arm, scale = constants.scalars[TILT_ARM], np.ones(5)
     scale[3], scale[4] = 1.0 / arm, 1.0 / arm
@@ -361,7 +358,7 @@ _HALVINGS = 30
 
 @jit(SETTLE, allocates=True)
 def find_root(forces, linear, tolerance, t, state, response, report):
-    """Same arguments and result as ``raceway.core.ring.equilibrium.settle``; slips are taken from ``state`` as committed."""
+    """The same where forces have no potential, by Newton's method; slips are taken from ``state`` as committed."""
     constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work
     # No rates; the columns of slips hold the committed ones.
     still, history = np.zeros(5), np.empty_like(ball)

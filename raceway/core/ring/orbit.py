@@ -138,39 +138,27 @@ def orbit_near(
     ConvergenceError
         None found near it.
     """
-    z = system.ball_count
     times = np.arange(samples) * (period / samples)
     force = np.array([system.outer_force(t) for t in times])
     first = differentiation(samples, period)
     second = first @ first
     free = np.flatnonzero(system.free > 0.0)
     n = len(free)
-    part = np.ix_(free, free)
-    mass, damping, stiffness = system.mass[part], system.damping[part], system.stiffness[part]
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[free]
     q = start.copy()
-    ball = np.zeros((samples, z, system.ball_columns))
+    ball = np.zeros((samples, system.ball_count, system.ball_columns))
     rate = np.zeros_like(ball)
     rated = system.rated_columns
     f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
-    linear = np.zeros((samples, n, samples, n))
-    if inertial:
-        linear += np.einsum("ij,ab->iajb", second, mass) + np.einsum("ij,ab->iajb", first, damping)
-    diagonal = np.arange(samples)
-    linear[diagonal, :, diagonal, :] += stiffness
-    residual, worst, iterations = np.inf, np.inf, 0
+    linear, diagonal = _linear_part(system, free, first, inertial), np.arange(samples)
+    residual, worst, iterations, damping_factor = np.inf, np.inf, 0, 1.0
     step = np.zeros_like(q)
-    ring = compiled(system)
-    damping_factor = 1.0
     for iterations in range(1, limit + 1):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        if ring is not None:
-            evaluated = evaluate_many(ring.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
-        else:
-            evaluated = _evaluate_each(system, States(times, q, v, ball, rate), f, K, C)
+        evaluated = _evaluate(system, States(times, q, v, ball, rate), f, K, C)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
@@ -202,9 +190,22 @@ def orbit_near(
     return Orbit(period, q, first @ q, second @ q, force, ball, K, C, residual, iterations)
 
 
-def _evaluate_each(system: Ring, states: States, f: np.ndarray, K: np.ndarray, C: np.ndarray) -> int:
-    """``evaluate_many`` for a system that is evaluated from Python; its balls follow the ring, and ``rate`` is not used."""
-    ball = states.ball
+def _linear_part(system: Ring, free: np.ndarray, first: np.ndarray, inertial: bool) -> np.ndarray:
+    """(N, n, N, n) tangent of the linear parts at all times; ``first`` (N, N) differentiates."""
+    part, samples, n = np.ix_(free, free), len(first), len(free)
+    linear, diagonal = np.zeros((samples, n, samples, n)), np.arange(samples)
+    if inertial:
+        linear += np.einsum("ij,ab->iajb", first @ first, system.mass[part])
+        linear += np.einsum("ij,ab->iajb", first, system.damping[part])
+    linear[diagonal, :, diagonal, :] += system.stiffness[part]
+    return linear
+
+
+def _evaluate(system: Ring, states: States, f: np.ndarray, K: np.ndarray, C: np.ndarray) -> int:
+    """``evaluate_many`` for any system; the balls of one that is evaluated from Python follow the ring, ``rate`` is not used."""
+    ring, ball = compiled(system), states.ball
+    if ring is not None:
+        return int(evaluate_many(ring.compiled_forces, system.law_state, states, f, K, C))
     for i, t in enumerate(states.times):
         try:
             now = system.evaluate(states.q[i], states.v[i], ball[i] if ball[i].any() else None, None, float(t))

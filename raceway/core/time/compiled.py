@@ -200,12 +200,8 @@ def _commit(trial, motion):
 def implicit(forces, linear, outer, coefficients, steps, state, recording):
     """See ``raceway.core.time.compiled``."""
     dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
-    arm, formula, tolerance, rounding = (
-        constants.scalars[TILT_ARM],
-        _formula_of(coefficients, dt),
-        coefficients[4],
-        coefficients[5],
-    )
+    arm, formula = constants.scalars[TILT_ARM], _formula_of(coefficients, dt)
+    tolerance, rounding = coefficients[4], coefficients[5]
     trial = _Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
     q, J, dq, push, norm = trial.q, np.empty((5, 6)), np.zeros(5), np.empty(5), np.inf
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))

@@ -28,13 +28,11 @@ def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolera
         start = 3.0 * (before[2] - before[1]) + before[0] if system.smooth and len(before) == 3 else None
         outer = recorder.load(recorder.time_of(step))
         excitation = max(excitation, system.measure(outer - constant))
-        recorder.accept(
-            _step(system, recorder, recorder.time_of(step), outer, excitation, numbers, tolerance, start), outer=outer
-        )
+        state = _step(recorder, recorder.time_of(step), outer, excitation, numbers, tolerance, start)
+        recorder.accept(state, outer=outer)
 
 
 def _step(
-    system: SteppedSystem,
     recorder: Recorder,
     t: float,
     outer: np.ndarray,
@@ -51,7 +49,7 @@ def _step(
     start : where Newton's method begins; None: at constant acceleration
     """
     am, af, beta, gamma = numbers
-    before, dt = recorder.state, recorder.schedule.dt
+    system, before, dt = recorder.system, recorder.state, recorder.schedule.dt
     net_force_before = -system.mass_times(before.a) if before.net_force is None else before.net_force
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
     predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a

@@ -283,10 +283,8 @@ def reduce_tangents(scalars, table, ball_gain, work, K, C):
         w, (di, do) = _by_shift(work, k), _by_angle(work, k)
         # By the turn of the section, and of the couple by d.
         qi, qo = work[rows.BY_TURN, k], work[rows.BY_TURN, z + k]
-        turned, approach = (
-            di * qi + do * qo,
-            Pair(work[ring.OWN, k] * qi + cross * qo, cross * qi + work[ring.OWN, z + k] * qo),
-        )
+        turned = di * qi + do * qo
+        approach = Pair(work[ring.OWN, k] * qi + cross * qo, cross * qi + work[ring.OWN, z + k] * qo)
         wi, wo = _approaches(scalars, work, k, approach)
         axial = work[rows.FORCE_BY_TURN, k] + turned * work[ring.TURNING, k] + w.aa * wi + w.ar * wo
         radial = work[rows.FORCE_BY_TURN, z + k] + turned * work[ring.TURNING, z + k] + w.ra * wi + w.rr * wo

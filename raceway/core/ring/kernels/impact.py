@@ -57,7 +57,6 @@ def impact_system(
     law: Kernel,
     law_params: np.ndarray,
     *,
-    state_size: int = 0,
     clearance: float = 0.0,
     stiffness: float = 0.0,
     damping: float = 0.0,
@@ -69,7 +68,6 @@ def impact_system(
     ----------
     mass : [kg]
     law : compiled ``LAW``;  law_params : (k,), (1, k) or (2, k) its parameters
-    state_size : columns of memory that the law keeps
     clearance : gap at x = 0 [m]; negative: overlap
     stiffness, damping : linear spring [N/m] and dashpot [N s/m] between the mass and the ground
     load : constant force along x [N]
@@ -86,7 +84,7 @@ def impact_system(
         base_kernel=_impact,
         law=law,
         law_params=np.array(np.broadcast_to(params[:2], (2, params.shape[1])), order="C"),
-        law_state=np.zeros((2, state_size)),
+        law_state=np.zeros((2, 0)),
         scalars=scalars,
         table=np.zeros((1, ring.COLUMNS)),
         mass=mass * np.eye(5),
@@ -106,7 +104,8 @@ def single_contact(bearing: System, contact: int) -> System:
     ----------
     contact : its number, inner races first, then outer
     """
-    system = impact_system(1.0, bearing.law, bearing.law_params[contact], state_size=bearing.law_state.shape[1])
+    system = impact_system(1.0, bearing.law, bearing.law_params[contact])
+    system.law_state = np.zeros((2, bearing.law_state.shape[1]))
     # Whatever else a bearing says of its contacts' normal forces holds here, too.
     lengths, scalars = [ring.REST_AXIAL, ring.TILT_ARM], bearing.scalars.copy()
     scalars[CLEARANCE], scalars[lengths] = 0.0, system.scalars[lengths]

@@ -60,10 +60,8 @@ def place(t, q, v, constants, work, rows):
         c, s = cosine * turn_c - sine * turn_s, sine * turn_c + cosine * turn_s
         u, u_rate = tilt_y * s - tilt_z * c, turn_y * s - turn_z * c
         work[direction, k], work[direction, n + k] = c, s
-        work[centre, k], work[centre, n + k] = (
-            rest_a + shift + side * (x + reach * u),
-            rest_r + radial + y * c + z * s - lever * u,
-        )
+        work[centre, k] = rest_a + shift + side * (x + reach * u)
+        work[centre, n + k] = rest_r + radial + y * c + z * s - lever * u
         work[velocity, k] = side * (vx + reach * u_rate)
         work[velocity, n + k] = vy * c + vz * s - lever * u_rate
 

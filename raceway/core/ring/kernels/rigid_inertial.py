@@ -86,12 +86,8 @@ def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
     work[LENGTH, k], work[LENGTH, z + k] = si, so
     work[OUTER, k], work[OUTER, z + k] = oa, orr
     work[INNER, k], work[INNER, z + k] = ia, ir
-    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
-        gap_i,
-        gap_o,
-        rate_i,
-        rate_o,
-    )
+    work[rows.GAP, k], work[rows.GAP, z + k] = gap_i, gap_o
+    work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = rate_i, rate_o
 
 
 @jit(TENSOR(TENSOR, float64, float64, float64, float64), inline=True)
@@ -106,12 +102,8 @@ def _plus(t, na, nr, k, w):
 def _settles(k, lo, table, ball, ball_gain, work):
     """Move ball k by one step of Newton's method on its potential; whether that was the last one."""
     z = table.shape[0]
-    fi, fo, gap_i, gap_o = (
-        work[rows.CONTACT_FORCE, k],
-        work[rows.CONTACT_FORCE, z + k],
-        work[rows.GAP, k],
-        work[rows.GAP, z + k],
-    )
+    fi, fo = work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k]
+    gap_i, gap_o = work[rows.GAP, k], work[rows.GAP, z + k]
     ia, ir, oa, orr = work[INNER, k], work[INNER, z + k], work[OUTER, k], work[OUTER, z + k]
     ga = fo * oa - fi * ia
     gr = fo * orr - fi * ir - table[k, ring.CENTRIFUGAL]

@@ -52,12 +52,8 @@ def _share(k, scalars, table, ball, ball_gain, ball_history, work):
     work[APPROACH, z + k], work[LENGTH, k] = approach, length
     work[OUTER, z + k] = outer
     work[BRACKET, k], work[BRACKET, z + k] = 0.0, approach
-    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
-        outer - approach,
-        -outer,
-        rate_i,
-        rate_o,
-    )
+    work[rows.GAP, k], work[rows.GAP, z + k] = outer - approach, -outer
+    work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = rate_i, rate_o
 
 
 @jit(boolean(int64, int64, float64, MATRIX), inline=True)
@@ -65,12 +61,8 @@ def _moves(k, z, ball_gain, work):
     """Move ball k by one step of Newton's method inside its bracket; whether it needs another one."""
     ki = -work[rows.FORCE_BY_GAP, k] - ball_gain * work[rows.FORCE_BY_RATE, k]
     ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
-    fi, fo, approach, outer = (
-        work[rows.CONTACT_FORCE, k],
-        work[rows.CONTACT_FORCE, z + k],
-        work[APPROACH, z + k],
-        work[OUTER, z + k],
-    )
+    fi, fo = work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k]
+    approach, outer = work[APPROACH, z + k], work[OUTER, z + k]
     stiff, imbalance = ki + ko, fi - fo
     if not approach > 0.0 or not stiff > 0.0 or imbalance == 0.0:
         return False
@@ -144,9 +136,8 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
     for k in range(z):
         closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
         fi, fo, na, nr = force[k] * closed, force[z + k] * closed, work[NORMAL, k], work[NORMAL, z + k]
-        ball[k, 0] = (
-            scalars[ring.OFFSET_OUTER] + table[k, ring.OWN_OFFSET_OUTER] + work[rows.SHIFT, z + k] + work[OUTER, z + k]
-        )
+        _, lo = offsets_of(k, scalars, table)
+        ball[k, 0] = lo + work[rows.SHIFT, z + k] + work[OUTER, z + k]
         force[k], force[z + k] = fi, fo
         work[CARRIED, k], work[CARRIED, z + k] = fi * na, fi * nr
     ring_force(table, arm, work, DIRECTION, CARRIED, f)

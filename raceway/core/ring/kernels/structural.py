@@ -120,12 +120,8 @@ def _factorise(scalars, work):
     z, cross = work.shape[1] // 2, scalars[ring.BALL_CROSS]
     for k in range(z):
         ci, co = work[ring.OWN, k], work[ring.OWN, z + k]
-        sii, sio, soi, soo = (
-            work[rows.BY_OWN, k],
-            work[rows.BY_OTHER, k],
-            work[rows.BY_OTHER, z + k],
-            work[rows.BY_OWN, z + k],
-        )
+        sii, sio = work[rows.BY_OWN, k], work[rows.BY_OTHER, k]
+        soi, soo = work[rows.BY_OTHER, z + k], work[rows.BY_OWN, z + k]
         mii, mio = 1.0 - ci * sii - cross * soi, -ci * sio - cross * soo
         moi, moo = -cross * sii - co * soi, 1.0 - cross * sio - co * soo
         det = mii * moo - mio * moi

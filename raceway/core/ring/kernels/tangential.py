@@ -153,20 +153,14 @@ def _approach(k, scalars, ball, ball_gain, ball_history, work):
     own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
     rate_i = -(ni_a * (work[VELOCITY, k] - own_a) + ni_r * (work[VELOCITY, z + k] - own_r))
     rate_o = -(no_a * own_a + no_r * own_r)
-    gap_i, gap_o = (
-        scalars[ring.OFFSET_INNER] - si + work[rows.SHIFT, k],
-        scalars[ring.OFFSET_OUTER] - so + work[rows.SHIFT, z + k],
-    )
+    gap_i = scalars[ring.OFFSET_INNER] - si + work[rows.SHIFT, k]
+    gap_o = scalars[ring.OFFSET_OUTER] - so + work[rows.SHIFT, z + k]
     rate_i, rate_o = rate_i + work[rows.SHIFT_RATE, k], rate_o + work[rows.SHIFT_RATE, z + k]
     work[LENGTH, k], work[LENGTH, z + k] = si, so
     work[INNER, k], work[INNER, z + k] = ni_a, ni_r
     work[OUTER, k], work[OUTER, z + k] = no_a, no_r
-    work[rows.GAP, k], work[rows.GAP, z + k], work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = (
-        gap_i,
-        gap_o,
-        rate_i,
-        rate_o,
-    )
+    work[rows.GAP, k], work[rows.GAP, z + k] = gap_i, gap_o
+    work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = rate_i, rate_o
 
 
 @jit(TENSOR(CONTACT, int64, MATRIX), inline=True)
