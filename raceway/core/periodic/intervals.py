@@ -40,7 +40,7 @@ INDICES = int64[::1]
 
 
 class Equations(NamedTuple):
-    """Kernel forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
+    """Compiled forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
 
     The weight makes moments forces.
     """

@@ -1,4 +1,4 @@
-"""Kernel time loops; their equations stand in ``raceway.core.time``, the classes with the options in ``raceway.integrators``.
+"""Compiled time loops; their equations stand in ``raceway.core.time``, the classes with the options in ``raceway.integrators``.
 
 Every loop has the signature ``raceway.core.signatures.LOOP``, whose records stand there::
 

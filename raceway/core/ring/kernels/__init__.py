@@ -1,4 +1,4 @@
-"""Kernel systems: internal force and tangents of the inner ring after the balls are condensed out.
+"""Compiled systems: internal force and tangents of the inner ring after the balls are condensed out.
 
 Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records stand there::
 
