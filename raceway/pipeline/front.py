@@ -61,8 +61,8 @@ def run(
     """
     read = as_scene(scene, plugins=plugins)
     folder = None if out is None else writable(Path(out))
-    with telling(progress) as told:
-        result = compute(read, default_registry(), told, patience=patience)
+    with telling(progress) as report:
+        result = compute(read, default_registry(), report, patience=patience)
     if folder is not None:
         result.save(folder)
     return result

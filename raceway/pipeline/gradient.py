@@ -357,8 +357,8 @@ def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | st
     """Of kyy_tilts_follow where the stiffness (5, 5) moves with ``slope``, and the shaft's against tilts with ``by``."""
     tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
     back = np.linalg.pinv(tilts)
-    left, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
-    return float(left @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
+    row_weights, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
+    return float(row_weights @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
 
 
 def first_order_band(

@@ -131,7 +131,7 @@ def simulate(
     if near is not None:
         motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
     label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
-    progress = None if on_progress is None else (lambda done, total: on_progress(label, done, total))
+    progress = None if on_progress is None else (lambda step, total: on_progress(label, step, total))
     record = integrate(method, model.system, motion, schedule, progress)
     used = turns - ceil(ramp)
     if start.kind == "static" and method.inertial and not method.steady:

@@ -73,9 +73,9 @@ def indices(values: np.ndarray, dimensions: int) -> _Indices:
     parts = values.reshape(len(values), dimensions + 2, count)
     centred = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
     func = {"f_A": centred[:, 0], "f_B": centred[:, 1], "f_AB": np.moveaxis(centred[:, 2:], 1, 0)}
-    found = sobol_indices(func=func, n=count)
+    sobol = sobol_indices(func=func, n=count)
     shape = len(values), dimensions  # scipy leaves out axes of length 1
-    return _Indices(np.reshape(found.first_order, shape), np.reshape(found.total_order, shape))
+    return _Indices(np.reshape(sobol.first_order, shape), np.reshape(sobol.total_order, shape))
 
 
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
@@ -83,18 +83,21 @@ _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5
 
 def _draw(content: ReadTables) -> Figure:
     """A column a quantity: histogram of its samples, and bars of Sobol indices where they are known."""
-    quantities, keys = content["quantities"], [one["key"] for one in content["tolerances"]]
-    known = any(one["total"] is not None for one in quantities.values())
-    wide, high = 2.0 + 2.9 * len(quantities), 3.2 + (1.2 + 0.35 * len(keys) if known else 0.0)
+    quantities, keys = content["quantities"], [entry["key"] for entry in content["tolerances"]]
+    with_indices = any(entry["total"] is not None for entry in quantities.values())
+    wide, high = 2.0 + 2.9 * len(quantities), 3.2 + (1.2 + 0.35 * len(keys) if with_indices else 0.0)
     figure = new_figure(wide, high)
     rows = figure.subplots(
-        2 if known else 1, len(quantities), squeeze=False, height_ratios=[2.2, 0.8 + 0.35 * len(keys)] if known else [1.0]
+        2 if with_indices else 1,
+        len(quantities),
+        squeeze=False,
+        height_ratios=[2.2, 0.8 + 0.35 * len(keys)] if with_indices else [1.0],
     )
-    for k, (name, one) in enumerate(quantities.items()):
-        _draw_histogram(rows[0, k], name, one)
-        if known:
-            _indices(rows[1, k], one, keys, named=k == 0)
-    if known:
+    for k, (name, entry) in enumerate(quantities.items()):
+        _draw_histogram(rows[0, k], name, entry)
+        if with_indices:
+            _indices(rows[1, k], entry, keys, named=k == 0)
+    if with_indices:
         handles, labels = rows[1, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower right", ncols=2, fontsize=8, frameon=False)
     rows[0, 0].set_ylabel("samples", fontsize=9)
@@ -102,10 +105,10 @@ def _draw(content: ReadTables) -> Figure:
     return figure
 
 
-def _draw_histogram(axes: Axes, name: str, one: ReadTables) -> None:
-    (value, unit), (low, _), (high, _) = (read_in(one[end], one["unit"]) for end in ("value", "low", "high"))
-    edges = [read_in(edge, one["unit"])[0] for edge in one["histogram"]["edges"]]
-    axes.stairs(one["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+def _draw_histogram(axes: Axes, name: str, entry: ReadTables) -> None:
+    (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
+    edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
+    axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
     for end in (low, high):
         axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2)
     axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--")
@@ -115,7 +118,7 @@ def _draw_histogram(axes: Axes, name: str, one: ReadTables) -> None:
     axes.locator_params(axis="x", nbins=4)
 
 
-def _indices(axes: Axes, one: ReadTables, keys: list[str], named: bool) -> None:
+def _indices(axes: Axes, entry: ReadTables, keys: list[str], named: bool) -> None:
     places = np.arange(len(keys))
     axes.set_xlim(0.0, 1.05)
     axes.set_ylim(len(keys) - 0.4, -0.6)
@@ -123,7 +126,7 @@ def _indices(axes: Axes, one: ReadTables, keys: list[str], named: bool) -> None:
     axes.set_xlabel("Sobol' index", fontsize=9)
     axes.tick_params(axis="x", labelsize=8)
     # Estimates of small indices scatter about 0, those of a single cause about 1.
-    total, first = (np.clip(one[what] or np.zeros(len(keys)), 0.0, 1.0) for what in ("total", "first_order"))
+    total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
     axes.barh(places, total, color=_TOTAL, height=0.7, label="total")
     axes.barh(places, first, color=_FIRST, height=0.3, label="first order")
 
@@ -180,8 +183,13 @@ class Band(Answer):
                 f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances, to another motion or other "
                 "contacts; raceway follow shows where"
             )
-        shares = [one for some in (self.first, self.total) for name in some for one in some[name]]
-        if any(abs(one - 0.5) > 0.5 + _ROUGH for one in shares):
+        shares = [
+            share
+            for indices_by_name in (self.first, self.total)
+            for name in indices_by_name
+            for share in indices_by_name[name]
+        ]
+        if any(abs(share - 0.5) > 0.5 + _ROUGH for share in shares):
             found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take more --samples")
         return found
 
@@ -210,8 +218,14 @@ class Band(Answer):
             for name, value in self.nominal.items()
         }
         varied = [
-            {"key": one.key.path, "value": one.key.value, "unit": one.key.unit, "low": one.low, "high": one.high}
-            for one in self.tolerances
+            {
+                "key": tolerance.key.path,
+                "value": tolerance.key.value,
+                "unit": tolerance.key.unit,
+                "low": tolerance.low,
+                "high": tolerance.high,
+            }
+            for tolerance in self.tolerances
         ]
         content = {"title": self.title, "quantities": quantities, "tolerances": varied}
         return dict(
@@ -275,23 +289,23 @@ def _band_of(
     """
     nominal, words = _answer(scene)
     unit = design(count, len(tolerances), seed)
-    low, high = (np.array([getattr(one, end) for one in tolerances]) for end in ("low", "high"))
+    low, high = (np.array([getattr(tolerance, end) for tolerance in tolerances]) for end in ("low", "high"))
     numbers = low + unit * (high - low)
-    paths = [one.key.path for one in tolerances]
+    paths = [tolerance.key.path for tolerance in tolerances]
     chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
     key = row_key(scene, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
     items = [Item(f"{key} {k}", "samples", (scene.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
-    done, _ = work_through(sampled, items, RowStore(kept), local(registry, processes), registry, plugins, on_progress)
-    rows = [row for chunk in done for row in chunk["rows"]]
+    chunk_rows, _ = work_through(sampled, items, RowStore(kept), local(registry, processes), registry, plugins, on_progress)
+    rows = [row for chunk in chunk_rows for row in chunk["rows"]]
     return _summary(scene.title, tuple(tolerances), nominal, words, rows, len(tolerances))
 
 
-def sampled(given: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
+def sampled(task: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
     """Answers at some points: quantity -> number each, or the reason why there is none.
 
     A worker reads the scene itself: classes of one-off plug-ins can not be sent to it.
     """
-    tables, paths, points = given
+    tables, paths, points = task
     scene = scene_from_dict(tables, registry)
     return {"rows": [_row(scene, paths, point) for point in points]}
 
@@ -326,9 +340,9 @@ def _summary(
     total: dict[str, list[float]] = {}
     if not lost:
         varied = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
-        found = indices(table[varied], dimensions) if varied else _Indices(np.empty((0, 0)), np.empty((0, 0)))
-        for place, k in enumerate(varied):
-            first[names[k]], total[names[k]] = found.first[place].tolist(), found.total[place].tolist()
+        sobol = indices(table[varied], dimensions) if varied else _Indices(np.empty((0, 0)), np.empty((0, 0)))
+        for row_of, k in enumerate(varied):
+            first[names[k]], total[names[k]] = sobol.first[row_of].tolist(), sobol.total[row_of].tolist()
     return Band(
         title,
         tolerances,
@@ -398,18 +412,18 @@ def band(
         raise SceneError.at(
             "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
-    chosen = tolerances_of(read, tolerances or stated_tolerances(read))
-    with telling(progress) as told:
+    varied = tolerances_of(read, tolerances or stated_tolerances(read))
+    with telling(progress) as report:
         return _band_of(
             read,
-            chosen,
+            varied,
             count,
             seed,
             default_registry(),
             processes,
             None if kept is None else Path(kept),
-            [Path(one) for one in plugins],
-            told,
+            [Path(file) for file in plugins],
+            report,
         )
 
 

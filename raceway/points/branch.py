@@ -243,9 +243,9 @@ def _range(branch: Followed) -> str:
     return f"{branch.rows[0].parameter:.6g} to {branch.rows[-1].parameter:.6g}"
 
 
-def _line(what: str, row: Orbit) -> dict[str, str]:
+def _line(label: str, row: Orbit) -> dict[str, str]:
     return {
-        "": what,
+        "": label,
         "value": f"{row.parameter:.7g}",
         "K\nN/µm": f"{1e-6 * row.stiffness:.4g}",
         "C\nN s/m": f"{row.damping:.4g}",

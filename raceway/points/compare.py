@@ -129,12 +129,12 @@ class Comparison(Answer, Findings):
         label = about.symbol
         changes = [
             (
-                " x ".join(names[key] for key in one["term"]),
-                f"{one['percent']:+.3g} %",
-                f"of {label} on average" if one["order"] == 1 else f"interaction on {label}",
+                " x ".join(names[key] for key in effect["term"]),
+                f"{effect['percent']:+.3g} %",
+                f"of {label} on average" if effect["order"] == 1 else f"interaction on {label}",
             )
-            for one in self.effects
-            if one["quantity"] == first
+            for effect in self.effects
+            if effect["quantity"] == first
         ]
         runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_number_of(row)) for row in self.rows]
         words: Fact = ("words", "", f"{len(self.words)} sentences in .words")
@@ -170,8 +170,8 @@ def _number_of(row: Row) -> tuple[str, str]:
     if z is None:
         return f"{about.symbol} {about.text(value, 4)}", about.words + doubt
     error = row.error * z
-    known = f"+- {about.text(error, 2)}" if row.estimated else "error not known"
-    return f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}", known + doubt
+    error_words = f"+- {about.text(error, 2)}" if row.estimated else "error not known"
+    return f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}", error_words + doubt
 
 
 def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
@@ -193,7 +193,7 @@ def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
     return {axis.key: name if last.count(name) == 1 else axis.key for axis, name in zip(axes, last, strict=True)}
 
 
-def labelled(found: Findings) -> Dataset:
+def labelled(comparison: Findings) -> Dataset:
     """Numbers and states of all runs, a dimension for each key.
 
     Raises
@@ -201,24 +201,24 @@ def labelled(found: Findings) -> Dataset:
     RacewayError
         xarray is missing.
     """
-    keys = [axis.key for axis in found.axes]
-    shape = tuple(len(axis.values) for axis in found.axes)
-    moving = found.quantities is MOVING
-    quantities = found.quantities | (named(K_ERROR, C) if moving else {})
+    keys = [axis.key for axis in comparison.axes]
+    shape = tuple(len(axis.values) for axis in comparison.axes)
+    moving = comparison.quantities is MOVING
+    quantities = comparison.quantities | (named(K_ERROR, C) if moving else {})
     numbers = {name: np.full(shape, np.nan) for name in quantities}
     status = np.full(shape, "waiting", dtype=object)
-    for row in found.rows:
-        place = tuple(axis.values.index(row.point[axis.key]) for axis in found.axes)
-        status[place] = row.result["status"] if row.failed else "done"
-        values = {name: row.value(name) for name in found.quantities}
+    for row in comparison.rows:
+        entry = tuple(axis.values.index(row.point[axis.key]) for axis in comparison.axes)
+        status[entry] = row.result["status"] if row.failed else "done"
+        values = {name: row.value(name) for name in comparison.quantities}
         if moving:
             z = values[Z.name] if row.estimated else None
             values |= {C.name: row.damping, K_ERROR.name: None if z is None else row.error * z}
         for name, value in values.items():
-            numbers[name][place] = np.nan if value is None else value
+            numbers[name][entry] = np.nan if value is None else value
     variables = {name: (keys, values, quantities[name].labels) for name, values in numbers.items()}
-    coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in found.axes}
-    return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": found.title})
+    coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in comparison.axes}
+    return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": comparison.title})
 
 
 def compare_points(
@@ -252,23 +252,23 @@ def compare_points(
     axes = axes_of(vary, scene_tables, registry)
     notes: list[str] = []
     title = refuse_mistakes(scene_tables, axes, registry)
-    kept, places = RowStore(store), list(points(axes))
+    row_store, places = RowStore(store), list(points(axes))
     items = [_item(tables_at(scene_tables, point, registry, notes), registry) for point in places]
     try:
-        work_through(_result, items, kept, local(registry, 0), registry, on_progress=on_progress)
+        work_through(_result, items, row_store, local(registry, 0), registry, on_progress=on_progress)
     except KeyboardInterrupt as stop:
-        partial = _comparison(title, axes, places, items, kept, notes)
+        partial = _comparison(title, axes, places, items, row_store, notes)
         raise Interrupted(partial if partial.rows else None) from stop
-    return _comparison(title, axes, places, items, kept, notes)
+    return _comparison(title, axes, places, items, row_store, notes)
 
 
 def _comparison(
-    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], kept: RowStore, notes: list[str]
+    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], row_store: RowStore, notes: list[str]
 ) -> Comparison:
     """Of the points that are finished."""
-    found = [(point, kept.get(item.key)) for point, item in zip(places, items, strict=True)]
-    rows = tuple(Row(point, result) for point, result in found if result is not None)
-    return Comparison(title, axes, rows, tuple(notes), kept.fault)
+    finished = [(point, row_store.get(item.key)) for point, item in zip(places, items, strict=True)]
+    rows = tuple(Row(point, result) for point, result in finished if result is not None)
+    return Comparison(title, axes, rows, tuple(notes), row_store.fault)
 
 
 def _item(tables: ReadTables, registry: Registry) -> Item:
@@ -344,10 +344,10 @@ def compare(
     folder = None if out is None else writable(Path(out))
     kept = folder / _ROWS if folder is not None and kept is None else kept
     tables = plain_tables(scene, registry=registry)
-    with telling(progress) as told:
-        found = compare_points(tables, vary, registry, told, None if kept is None else Path(kept))
-    if found.fault is not None:
-        warnings.warn(str(found.fault), stacklevel=3)
+    with telling(progress) as report:
+        comparison = compare_points(tables, vary, registry, report, None if kept is None else Path(kept))
+    if comparison.fault is not None:
+        warnings.warn(str(comparison.fault), stacklevel=3)
     if folder is not None:
-        found.save(folder)
-    return found
+        comparison.save(folder)
+    return comparison

@@ -26,18 +26,18 @@ _PEAKS = 6
 
 def draw(content: ReadTables) -> Figure:
     """Two panels over the key, of the tables of ``raceway follow --json``."""
-    shown = [x for one in (content, *content["doubled"]) for x in one["instead"] if x["section"]][:_SECTIONS]
+    shown = [x for attractor in (content, *content["doubled"]) for x in attractor["instead"] if x["section"]][:_SECTIONS]
     figure = new_figure(9.6, 8.0 if not shown else 10.6)
     places = figure.add_gridspec(3 if shown else 2, max(len(shown), 1))
     panels = [figure.add_subplot(places[0, :])]
     panels.append(figure.add_subplot(places[1, :], sharex=panels[0]))
-    for k, one in enumerate(shown):
-        _section(figure.add_subplot(places[2, k]), one)
+    for k, attractor in enumerate(shown):
+        _section(figure.add_subplot(places[2, k]), attractor)
     for panel, (column, factor, words) in zip(panels, _PANELS, strict=True):
-        for one in content["doubled"]:
-            _curve(panel, one["rows"], column, factor, ", twice the period")
+        for attractor in content["doubled"]:
+            _curve(panel, attractor["rows"], column, factor, ", twice the period")
         _curve(panel, content["rows"], column, factor, "")
-        _marks(panel, [x for one in (content, *content["doubled"]) for x in one["labels"]], column, factor)
+        _marks(panel, [x for attractor in (content, *content["doubled"]) for x in attractor["labels"]], column, factor)
         panel.set_ylabel(words)
         dress(panel)
     panels[-1].set_xlabel(content["key"])
@@ -74,18 +74,24 @@ def _unstable(row: ReadTables) -> bool:
 
 def _marks(panel: Axes, labels: Sequence[ReadTables], column: str, factor: float) -> None:
     for kind, mark in _MARKS.items():
-        chosen = [label for label in labels if label["kind"] == kind]
-        if chosen:
+        kind_labels = [label for label in labels if label["kind"] == kind]
+        if kind_labels:
             panel.plot(
-                [x["parameter"] for x in chosen], [factor * x[column] for x in chosen], linestyle="", marker=mark,
+                [x["parameter"] for x in kind_labels], [factor * x[column] for x in kind_labels], linestyle="", marker=mark,
                 markersize=6, color="black", markerfacecolor="white", label=kind,
             )  # fmt: skip
 
 
-def _section(panel: Axes, one: ReadTables) -> None:
+def _section(panel: Axes, attractor: ReadTables) -> None:
     """Once a turn: y and its velocity over w."""
-    panel.plot([1e6 * y for y, _ in one["section"]], [1e6 * v for _, v in one["section"]], ".", markersize=3, color=_OTHER)
-    panel.set_title(f"{one['parameter']:.6g}: {one['kind']}", fontsize=9)
+    panel.plot(
+        [1e6 * y for y, _ in attractor["section"]],
+        [1e6 * v for _, v in attractor["section"]],
+        ".",
+        markersize=3,
+        color=_OTHER,
+    )
+    panel.set_title(f"{attractor['parameter']:.6g}: {attractor['kind']}", fontsize=9)
     panel.set_xlabel("y once a turn  [µm]", fontsize=8)
     panel.set_ylabel("velocity / w  [µm]", fontsize=8)
     panel.tick_params(labelsize=8)

@@ -96,8 +96,8 @@ class Precision(Answer):
     def judged(self) -> list[Row]:
         """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
         found = [{**row, **self._errors(row)} for row in self.rows]
-        for place, order in self._orders(found).items():
-            found[place]["order"] = order
+        for index, order in self._orders(found).items():
+            found[index]["order"] = order
         return found
 
     def _errors(self, row: Row) -> Row:
@@ -117,7 +117,7 @@ class Precision(Answer):
 
     def _orders(self, rows: list[Row]) -> dict[int, float]:
         """Order between each row and the next coarser one of its ladder."""
-        found: dict[int, float] = {}
+        orders: dict[int, float] = {}
         for key, inverse in _LADDERS.items():
             for places in _ladders(rows, key):
                 places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
@@ -126,8 +126,8 @@ class Precision(Answer):
                     errors = [rows[k]["error"] for k in (coarse, fine)]
                     if min(errors) > bound:
                         ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
-                        found[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
-        return found
+                        orders[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
+        return orders
 
     def bounded(self, row: Row) -> float:
         """The largest error that the row can have."""
@@ -140,28 +140,28 @@ class Precision(Answer):
         """
         bound = self.references[member("physics", physics, self.references)].bound
         rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
-        found, best = [], math.inf
-        for _, error, place in sorted(rows):
+        fastest, best = [], math.inf
+        for _, error, index in sorted(rows):
             if error < best:
-                found.append(place)
+                fastest.append(index)
                 best = error
-        return found
+        return fastest
 
     def cheapest(self, physics: str) -> dict[str, int | None]:
         """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
         rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
-        found: dict[str, int | None] = {}
+        fastest: dict[str, int | None] = {}
         for threshold in THRESHOLDS:
             good = [(time, k) for time, k in rows if self.bounded(self.judged[k]) <= threshold]
-            found[_text(threshold)] = min(good)[1] if good else None
-        return found
+            fastest[_text(threshold)] = min(good)[1] if good else None
+        return fastest
 
     @property
     def converged(self) -> bool:
         """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
-        found = [row for row in self.judged if row["status"] == "completed"]
-        known = [row for row in found if row["error"] is not None]
-        return any(self.bounded(row) <= THRESHOLDS[0] for row in known) if known else bool(found)
+        completed = [row for row in self.judged if row["status"] == "completed"]
+        with_error = [row for row in completed if row["error"] is not None]
+        return any(self.bounded(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(completed)
 
     @property
     def models(self) -> list[Tables]:
@@ -173,13 +173,13 @@ class Precision(Answer):
             if not rows:
                 continue
             apart = minus(reference.values, base.values)
-            known = Z_REAL.name in apart or (AXIAL_DISPLACEMENT.name in apart and Z_REAL.name not in base.values)
+            comparable = Z_REAL.name in apart or (AXIAL_DISPLACEMENT.name in apart and Z_REAL.name not in base.values)
             found.append(
                 {
                     "model": rows[0]["model"],
                     "base": physics == self.base,
                     "reference": _reference_table(reference),
-                    "difference": distance(apart) / base.size if known else None,
+                    "difference": distance(apart) / base.size if comparable else None,
                     "differences": base.relative(apart),
                     "front": self.front(physics),
                     "cheapest": self.cheapest(physics),
@@ -198,12 +198,12 @@ class Precision(Answer):
                 f"the reference is not {EXACT:g} times more accurate than {len(limited)} of the rows (marked ~): their errors "
                 "are known to its bound only, and so is the front there"
             )
-        for threshold, place in self.cheapest(self.base).items():
+        for threshold, index in self.cheapest(self.base).items():
             percent = f"{100.0 * float(threshold):g} %"
-            if place is None:
+            if index is None:
                 lines.append(f"no setting is known to be within {percent}")
             else:
-                row = self.judged[place]
+                row = self.judged[index]
                 lines.append(
                     f"cheapest within {percent}: {_words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)"
                 )
@@ -230,9 +230,14 @@ class Precision(Answer):
         for row in self.judged:
             cost = row["cost"] or {}
             named = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
-            rest = {"status": row["status"], "reason": row["reason"], "own_error": row["own_error"], "reused": row["reused"]}
+            state = {
+                "status": row["status"],
+                "reason": row["reason"],
+                "own_error": row["own_error"],
+                "reused": row["reused"],
+            }
             base = row["physics"] == self.base
-            rows.append({**{name: row[name] for name in keep}, **named, **rest, "base": base, "cost": row["cost"]})
+            rows.append({**{name: row[name] for name in keep}, **named, **state, "base": base, "cost": row["cost"]})
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),
@@ -278,8 +283,8 @@ class Precision(Answer):
     def _shown(self) -> tuple[str, list[Fact]]:
         reference = self.references[self.base]
         facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
-        for threshold, place in self.cheapest(self.base).items():
-            row = None if place is None else self.judged[place]
+        for threshold, index in self.cheapest(self.base).items():
+            row = None if index is None else self.judged[index]
             name, value = f"cheapest within {100.0 * float(threshold):g} %", "none" if row is None else _time(row)
             facts.append((name, value, "" if row is None else _words_of(row["setting"])))
         front = set(self.front(self.base))
@@ -287,10 +292,10 @@ class Precision(Answer):
             (
                 _words_of(row["setting"]),
                 "-" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}",
-                ("on the front, " if place in front else "")
+                ("on the front, " if index in front else "")
                 + (f"{1e3 * row['cost']['time_s']:.3g} ms" if row["cost"] else row["status"]),
             )
-            for place, row in enumerate(self.judged)
+            for index, row in enumerate(self.judged)
         ]
         return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [
             *facts,
@@ -300,7 +305,7 @@ class Precision(Answer):
     def table(self) -> list[dict[str, str]]:
         """One line a row, as short text for a screen."""
         front = set(self.front(self.base))
-        return [_screen_row(row, place in front) for place, row in enumerate(self.judged)]
+        return [_screen_row(row, index in front) for index, row in enumerate(self.judged)]
 
     def texts(self, pictures: bool) -> dict[str, str]:
         """precision.md."""
@@ -319,7 +324,7 @@ class Precision(Answer):
         rows = self.table()
         yield Words(self.title, "bold")
         # A column of blanks would cost the settings their room.
-        yield [{name: row[name] for name in rows[0] if any(other[name] for other in rows)} for row in rows]
+        yield [{name: row[name] for name in rows[0] if any(each[name] for each in rows)} for row in rows]
         yield Words("* on the front; ~ known to the reference's bound only", "dim")
         yield from self.words
 
@@ -344,10 +349,10 @@ def _time(row: Row) -> str:
 
 
 def _reference_table(reference: Reference) -> Tables:
-    known = bool(reference.values)
+    exists = bool(reference.values)
     return {
-        "value": reference.size if known else None,
-        "error": reference.bound if known and math.isfinite(reference.bound) else None,
+        "value": reference.size if exists else None,
+        "error": reference.bound if exists and math.isfinite(reference.bound) else None,
         "how": reference.how,
         "quantities": {
             name: {"value": value, "error": bound if math.isfinite(bound := reference.bounds[name]) else None}
@@ -362,13 +367,13 @@ def _counts(row: Row, physics: str) -> bool:
 
 def _ladders(rows: list[Row], key: str) -> list[list[int]]:
     """Places of finished rows that differ in one key only, a list for each ladder."""
-    found: dict[str, list[int]] = {}
-    for place, row in enumerate(rows):
+    ladders: dict[str, list[int]] = {}
+    for index, row in enumerate(rows):
         value = row["setting"].get(key)
         if row["error"] and isinstance(value, int | float) and not isinstance(value, bool):
-            rest = {name: other for name, other in row["setting"].items() if name != key}
-            found.setdefault(f"{row['family']} {rest!r}", []).append(place)
-    return [places for places in found.values() if len(places) > 1]
+            others_fixed = {name: number for name, number in row["setting"].items() if name != key}
+            ladders.setdefault(f"{row['family']} {others_fixed!r}", []).append(index)
+    return [places for places in ladders.values() if len(places) > 1]
 
 
 def _words_of(setting: Tables) -> str:
@@ -400,7 +405,7 @@ def _screen_row(row: Row, on_front: bool) -> dict[str, str]:
     return text
 
 
-def labelled(found: Precision) -> Dataset:
+def labelled(study: Precision) -> Dataset:
     """Error, time and value of every setting.
 
     Raises
@@ -408,15 +413,15 @@ def labelled(found: Precision) -> Dataset:
     RacewayError
         xarray is missing.
     """
-    content = found.to_dict()
+    content = study.to_dict()
     rows = content["rows"]
     variables = {
         quantity.name: ("setting", np.array([row[quantity.name] for row in rows], dtype=float), quantity.labels)
         for quantity in PRECISION
     }
-    names = np.array([text["setting"].lstrip("* ") for text in found.table()], dtype=object)
+    names = np.array([text["setting"].lstrip("* ") for text in study.table()], dtype=object)
     more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
-    return labelled_dataset({**variables, **more}, {"setting": names}, {"title": found.title})
+    return labelled_dataset({**variables, **more}, {"setting": names}, {"title": study.title})
 
 
 #: Runs of each setting, and the longest predicted run [s].
@@ -455,43 +460,50 @@ def measure_settings(
     """
     registry = registry or default_registry()
     design = make_design(tables, vary, limit_s, registry)
-    given = _given(design.settings, reference, registry)
+    named_reference = _given(design.settings, reference, registry)
     rows = RowStore(store)
     groups: dict[str, list[Setting]] = {}
     for setting in design.settings:
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    done = 0
+    finished = 0
 
-    def tell(what: str) -> None:
+    def tell(label: str) -> None:
         if on_progress is not None:
-            on_progress(what, done, total)
+            on_progress(label, finished, total)
 
-    found = []
+    measured = []
     for setting in design.settings:
         tell(_words_of(setting.values))
-        found.append(_row(setting, repeats, registry, rows))
-        done += 1
+        measured.append(_row(setting, repeats, registry, rows))
+        finished += 1
     runner = Runner(registry, rows, limit_s, tell)
     references = {design.base: Reference({}, {}, "no setting could be run")}
     for physics, group in groups.items():
-        references[physics] = find_reference(group, runner, given)
-        done += 1
+        references[physics] = find_reference(group, runner, named_reference)
+        finished += 1
     return Precision(
-        design.title, tuple(found), references, design.base, design.left_out, design.notes, rows.fault, bool(given)
+        design.title,
+        tuple(measured),
+        references,
+        design.base,
+        design.left_out,
+        design.notes,
+        rows.fault,
+        bool(named_reference),
     )
 
 
 def _given(settings: tuple[Setting, ...], changes: Vary, registry: Registry) -> Tables:
     """The reference that the user names, checked with the first setting that can run."""
-    given = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
+    named = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
     first = next((setting for setting in settings if setting.scene is not None), None)
-    if given and first is not None:
-        found = setting_at(first.tables, "reference", given, registry)
+    if named and first is not None:
+        found = setting_at(first.tables, "reference", named, registry)
         if found.scene is None:
             raise SceneError.at("reference", None, found.reason)
-    return given
+    return named
 
 
 def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) -> Tables:
@@ -579,12 +591,12 @@ def precision(
     folder = None if out is None else writable(Path(out))
     kept = folder / _ROWS if folder is not None and kept is None else kept
     tables = plain_tables(scene, registry=registry)
-    with telling(progress) as told:
-        found = measure_settings(
-            tables, vary or (), reference, repeats, limit_s, None if kept is None else Path(kept), registry, told
+    with telling(progress) as report:
+        study = measure_settings(
+            tables, vary or (), reference, repeats, limit_s, None if kept is None else Path(kept), registry, report
         )
-    if found.fault is not None:
-        warnings.warn(str(found.fault), stacklevel=3)
+    if study.fault is not None:
+        warnings.warn(str(study.fault), stacklevel=3)
     if folder is not None:
-        found.save(folder)
-    return found
+        study.save(folder)
+    return study

@@ -111,7 +111,7 @@ class Sensitivities(Answer):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         first = next(iter(self.values))
-        told = [
+        facts = [
             (row.key.path, f"{row.influence[first]:+.3g} %" if row.influence else "", f"{row.derivatives[first]:.4g}")
             for row in self.rows
         ]
@@ -120,7 +120,7 @@ class Sensitivities(Answer):
             number(self.values[first], DIFFERENTIABLE[first].unit),
             "its change by 1 % of a key; derivative",
         )
-        return self.title, [head, *told]
+        return self.title, [head, *facts]
 
     def to_dict(self) -> Tables:
         """Plain tables: quantities, keys with all derivatives, keys without effect or derivative, cost."""
@@ -209,9 +209,9 @@ def sensitivities_of(
     now = values(model, equilibrium, gradients.orbit)
     run_s, begun = run_s + working_processor_time() - begun, working_processor_time()
     rows, nothing, refused, models = [], [], [], 0
-    for done, key in enumerate(keys):
+    for number_done, key in enumerate(keys):
         if on_progress is not None:
-            on_progress("keys", done, len(keys))
+            on_progress("keys", number_done, len(keys))
         try:
             gradient = gradients.by(key)
         except NoDerivative as why:
@@ -282,10 +282,10 @@ def _bars(content: ReadTables) -> Figure:
         panel.axvline(0.0, color="#555f6b", linewidth=0.8)
         reach = 1.55 * max((abs(share) for share in shares), default=1.0) or 1.0
         panel.set_xlim(-reach, reach)
-        for place, share in enumerate(shares):
+        for position, share in enumerate(shares):
             if abs(share) >= _LEAST:
                 side = "left" if share >= 0.0 else "right"
-                panel.annotate(f"{share:+.2g}", (share, place), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
+                panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
         panel.set_title(name.replace("_", " "), fontsize=11)
         panel.set_xlabel("% per % of the key", fontsize=9)
         panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
@@ -342,12 +342,12 @@ def sensitivities(
     """
     read = as_scene(scene, plugins=plugins)
     keys = list(keys)
-    chosen = [key_of(read, path) for path in keys] or continuous_keys(read)
-    with telling(progress) as told:
+    chosen_keys = [key_of(read, path) for path in keys] or continuous_keys(read)
+    with telling(progress) as report:
         begun = working_processor_time()
         model = build_model(read, make_plan(read))
         equilibrium = solve_equilibrium(model)
-        found = sensitivities_of(model, equilibrium, chosen, working_processor_time() - begun, told, tolerances)
-    if keys and found.refused:
-        raise SceneError([Mistake(key.path, key.value, why) for key, why in found.refused])
-    return found
+        answer = sensitivities_of(model, equilibrium, chosen_keys, working_processor_time() - begun, report, tolerances)
+    if keys and answer.refused:
+        raise SceneError([Mistake(key.path, key.value, why) for key, why in answer.refused])
+    return answer

@@ -136,32 +136,32 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
     """
     files = tuple(str(file.resolve()) for file in plugins)
     registry = registry_of(files)
-    found = survey(tables, design, registry)
+    surveyed = survey(tables, design, registry)
     facts = {
-        "scene": found.scene.to_dict(),
+        "scene": surveyed.scene.to_dict(),
         "design": design.to_dict(),
-        "identity": identity(registry, found.used),
-        "files": found.files,
+        "identity": identity(registry, surveyed.used),
+        "files": surveyed.files,
     }
     if any(key.rpartition(".")[2] == "kind" for key in design.keys):
         facts["tables"] = dict(tables)  # options of kinds that the first point does not have
     if exists(store):
-        with open_store(store) as there:
-            _refuse_other(there, facts, store)
+        with open_store(store) as stored:
+            _refuse_other(stored, facts, store)
             if not resume:
-                states = there.status()
+                states = stored.status()
                 raise RacewayError(
                     f"`{store}` holds this sweep already, {states['done']} of {states['total']} points done: go on with "
                     "--resume, or choose another folder with --out. Nothing is overwritten."
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(dict(tables), design, store, files, found, facts, _chain_length(found, design))
+    return Sweep(dict(tables), design, store, files, surveyed, facts, _chain_length(surveyed, design))
 
 
-def _chain_length(found: Survey, design: Design) -> int:
+def _chain_length(surveyed: Survey, design: Design) -> int:
     """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
-    scene = found.scene
+    scene = surveyed.scene
     try:
         plan = make_plan(scene)
         seconds = plan.predicted_work_s - plan.predicted_once_s - START_S
@@ -189,64 +189,67 @@ def fill_store(
         A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
     design = prepared.design
-    wanted = prepared.facts["identity"]
-    work = Work(Chain(prepared.tables, wanted["program"]), prepared.plugins, wanted)
+    required = prepared.facts["identity"]
+    work = Work(Chain(prepared.tables, required["program"]), prepared.plugins, required)
     with written(prepared.store, prepared.facts) as store:
         store.wait_again(["running", *(["failed"] if retry_failed else [])])
         lost = store.repair()
         if lost:
             warnings.warn(f"{len(lost)} rows of the store are damaged: their points are computed again", stacklevel=2)
         waiting = store.numbers("waiting")
-        done, total = design.size - len(waiting), design.size
+        finished, total = design.size - len(waiting), design.size
         chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
 
         def batches() -> Iterator[Batch]:
             for number, chain in enumerate(chains):
-                left = [n for n in chain if n in waiting]
-                store.mark(left, "running")
+                remaining = [n for n in chain if n in waiting]
+                store.mark(remaining, "running")
                 # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
-                yield number, [[(n, design.point(n)) for n in chain[: chain.index(left[-1]) + 1]]]
+                yield number, [[(n, design.point(n)) for n in chain[: chain.index(remaining[-1]) + 1]]]
 
         try:
-            with closing(answers(executor, work, batches())) as found:
-                for number, answer in found:
+            with closing(answers(executor, work, batches())) as results:
+                for number, answer in results:
                     if isinstance(answer, Lost):
                         rows = [_unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
                     else:
                         rows = [row for row in answer[0] if row["number"] in waiting]
                     store.put(rows)
-                    done += len(rows)
+                    finished += len(rows)
                     if on_progress is not None:
-                        on_progress("points", done, total)
+                        on_progress("points", finished, total)
         finally:
             with suppress(RacewayError):  # a full disk was reported already; the next sweep does it
                 store.wait_again(["running"])
     return open_store(prepared.store)
 
 
-def _refuse_other(there: Store, facts: ReadTables, store: Path) -> None:
+def _refuse_other(stored: Store, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
-    reasons = _changed(there.scene, facts["scene"]) or _changed(there.facts.get("tables", {}), facts.get("tables", {}))
-    what = "another scene"
+    reasons = _changed(stored.scene, facts["scene"]) or _changed(stored.facts.get("tables", {}), facts.get("tables", {}))
+    difference = "another scene"
     if not reasons:
-        what, reasons = "another sweep", there.design.differences(Design.from_dict(facts["design"]))
-    if not reasons and there.facts["files"] != facts["files"]:
-        what, reasons = "another content of the files that the scene names", sorted({*there.facts["files"], *facts["files"]})
+        difference, reasons = "another sweep", stored.design.differences(Design.from_dict(facts["design"]))
+    if not reasons and stored.facts["files"] != facts["files"]:
+        difference, reasons = (
+            "another content of the files that the scene names",
+            sorted({*stored.facts["files"], *facts["files"]}),
+        )
     if not reasons:
-        what, reasons = "another version", differences(there.facts["identity"], facts["identity"])
+        difference, reasons = "another version", differences(stored.facts["identity"], facts["identity"])
     if reasons:
-        told = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
+        words = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
         raise RacewayError(
-            f"`{store}` holds results of {what} ({told}). It is not overwritten: choose another folder with --out."
+            f"`{store}` holds results of {difference} ({words}). It is not overwritten: choose another folder with --out."
         )
 
 
-def _changed(old: object, new: object, place: str = "") -> list[str]:
+def _changed(old: object, new: object, path: str = "") -> list[str]:
     """``key: old, now new`` for every leaf of two trees of tables that differs."""
     if isinstance(old, dict) and isinstance(new, dict):
         keys = [*old, *(key for key in new if key not in old)]
-        return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{place}.{key}" if place else key)]
-    return [] if old == new else [f"{place}: {old!r} there, {new!r} here"]
+        return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{path}.{key}" if path else key)]
+    return [] if old == new else [f"{path}: {old!r} there, {new!r} here"]
 
 
 SPEED = "excitation.speed_rpm"
@@ -314,14 +317,14 @@ def sweep(
     >>> (1e-6 * found.stiffness.sel(dof="y", dof2="y")).round(1).values.tolist()  # kyy [N/um]
     [183.4, 238.2]
     """
-    with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as told:
+    with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as report:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
-        chosen = executor_of(executor, {"workers": workers}, registry_with(plugins))
+        worker_pool = executor_of(executor, {"workers": workers}, registry_with(plugins))
         prepared = prepared_sweep(scene, axes, folder, resume or retry_failed, plugins)
-        with fill_store(prepared, chosen, retry_failed, told) as found:
-            if (failed := all_failed(found)) is not None:
+        with fill_store(prepared, worker_pool, retry_failed, report) as filled:
+            if (failed := all_failed(filled)) is not None:
                 raise failed
-            return dataset(found, registry_with(plugins))
+            return dataset(filled, registry_with(plugins))
 
 
 def prepared_sweep(
@@ -349,8 +352,10 @@ def prepared_sweep(
 def _with_static_remedy(error: SceneError) -> SceneError:
     """The same mistakes; who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had."""
     mistakes = [
-        attrs.evolve(one, message=f"{one.message}. {_FROM_ZERO}") if one.path == SPEED and one.value == 0 else one
-        for one in error.mistakes
+        attrs.evolve(mistake, message=f"{mistake.message}. {_FROM_ZERO}")
+        if mistake.path == SPEED and mistake.value == 0
+        else mistake
+        for mistake in error.mistakes
     ]
     return SceneError(mistakes)
 
@@ -369,7 +374,7 @@ def _in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
     return Design(listed=tuple(numbers_at(tables, point, registry) for point in design.listed))
 
 
-def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> Executor:
+def executor_of(name: str | Executor, options_given: ReadTables, registry: Registry) -> Executor:
     """An executor by its name, with the options that are given and that it has.
 
     Raises
@@ -377,15 +382,15 @@ def executor_of(name: str | Executor, given: ReadTables, registry: Registry) -> 
     PluginError
         A name that is not known, or an option that it does not have.
     """
-    options: Tables = {key: value for key, value in given.items() if value is not None}
+    options: Tables = {key: value for key, value in options_given.items() if value is not None}
     if not isinstance(name, str):
         if options:
             raise PluginError(f"{', '.join(options)}: an executor that is made already has its own")
         return name
     plugin = registry.find("executor", name).plugin
-    known = {field.name for field in attrs.fields(plugin)}
+    option_names = {field.name for field in attrs.fields(plugin)}
     for key in options:
-        if key not in known:
+        if key not in option_names:
             raise PluginError(f"executor '{name}' has no --{key}: leave it out, or choose another --executor")
     try:
         return plugin(**options)
