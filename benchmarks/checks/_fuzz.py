@@ -28,7 +28,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.planning.cost import START_S
-from raceway.planning.plan import Plan, make_plan
+from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import record_bytes, resolve
 from raceway.planning.rules import foreseen, implausible
 from raceway.scene.scene import Scene
@@ -93,7 +93,7 @@ def _status(word: str) -> int:
     )
 
 
-def check(tables: dict[str, Any]) -> tuple[Scene | None, Plan | None, str]:
+def check(tables: dict[str, Any]) -> tuple[Scene | None, ScenePlan | None, str]:
     """What ``raceway check`` and ``raceway plan`` do, and how it ended."""
     try:
         scene = scene_from_dict(tables)
@@ -108,7 +108,7 @@ def check(tables: dict[str, Any]) -> tuple[Scene | None, Plan | None, str]:
     return scene, plan, "foreseen" if mistakes else "planned"
 
 
-def planned_bytes(scene: Scene, plan: Plan, before: int) -> float:
+def planned_bytes(scene: Scene, plan: ScenePlan, before: int) -> float:
     """Memory [bytes] that a run is to take: what was there, its record, its meshes."""
     record = 0
     if scene.excitation is not None and plan.time_step_s is not None:
@@ -117,7 +117,7 @@ def planned_bytes(scene: Scene, plan: Plan, before: int) -> float:
     return before + record + (plan.mesh or {}).get("bytes", 0)
 
 
-def cheap(scene: Scene, plan: Plan) -> bool:
+def cheap(scene: Scene, plan: ScenePlan) -> bool:
     """Whether a scene is run."""
     if plan.predicted_work_s - START_S > (_SECONDS if scene.bodies.name == "rigid" else _DEFORMING_S):
         return False

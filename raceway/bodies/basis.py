@@ -14,7 +14,7 @@ from raceway.core.signatures import FORCE
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import force_params
 from raceway.framework.probe import plugin_kernel
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import speed_growth
 from raceway.storage.tables import Tables
@@ -117,7 +117,7 @@ def at_points(pairs: ContactPairs, pair: np.ndarray, area: np.ndarray) -> Contac
     return ContactPairs(**{**values, "area": area})
 
 
-def linear_parts(problem: Problem, plan: Plan) -> Tables:
+def linear_parts(problem: Problem, plan: ScenePlan) -> Tables:
     """Mass, damping and stiffness (5, 5) of ring, rotor and shaft, the unknowns (5,) and the constant load (5,)."""
     inertia = problem.inertia
     damping = np.diag([problem.rotor.damping] * 3 + [0.0, 0.0]) + gyroscopic(problem)

@@ -19,7 +19,7 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
 
 
 #: The part by which balls feel each other.
@@ -280,7 +280,7 @@ class Condensed:
         first, second = (sections(each, make_basis(each)) for each in map(resolve, (scene, changed)))
         return first == second
 
-    def build(self, problem: Problem, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.condensed_bearing`` and ``raceway.bodies.patch_bearing``."""
         if _nodal(problem.scene):
             from raceway.bodies.patch_bearing import build as nodal

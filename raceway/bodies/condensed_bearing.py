@@ -32,7 +32,7 @@ from raceway.core.structural import (
 )
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.estimate import Estimate
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
@@ -185,7 +185,7 @@ _COARSER = 2.0
 _NOTHING = 1e-6
 
 
-def build(problem: Problem, plan: Plan) -> _CondensedBearing:
+def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
     """The bearing of a scene with condensed bodies and contact resultants."""
     stiff = rigid.build(problem, plan)
     bodies = elastic_bodies(problem, stiff.basis)
@@ -315,7 +315,7 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
             )
 
 
-def _refuse_dashpots(problem: Problem, plan: Plan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
+def _refuse_dashpots(problem: Problem, plan: ScenePlan, stiff: RigidBearing, bodies: ElasticBodies) -> None:
     """Dashpots that a time step makes stiffer than what the bodies take off leaves."""
     compliance = -min(bodies.at(problem.bearing.contact_angle))
     if plan.time_step_s is None or problem.integrator.method.steady or compliance <= 0.0:

@@ -24,7 +24,7 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
 
 
 #: Contact resultants: bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory
@@ -367,7 +367,7 @@ class Elastic:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
         return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(problem.scene), scales=False, bytes=cost.bytes)
 
-    def build(self, problem: Problem, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.elastic_bearing``."""
         from raceway.bodies.elastic_bearing import build
 

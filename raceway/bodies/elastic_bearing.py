@@ -23,7 +23,7 @@ from raceway.elastic.ring import ElasticRing
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import radial_growth
 
@@ -31,7 +31,7 @@ from raceway.scene.growth import radial_growth
 _ENOUGH = 5.0
 
 
-def build(problem: Problem, plan: Plan) -> ElasticBodies:
+def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
     """The bearing of a scene with elastic bodies.
 
     Raises
@@ -67,7 +67,7 @@ def build(problem: Problem, plan: Plan) -> ElasticBodies:
     return ElasticPoints(basis, system, guess, bodies, rigid)
 
 
-def _angles(problem: Problem, plan: Plan, rigid: System, guess: np.ndarray) -> np.ndarray:
+def _angles(problem: Problem, plan: ScenePlan, rigid: System, guess: np.ndarray) -> np.ndarray:
     """(2 Z,) contact angles with rigid bodies, inner races first; the free one where a ball carries nothing."""
     angles = np.full(2 * rigid.ball_count, problem.bearing.contact_angle)
     try:

@@ -28,7 +28,7 @@ from raceway.core.ring.system import compiled
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -174,7 +174,7 @@ class Model:
     """
 
     problem: Problem
-    plan: Plan
+    plan: ScenePlan
     bearing: Bearing
     system: Ring
 
@@ -228,7 +228,7 @@ class Model:
 
 
 @door
-def build_model(scene: Scene, plan: Plan) -> Model:
+def build_model(scene: Scene, plan: ScenePlan) -> Model:
     """Arrays and kernels of a scene, by its kind of bodies.
 
     Raises

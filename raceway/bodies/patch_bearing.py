@@ -34,7 +34,7 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.duties import is_constraint, law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import load_at_edge
 from raceway.storage.tables import Tables
@@ -235,7 +235,7 @@ BULK = 0.8e-3
 _ROOM = 1.2
 
 
-def build(problem: Problem, plan: Plan) -> _NodalBearing:
+def build(problem: Problem, plan: ScenePlan) -> _NodalBearing:
     """The bearing of a scene with condensed bodies and pressures at surface points.
 
     Raises

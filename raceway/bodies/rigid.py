@@ -15,7 +15,7 @@ from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
 
 _TIMES = Times({"weightless": 2.3e-6, "inertial": 3.3e-6, "tangential": 16.0e-6}, sample=8.0e-6, search=1.0)
 _NO_MESH = "bodies.kind is rigid: no body is meshed"
@@ -64,7 +64,7 @@ class Rigid:
         """The motion's: an equilibrium takes microseconds."""
         return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
-    def build(self, problem: Problem, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.rigid_bearing``."""
         from raceway.bodies.rigid_bearing import build
 

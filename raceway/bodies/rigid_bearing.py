@@ -20,7 +20,7 @@ from raceway.core.signatures import LAW
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
-from raceway.planning.plan import Plan
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class RigidBearing(Bearing):
         return against_hertz(model, equilibrium)
 
 
-def build(problem: Problem, plan: Plan) -> RigidBearing:
+def build(problem: Problem, plan: ScenePlan) -> RigidBearing:
     """The bearing of a scene with rigid bodies."""
     basis = make_basis(problem)
     system = rigid_system(problem, plan, basis)
@@ -57,7 +57,7 @@ def with_hertz(problem: Problem) -> Problem:
     return problem.changed(contact=attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant"))
 
 
-def rigid_system(problem: Problem, plan: Plan, basis: Basis) -> System:
+def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
     """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
     kernel, base = _bodies_kernels(plan)
     return System(
@@ -89,7 +89,7 @@ def probe(problem: Problem, basis: Basis, system: System) -> None:
         probe_excitation(problem.excitation, system.force, system.force_params)
 
 
-def _bodies_kernels(plan: Plan) -> tuple[Kernel, Kernel]:
+def _bodies_kernels(plan: ScenePlan) -> tuple[Kernel, Kernel]:
     """The plan's kernel, and the one whose forces have a potential."""
     if plan.centrifugal:
         from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base
@@ -108,7 +108,7 @@ def _grooves(problem: Problem, geometry: BallBearing) -> np.ndarray:
     return np.array([*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm])
 
 
-def _scalars(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
+def _scalars(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out, growth = np.zeros(ring.SCALARS), basis.growth
     out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
@@ -139,7 +139,7 @@ def _stick_stiffness(problem: Problem, inner: Ellipse, outer: Ellipse, load: flo
     return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
 
 
-def _ball_table(problem: Problem, plan: Plan, basis: Basis) -> np.ndarray:
+def _ball_table(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
     inner, outer, azimuth, row = basis.inner, basis.outer, basis.azimuth, basis.row
     z, centrifugal = len(azimuth), np.zeros(len(basis.geometries))
     if plan.centrifugal:

@@ -14,7 +14,7 @@ from raceway.out.quantities import K
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
 
 LOGGER = logging.getLogger("raceway")
 #: Signs of a line that tell the time.
@@ -41,7 +41,7 @@ class _Listener:
     """Tells of each run's plan and of its parts' times, by the life-cycle hooks that plug-ins have, too."""
 
     @hookimpl
-    def raceway_plan_made(self, plan: Plan) -> None:
+    def raceway_plan_made(self, plan: ScenePlan) -> None:
         steps = f", {plan.predicted_steps} steps in {plan.turns} turns" if plan.predicted_steps else ""
         LOGGER.info("plan: %d degrees of freedom%s, predicted %.2g s", plan.dofs, steps, plan.predicted_wall_s)
         for part in plan.kept:

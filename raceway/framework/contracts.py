@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from raceway.errors import Mistake
     from raceway.pipeline.result import Result
     from raceway.planning.parts import Balls, Decisions, Motion
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
     from raceway.scene.scene import Scene
@@ -400,7 +400,7 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     def decide(self, problem: Problem, parts: Decisions) -> None: ...
     def unused(self, scene: Scene) -> list[tuple[str, str]]: ...
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
-    def build(self, problem: Problem, plan: Plan) -> BuiltBearing: ...
+    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing: ...
 
 
 class Study(attrs.AttrsInstance, Protocol):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from raceway.errors import Mistake
     from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation
     from raceway.planning.parts import Balls, Decisions, Motion
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.scene import Scene
 
@@ -61,7 +61,7 @@ class BodyKind:
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         return _answer(self._name, "cost", lambda: self._plugin.cost(problem, balls, motion, parts), Cost)
 
-    def build(self, problem: Problem, plan: Plan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         return _answer(self._name, "build", lambda: self._plugin.build(problem, plan), object)
 
     def same_bodies(self, other: Scene) -> bool:

@@ -8,7 +8,7 @@ import pluggy
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
 
 # A specification has no body: pluggy never calls it.  Mypy misses the return of those that declare one: empty-body.
 hookspec = pluggy.HookspecMarker("raceway")
@@ -66,7 +66,7 @@ def raceway_studies() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
-def raceway_plan_made(plan: Plan) -> None:
+def raceway_plan_made(plan: ScenePlan) -> None:
     """A plan is ready; nothing has been built yet."""
 
 

@@ -39,7 +39,7 @@ from raceway.pipeline.plausible import (
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
-from raceway.planning.plan import Plan, make_plan
+from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.rules import implausible
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
@@ -352,7 +352,7 @@ class Allowance:
     held: float = attrs.field(factory=lambda: resident_bytes())
 
     @classmethod
-    def of(cls, plan: Plan, patience: float) -> Allowance:
+    def of(cls, plan: ScenePlan, patience: float) -> Allowance:
         """Without an end where the plan knows no more than what a run takes at least."""
         planned = max(plan.predicted_wall_s, _LEAST_S)
         if plan.at_least or patience == inf:

@@ -23,12 +23,14 @@ from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 
-@attrs.frozen
-class Plan:
+@attrs.frozen(repr=False)
+class ScenePlan(Shown):
     """Decisions and predictions for one scene.
 
     Attributes
     ----------
+    title : of the scene
+    kept, left_out : each with ``part`` and ``why``
     balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic : whether the balls have these loads
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
@@ -40,8 +42,16 @@ class Plan:
     at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
     predicted_once_s : seconds of that which a second run on the same bodies does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> plan = rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+    >>> plan.predicted_steps, plan.time_step_s
+    (0, None)
     """
 
+    title: str
     kept: tuple[Part, ...]
     left_out: tuple[Part, ...]
     balls: str
@@ -59,9 +69,9 @@ class Plan:
     mesh: Tables | None = None
     at_least: bool = False
 
-    def keeps(self, part: str) -> bool:
+    def keeps(self, name: str) -> bool:
         """Whether a part is kept, by its name."""
-        return any(one.part == part for one in self.kept)
+        return any(part.part == name for part in self.kept)
 
     def to_dict(self) -> Tables:
         """Content of the table ``plan`` of result.json."""
@@ -77,9 +87,18 @@ class Plan:
             "mesh": self.mesh,
         }
 
+    def _shown(self) -> tuple[str, list[Fact]]:
+        step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
+        time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
+        head: list[Fact] = [
+            ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
+            ("kept", "", ", ".join(part.part for part in self.kept)),
+        ]
+        return self.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
+
 
 @door
-def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
+def make_plan(scene: Scene, force: Collection[str] = ()) -> ScenePlan:
     """Decide what a scene needs.
 
     Parameters
@@ -100,7 +119,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> Plan:
     return _plan(resolve(scene), force)
 
 
-def _plan(problem: Problem, force: Collection[str] = ()) -> Plan:
+def _plan(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
     refuse_what_cannot_run(problem)
     parts = Decisions(force)
     tilts = decide_tilts(problem, parts)
@@ -114,7 +133,8 @@ def _plan(problem: Problem, force: Collection[str] = ()) -> Plan:
     cost = problem.scene.body_kind.cost(problem, balls, motion, parts)
     free = (0 if problem.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
-    return Plan(
+    return ScenePlan(
+        title=problem.scene.title,
         kept=tuple(parts.kept),
         left_out=tuple(parts.left_out),
         balls=balls.kind,
@@ -132,37 +152,6 @@ def _plan(problem: Problem, force: Collection[str] = ()) -> Plan:
         mesh=cost.mesh,
         at_least=cost.at_least,
     )
-
-
-@attrs.frozen(repr=False)
-class ScenePlan(Shown, Plan):
-    """A plan that says which scene it is of.
-
-    Attributes
-    ----------
-    title : str, of the scene
-    kept, left_out : tuple of Part, each with ``part`` and ``why``
-    dofs : int, unknowns;  time_step_s : float or None [s];  predicted_steps : int
-    predicted_wall_s : float, of a whole run on this machine [s]
-
-    Examples
-    --------
-    >>> import raceway as rw
-    >>> plan = rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
-    >>> plan.predicted_steps, plan.time_step_s
-    (0, None)
-    """
-
-    title: str = attrs.field(default="", kw_only=True)
-
-    def _shown(self) -> tuple[str, list[Fact]]:
-        step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
-        time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
-        head: list[Fact] = [
-            ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
-            ("kept", "", ", ".join(part.part for part in self.kept)),
-        ]
-        return self.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
 
 
 @door
@@ -192,9 +181,7 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     problem = resolve(as_scene(scene, plugins=plugins))
     if mistakes := foreseen(problem):
         raise SceneError(mistakes)
-    decided = _plan(problem)
-    values = {str(field.alias): getattr(decided, field.name) for field in attrs.fields(Plan)}
-    return ScenePlan(**values, title=problem.scene.title)
+    return _plan(problem)
 
 
 @attrs.frozen(repr=False)

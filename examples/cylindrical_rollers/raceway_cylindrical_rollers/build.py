@@ -21,7 +21,7 @@ from raceway_cylindrical_rollers.kind import STRIBECK
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
 
 
@@ -89,7 +89,7 @@ class RollerBearing(Bearing):
         return None, f"law '{model.problem.contact.kind}' was found by experiment: what it is off by is not estimated"
 
 
-def build(problem: Problem, plan: Plan, length: float, ring_mass: float) -> RollerBearing:
+def build(problem: Problem, plan: ScenePlan, length: float, ring_mass: float) -> RollerBearing:
     """The bearing of a scene.
 
     Parameters
@@ -152,7 +152,7 @@ def _scalars(problem: Problem, basis: Basis, clearance: float) -> np.ndarray:
     return out
 
 
-def _table(problem: Problem, plan: Plan, basis: Basis, length: float) -> np.ndarray:
+def _table(problem: Problem, plan: ScenePlan, basis: Basis, length: float) -> np.ndarray:
     geometry, azimuth = basis.geometry, basis.azimuth
     table = np.zeros((len(azimuth), ring.COLUMNS))
     table[:, ring.COSINE], table[:, ring.SINE], table[:, ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0

@@ -14,7 +14,7 @@ from raceway.planning.cost import START_S, Times, compiled_motion
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing as BuiltBearing
     from raceway.planning.parts import Balls, Decisions, Motion
-    from raceway.planning.plan import Plan
+    from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
     from raceway.scene.scene import Scene
@@ -126,7 +126,7 @@ class CylindricalRollers:
         """The motion's."""
         return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
-    def build(self, problem: Problem, plan: Plan) -> BuiltBearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing:
         """See ``raceway_cylindrical_rollers.build``."""
         from raceway_cylindrical_rollers.build import build
 
