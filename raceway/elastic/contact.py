@@ -48,8 +48,6 @@ class Near:
         return cls(entries, short)
 
 
-#: Numbers that describe a surface: kind, then seven more.
-NUMBERS = 8
 #: Of a groove: the radius of its centre circle [m].
 CIRCLE = 4
 

@@ -197,9 +197,9 @@ def _loaded_balls(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
     out: list[tuple[int, LoadedBody]] = []
     for k, ball in enumerate(meshes[2:]):
         for first, answers in out:
-            like = meshes[first + 2]
-            expected = like.points @ setup.turn(first)
-            same = like.points.shape == ball.points.shape and np.array_equal(like.cells, ball.cells)
+            earlier = meshes[first + 2]
+            expected = earlier.points @ setup.turn(first)
+            same = earlier.points.shape == ball.points.shape and np.array_equal(earlier.cells, ball.cells)
             if same and np.abs(ball.points @ setup.turn(k) - expected).max() < _SAME * setup.geometry.ball_diameter:
                 out.append((first, answers))
                 break
