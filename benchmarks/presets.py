@@ -12,7 +12,7 @@ from raceway.studies.catalogue.rating_conventions import CONFORMITY, POISSON, YO
 FOLDER = Path(__file__).resolve().parents[1] / "raceway" / "data" / "series"
 SERIES = ("70", "72", "79")
 _PRINTED = "NSK, Super precision bearings, tables of angular contact ball bearings"
-_HOW = "inferred by `raceway infer` from the load ratings of all contact angles of the size"
+_HOW = "inferred by `raceway catalogue --infer` from the load ratings of all contact angles of the size"
 #: Columns: source, whether it is inferred, and the column of its relative scatter.
 _COLUMNS = {
     "bore": (_PRINTED, False, None),

@@ -113,11 +113,11 @@ def test_meshes_are_made_written_and_read_by_foreign_plugins(files, tmp_path):
     made, again = tmp_path / "made", tmp_path / "again"
     plugins = files("mesher", "format")
     words = ("--set", "mesh.kind=one_cell", "--format", "json_mesh")
-    found = invoke("mesh", MINIMAL, *plugins, *words, "--out", made, "--json")
+    found = invoke("view", "--mesh", MINIMAL, *plugins, *words, "--out", made, "--json")
     assert found.exit_code == 0, found.stderr
     assert json.loads(found.stdout)["files"] == [str(made / "inner_ring.mesh.json")]
     words = ("--set", "mesh.kind=file", "--set", f"mesh.inner_ring={made / 'inner_ring.mesh.json'}", "--format", "json_mesh")
-    found = invoke("mesh", MINIMAL, *plugins, *words, "--out", again)
+    found = invoke("view", "--mesh", MINIMAL, *plugins, *words, "--out", again)
     assert found.exit_code == 0, found.stderr
     first, second = (json.loads((folder / "inner_ring.mesh.json").read_text()) for folder in (made, again))
     assert sorted(first["points"]) == sorted(second["points"])  # the mesher renumbers

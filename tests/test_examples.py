@@ -14,7 +14,7 @@ from raceway.testing import run
 from validation.command_line import invoke
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
-#: Scenes for `raceway mesh`: too large to run here.
+#: Scenes for `raceway view --mesh`: too large to run here.
 MESHES = {"b7206_article_mesh"}
 #: Scenes that take tens of seconds: planned here; a smaller one of their kind runs in tests/test_elastic_scene.py.
 LONG = {"b7206_elastic"}

@@ -232,7 +232,7 @@ def test_a_wrong_table_is_told_with_its_line(text, words):
 
 
 def test_the_command_infers_one_bearing_and_a_table(tmp_path):
-    one = ["infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"]
+    one = ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"]
     found = json.loads(invoke(*one, "--json").stdout)
     assert found["bearing"]["ball_count"] == 20 and found["numbers"]["ball_count"]["reason"]
     assert "axial stiffness known to about 4 %" in invoke(*one).stdout
@@ -242,20 +242,20 @@ def test_the_command_infers_one_bearing_and_a_table(tmp_path):
     )
     with file.open("a") as more:
         more.write("contradiction,70,114,20,15,18.5,0.02\n")
-    table = json.loads(invoke("infer", str(file), "--json").stdout)
+    table = json.loads(invoke("catalogue", "--infer", str(file), "--json").stdout)
     assert [row.get("ball_count") for row in table["rows"]] == [None, 20, None]
     assert "line 5: contradiction: static rating" in table["rows"][0]["refused"]
     assert "no whole number" in table["rows"][2]["refused"]
-    assert "refused" in invoke("infer", str(file)).stdout
+    assert "refused" in invoke("catalogue", "--infer", str(file)).stdout
 
 
 @pytest.mark.parametrize(
     "words",
     [
-        ["infer"],
-        ["infer", "none.csv"],
-        ["infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN"],
-        ["infer", "nsk", "--bore", "70 mm"],
+        ["catalogue", "--infer"],
+        ["catalogue", "--infer", "none.csv"],
+        ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN"],
+        ["catalogue", "--infer", "nsk", "--bore", "70 mm"],
         ["catalogue", "7014B"],
         ["catalogue", "70*", "--picture", "all.png"],
         ["catalogue", "7014C", "--picture", "one.bmp"],

@@ -171,7 +171,7 @@ def test_pictures_are_drawn_without_a_display_and_in_silence(tmp_path):
     """Of the view at a static load, and of a mesh; ``test_commands`` looks at those of a motion."""
     (tmp_path / "scene.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\nradial = [600.0, 0.0]\n')
     view, mesh = (["--out", str(tmp_path / name), "--json"] for name in ("view", "mesh"))
-    commands = [["view", str(tmp_path / "scene.toml"), *view], ["mesh", MINIMAL, *COARSE, "--picture", *mesh]]
+    commands = [["view", str(tmp_path / "scene.toml"), *view], ["view", "--mesh", MINIMAL, *COARSE, "--picture", *mesh]]
     found = python("-c", DRAWING.format(commands=commands), DISPLAY="", PYTHONWARNINGS="always")
     assert found.returncode == 0 and found.stderr == "", found.stderr
     content, _ = json.JSONDecoder().raw_decode(found.stdout)
@@ -183,7 +183,7 @@ def test_pictures_are_drawn_without_a_display_and_in_silence(tmp_path):
 
 
 def test_mesh_counts_and_files(tmp_path):
-    found = invoke("mesh", MINIMAL, *COARSE, "--out", tmp_path, "--json")
+    found = invoke("view", "--mesh", MINIMAL, *COARSE, "--out", tmp_path, "--json")
     assert found.exit_code == 0, found.output
     content = json.loads(found.stdout)
     assert content["elements"] == sum(body["elements"] for body in content["bodies"].values()) > 1000
@@ -198,7 +198,7 @@ def test_mesh_counts_and_files(tmp_path):
 
 def test_a_format_goes_by_the_ending_of_its_files_too(tmp_path):
     for word in ("inp", "abaqus"):
-        found = invoke("mesh", MINIMAL, *COARSE, "--format", word, "--out", tmp_path / word)
+        found = invoke("view", "--mesh", MINIMAL, *COARSE, "--format", word, "--out", tmp_path / word)
         assert found.exit_code == 0, found.output
     assert (tmp_path / "inp/balls.inp").read_bytes() == (tmp_path / "abaqus/balls.inp").read_bytes()
 
@@ -206,7 +206,7 @@ def test_a_format_goes_by_the_ending_of_its_files_too(tmp_path):
 def test_the_axial_load_sets_the_patch(tmp_path):
     widths = []
     for axial in (50.0, 5000.0):
-        found = invoke("mesh", MINIMAL, *COARSE, "--set", f"load.axial={axial}", "--out", tmp_path, "--json")
+        found = invoke("view", "--mesh", MINIMAL, *COARSE, "--set", f"load.axial={axial}", "--out", tmp_path, "--json")
         widths.append(json.loads(found.stdout)["patch_size_m"]["short"]["min"])
     # Semi-axes go with the cube root of a ball's load; 100 times the axial load, on a contact angle that grows, is 3 to 4.7.
     assert 3.0 < widths[1] / widths[0] < 4.7
@@ -250,7 +250,7 @@ FLIPPED = '{"ball_0": SimpleNamespace(points=points, cells=np.array([[4, 5, 6, 7
 def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
     (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer))
     given = ("--plugin", tmp_path / "wrong.py", "--set", "mesh.kind=wrong", "--out", tmp_path / "out")
-    found = invoke("mesh", MINIMAL, *given)
+    found = invoke("view", "--mesh", MINIMAL, *given)
     assert found.exit_code == 2
     assert words in " ".join(found.output.split())
 
@@ -258,7 +258,7 @@ def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
 def test_the_documents_mesher_runs(tmp_path):
     text = (EXAMPLES.parent / "docs" / "plugins.md").read_text(encoding="utf-8")
     (tmp_path / "one_cell.py").write_text(text.split("# one_cell.py\n")[1].split("```")[0])
-    words = ("mesh", MINIMAL, "--plugin", tmp_path / "one_cell.py", "--set", "mesh.kind=one_cell")
+    words = ("view", "--mesh", MINIMAL, "--plugin", tmp_path / "one_cell.py", "--set", "mesh.kind=one_cell")
     found = invoke(*words, "--out", tmp_path / "out", "--json")
     assert found.exit_code == 0
     assert json.loads(found.stdout)["elements"] == 1

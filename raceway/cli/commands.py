@@ -112,12 +112,12 @@ ANSWERS = (
         pictures=False,
     ),
     Command(
-        "infer",
+        "catalogue --infer",
         "raceway.studies.catalogue.infer:infer_texts",
         "Balls and grooves of a bearing from what its maker prints.",
-        'raceway infer --bore "70 mm" --outer-diameter "110 mm" \\\n'
+        'raceway catalogue --infer --bore "70 mm" --outer-diameter "110 mm" \\\n'
         '    --rating "15:47 kN:43 kN" --rating "25:44.5 kN:41 kN"\n'
-        "raceway infer nsk --conformity 0.522",
+        "raceway catalogue --infer nsk --conformity 0.522",
         {
             "table": Option(positional=True),
             "bore": Option(metavar="LENGTH"),
@@ -140,10 +140,10 @@ ANSWERS = (
         pictures=False,
     ),
     Command(
-        "mesh",
+        "view --mesh",
         "raceway.studies.view.mesh:mesh",
         "Mesh the bodies of a scene: counts, quality, files.",
-        "raceway mesh examples/b7206_article_mesh.toml --picture",
+        "raceway view --mesh examples/b7206_article_mesh.toml --picture",
         {"form": Option("format", "NAME")},
         pictures=False,
     ),

@@ -35,6 +35,14 @@ class CommandsByName(Commands):
         about = self._table().get(ALIASES.get(cmd_name, cmd_name))
         return None if about is None else about.click()
 
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
+        """Some commands are another one with a flag: ``catalogue --infer``."""
+        for name in self._table():
+            word, _, flag = name.partition(" ")
+            if flag and args[0] == word and flag in args:
+                return super().resolve_command(ctx, [name, *(arg for arg in args[1:] if arg != flag)])
+        return super().resolve_command(ctx, args)
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for heading, commands in self.sections.items():
             with formatter.section(heading):

@@ -23,7 +23,7 @@ GMN = "GMN's printed balls: 103 bearings, each inferred from what is printed of 
 @cache
 def inferred(*words):
     begun = working_process_time()
-    content = json.loads(invoke("infer", *words, "--json").stdout)["summary"]
+    content = json.loads(invoke("catalogue", "--infer", *words, "--json").stdout)["summary"]
     return content, working_process_time() - begun
 
 

@@ -5,5 +5,5 @@ pictures   the bearing cut open, labels, the most loaded ball in section
 stress     displacement and stress fields of elastic bodies, close up below the contacts
 page       the page with WebGL
 view       ``raceway.view``: the states of a result that are drawn, the files, the answer
-mesh       ``raceway mesh``: counts, quality, files, picture
+mesh       ``raceway view --mesh``: counts, quality, files, picture
 """

@@ -1,4 +1,4 @@
-"""``raceway mesh``: the meshes of a scene, their quality, files and picture."""
+"""``raceway view --mesh``: the meshes of a scene, their quality, files and picture."""
 
 from __future__ import annotations
 
