@@ -3,7 +3,7 @@
 import pytest
 
 from raceway import PluginError, hookimpl
-from raceway.studies import command
+from raceway.cli import study as command
 from raceway.testing import Registry
 from validation.command_line import invoke, raceway
 

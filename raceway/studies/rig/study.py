@@ -256,10 +256,9 @@ def rig(
 
     Parameters
     ----------
-    scene : with a table [rig]
+    scene : with a table [rig];  plugins : files of one-off plug-ins that it uses
     signals : write the signals as CSV (default)
     kept : file that finished points are stored in and taken from
-    plugins : files of one-off plug-ins that the scene uses
     progress : called as ``progress(what, done, total)`` after each point; an exception stops the study
 
     Raises
@@ -274,7 +273,7 @@ def rig(
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
     supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
     critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
-    points: dict[int, _Point] = {}
+    points = dict[int, _Point]()
 
     def compute(numbered: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
         """The bearing's answers: nearly all of the time; signals, and what is read from them, follow again from those."""
@@ -286,22 +285,21 @@ def rig(
             return {"answers": [], "reason": str(why)}
         return {"answers": tested.answers, "reason": ""}
 
-    table, items = attrs.asdict(inputs), []
-    for k, (axial, rpm) in grid:
-        key = row_key(scene, registry, ["rig", table, axial, rpm, k])
-        items.append(Item(key, f"{rpm:.0f} r/min, {axial:.0f} N", (k, (axial, rpm))))
+    keys = [row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]) for k, point in grid]
+    names = [f"{rpm:.0f} r/min, {axial:.0f} N" for _, (axial, rpm) in grid]
+    items = [Item(*item) for item in zip(keys, names, grid, strict=True)]
     finished = RowStore(kept)
     rows, _ = work_through(compute, items, finished, local(registry, 0), registry, on_progress=progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
-    failed = []
+    failed = list[Tables]()
     for (k, (axial, rpm)), row in zip(grid, rows, strict=True):
         if row["reason"]:
             failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
         elif k not in points:
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
-    ordered = [points[k] for k in sorted(points)]
-    return RigStudy(scene.title, scene, inputs, critical, ordered, failed, finished.fault, signals)
+    solved = [points[k] for k in sorted(points)]
+    return RigStudy(scene.title, scene, inputs, critical, solved, failed, finished.fault, signals)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
