@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from raceway.core.ring.equilibrium import cholesky_solve, eliminate
+from raceway.core.ring.equilibrium import cholesky_solve, eliminate, solve
 from raceway.elastic.linear_statics import BlockMatrix
 
 
+@pytest.mark.parametrize("gauss", [eliminate, solve])
 @pytest.mark.parametrize("seed", range(5))
-def test_solve_and_cholesky_are_lapack_s(seed):
+def test_elimination_and_cholesky_are_lapack_s(seed, gauss):
     rng = np.random.default_rng(seed)
     matrix, rhs = rng.normal(size=(5, 5)), rng.normal(size=5)
     matrix[0, 0] = 0.0  # takes a pivot from below
     both = np.column_stack([matrix, rhs, rhs[::-1]])
-    assert eliminate(both)
+    assert gauss(both)
     # Backward stable: rounding times the condition number.
     expected = np.linalg.solve(matrix, np.column_stack([rhs, rhs[::-1]]))
     np.testing.assert_allclose(both[:, 5:], expected, rtol=1e-13 * np.linalg.cond(matrix))
@@ -28,6 +29,7 @@ def test_solve_and_cholesky_are_lapack_s(seed):
 
 def test_a_singular_or_indefinite_matrix_is_told():
     singular = np.outer([1.0, 2.0, 3.0], [1.0, 0.0, 1.0])
+    assert not solve(np.column_stack([singular, np.ones(3)]))
     assert not eliminate(np.column_stack([singular, np.ones(3)]))
     assert not cholesky_solve(np.diag([1.0, -1.0, 1.0]), np.ones(3), 3)
 

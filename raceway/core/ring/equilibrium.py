@@ -49,11 +49,8 @@ from raceway.core.signatures import (
 
 
 @jit(boolean(MATRIX))
-def eliminate(matrix):
-    """Solve in place by Gaussian elimination with partial pivoting: (n, n + k), a system and its k right sides, which become solutions.
-
-    Returns False when a pivot vanishes or is not a number; the matrix is then undefined.
-    """
+def _triangulate(matrix):
+    """Gaussian elimination with partial pivoting of (n, n + k), a system and its k right sides; False where a pivot vanishes or is no number."""
     n, width = matrix.shape
     for column in range(n):
         pivot, largest = column, abs(matrix[column, column])
@@ -71,6 +68,18 @@ def eliminate(matrix):
             if factor != 0.0:
                 for k in range(column + 1, width):
                     matrix[row, k] -= factor * matrix[column, k]
+    return True
+
+
+@jit(boolean(MATRIX))
+def eliminate(matrix):
+    """Solve in place: (n, n + k), a system and its k right sides, which become solutions, all of them at once.
+
+    Returns False when a pivot vanishes or is not a number; the matrix is then undefined.
+    """
+    if not _triangulate(matrix):
+        return False
+    n, width = matrix.shape
     for row in range(n - 1, -1, -1):
         inverse = 1.0 / matrix[row, row]
         for k in range(n, width):
@@ -80,6 +89,21 @@ def eliminate(matrix):
             if factor != 0.0:
                 for k in range(n, width):
                     matrix[above, k] -= factor * matrix[row, k]
+    return True
+
+
+@jit(boolean(MATRIX))
+def solve(matrix):
+    """The same one right side after the other, which rounds otherwise: chaotic motions tell both apart."""
+    if not _triangulate(matrix):
+        return False
+    n, width = matrix.shape
+    for k in range(n, width):
+        for row in range(n - 1, -1, -1):
+            total = matrix[row, k]
+            for column in range(row + 1, n):
+                total -= matrix[row, column] * matrix[column, k]
+            matrix[row, k] = total / matrix[row, row]
     return True
 
 
@@ -403,7 +427,7 @@ def _newton_step(linear, K, r, ones, J, step):
     _hessian(linear, K, ones, 1.0, J)
     for i in range(5):
         J[i, 5] = -r[i]
-    if not eliminate(J):
+    if not solve(J):
         return False
     for i in range(5):
         step[i] = J[i, 5]

@@ -21,7 +21,7 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import Kernel, jit
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest, copy_matrix, eliminate
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest, copy_matrix, solve
 from raceway.core.ring.equilibrium import RESIDUAL as LEFT
 from raceway.core.ring.kernels import CONTACT_FORCE as CONTACT_FORCE_ROW
 from raceway.core.ring.kernels import GAP
@@ -178,7 +178,7 @@ def _newton_step(formula, linear, response, residual, J, dq):
             ) * free[i] * free[j]  # fmt: skip
         if free[i] == 0.0:
             J[i, i] = 1.0
-    if not eliminate(J):
+    if not solve(J):
         return False
     for i in range(5):
         dq[i] = J[i, 5]
@@ -267,7 +267,7 @@ def _effective_inverse(linear, dt, J):
         J[i, 5 + i] = free[i]
         if free[i] == 0.0:
             J[i, i] = 1.0
-    return eliminate(J)
+    return solve(J)
 
 
 @jit(void(LINEAR, boolean, VECTOR, VECTOR, VECTOR, VECTOR), inline=True)
