@@ -131,7 +131,7 @@ def test_a_plug_in_that_fails_to_import(tmp_path):
     """It is told beside what does not need it, and never on standard output."""
     install(tmp_path, "broken", "import sys; sys.exit(3)")
     found = raceway("check", MINIMAL, "--json", PYTHONPATH=tmp_path)
-    assert found.returncode == 0 and json.loads(found.stdout) == {"errors": []}
+    assert found.returncode == 0 and json.loads(found.stdout)["errors"] == []
     assert "warning: plug-in `broken (broken)`: fails to import: SystemExit: 3" in found.stderr
     listed = raceway("dev", "plugins", PYTHONPATH=tmp_path)
     assert listed.returncode == 2 and "SystemExit: 3" in listed.stderr and "newmark" in listed.stdout

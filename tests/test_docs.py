@@ -17,7 +17,7 @@ from raceway.testing import check
 PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 FILES = {match.group(1): text for _, text in BLOCKS if (match := re.match(r"# (\S+\.(?:py|toml))\n", text))}
-PLUGINS = [name for name, text in FILES.items() if "@hookimpl" in text]
+PLUGINS = [name for name, text in FILES.items() if re.search(r"@(rw\.)?hookimpl", text)]
 
 
 @pytest.fixture

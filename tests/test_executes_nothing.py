@@ -91,8 +91,8 @@ def test_meshing_reads_no_options_beside_a_file(traps, suffix):
 
 
 @pytest.mark.needs("gmsh")
-@pytest.mark.parametrize("command", ["run", "mesh"])
+@pytest.mark.parametrize("command", [("run",), ("view", "--mesh")])
 def test_a_script_is_refused(traps, command):
-    refused = invoke(command, traps / "geo.toml", "--out", traps / "out")
+    refused = invoke(*command, traps / "geo.toml", "--out", traps / "out")
     assert refused.exit_code == 2 and "reads .step, .stp, .brep, not '.geo'" in refused.stderr
     assert not list(traps.glob("PWNED*"))

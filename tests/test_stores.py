@@ -259,7 +259,7 @@ def test_export_says_what_is_lost_and_for_which_ross(store, tmp_path, monkeypatc
     monkeypatch.setattr(ross_file, "version", absent)
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")
     assert found.exit_code == 0, found.stderr
-    assert "ROSS is not installed here; the file is for ROSS 3" in found.stderr
+    assert "ROSS is not installed: written for ROSS 3" in found.stderr
     assert "moments on the ring" in found.stdout
     assert "kyy = kzz" in found.stdout and "r/min" in found.stdout and "rad/s" not in found.stdout.partition("note")[0]
     monkeypatch.setattr(ross_file, "version", lambda _name: "2.3.0")

@@ -306,7 +306,7 @@ def stresses() -> Rule:
     def sample(recovers: bool) -> Answer:
         system.locate(y)
         system.static_internal(y)
-        bodies.look(system, y, np.zeros_like(y))
+        bodies.look(y, np.zeros_like(y))
         u = system.assembly.nodal(y)
         parts = [u[system.assembly.part(k)] for k in range(len(operators))]
         forces = [one.internal_force(part).reshape(-1, 3) for one, part in zip(operators, parts, strict=True)]

@@ -99,7 +99,7 @@ def export(
     if ross is not None:
         check_name(paths[0])
         if ross_version is None and installed_generation() is None:
-            warnings.warn("ROSS is not installed here; the file is for ROSS 3. For ROSS 2: --ross-version 2", stacklevel=3)
+            warnings.warn("ROSS is not installed: written for ROSS 3; --ross-version 2", stacklevel=3)
         exports = [export_ross(store, at=at, source=source, damping=damping, ross_version=ross_version, node=node, tag=tag)]
     exports += [
         export_coefficients(store, kind=kind, at=at, source=source, damping=damping, number=number, node=node, tag=tag)

@@ -11,10 +11,9 @@ from typing import Any
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.registry import Registry
+from raceway.framework.registry import Entry, Registry
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.stability.study import Case
-from raceway.studies.verify.cases import transient_integrators
 
 #: The article's bearing, load and force; every case that names no other scene changes this one.
 BASE: Tables = {
@@ -222,6 +221,12 @@ _CHATTER: tuple[tuple[str, Tables, float, bool], ...] = (
     ("generalized_alpha", {"rho_infinity": 0.0}, 1.0, False), ("central_difference", {}, 0.05, False),
 )  # fmt: skip
 _AT_REST = "scenes:condensed_at_rest"
+
+
+def transient_integrators(registry: Registry) -> list[Entry]:
+    """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
+    integrators = [entry for entry in registry.all() if entry.kind == "integrator"]
+    return [entry for entry in integrators if entry.plugin.inertial and not entry.plugin.steady]
 
 
 def transient(registry: Registry) -> list[str]:

@@ -24,13 +24,14 @@ from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.record import Motion, Schedule
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.time.schemes import integrate
-from raceway.framework.registry import Entry, Registry
+from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
+from raceway.studies.stability.catalogue import transient_integrators
 from raceway.studies.verify.reference import Case, Row
 
 if TYPE_CHECKING:
@@ -186,12 +187,6 @@ def impact_of(inputs: Tables) -> _Impact:
         return _Impact(0.5 * mass, 2.0 * speed, ellipse(4.0 / radius, 0.0, modulus).factor)
     modulus = young / (1.0 - poisson**2)
     return _Impact(mass, speed, ellipse(2.0 / radius, 0.0, modulus).factor)
-
-
-def transient_integrators(registry: Registry) -> list[Entry]:
-    """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
-    integrators = [entry for entry in registry.all() if entry.kind == "integrator"]
-    return [entry for entry in integrators if entry.plugin.inertial and not entry.plugin.steady]
 
 
 def impact_of_spheres(case: Case, registry: Registry) -> Rows:
