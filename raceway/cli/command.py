@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import attrs
 import click
@@ -34,9 +34,10 @@ from raceway.cli.frame import (
     tell_faults,
 )
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.registry import Registry, registry_with
-from raceway.out.answer import Answer, Interrupted
-from raceway.storage.files import slug, writable
+
+if TYPE_CHECKING:
+    from raceway.framework.registry import Registry
+    from raceway.out.answer import Answer
 
 Value = Any
 #: Types of options by annotation; of others, texts.
@@ -182,6 +183,10 @@ def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
+    from raceway.framework.registry import registry_with
+    from raceway.out.answer import Interrupted
+    from raceway.storage.files import slug, writable
+
     arguments = {name: value for name, value in values.items() if value != ()}
     as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
     out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.out.quantities import K
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
@@ -53,9 +52,10 @@ class _Listener:
         cost = result.cost
         parts = [f"{word} {cost[name]:.2f} s" for word, name in _PARTS.items() if cost.get(name)]
         LOGGER.info("run finished in %.2f s: %s", cost["wall_s"], ", ".join(parts) or "nothing to build")
-        found = result.identification
-        if found is not None:
-            LOGGER.info("K = %s at %g r/min", K.text(K.of(result)), 60.0 * found.frequency_hz)
+        if result.identification is not None:
+            from raceway.out.quantities import K
+
+            LOGGER.info("K = %s at %g r/min", K.text(K.of(result)), 60.0 * result.identification.frequency_hz)
 
     @hookimpl
     def raceway_run_failed(self, error: Exception) -> None:

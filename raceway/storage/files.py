@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import os
 import re
 import resource
 import stat
-import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -181,6 +179,9 @@ def slug(title: str) -> str:
     Accents are left out.  A title with letters of another script, or more of them, ends in a hash of it.  Other changes make another name: where
     letters of them are lost, or more than 100, a hash of all stands at the end.
     """
+    import hashlib
+    import unicodedata
+
     first, _, changes = title.partition("\n")
     latin = unicodedata.normalize("NFKD", first)
     text = re.sub(r"[^A-Za-z0-9._]+", "-", "".join(s for s in latin if not unicodedata.combining(s))).strip("-._")
