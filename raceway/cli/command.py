@@ -64,8 +64,7 @@ class Option(NamedTuple):
     positional: bool = False
 
 
-@attrs.frozen
-class Command:
+class Command(NamedTuple):
     """A line of the table of commands.
 
     Attributes
@@ -89,7 +88,7 @@ class Command:
     front: str | Callable[..., Value]
     summary: str
     example: str
-    options: Mapping[str, Option | None] = attrs.field(factory=dict)
+    options: Mapping[str, Option | None] = {}
     folder: str | None = ""
     named_by: str = ""
     unchecked: bool = False

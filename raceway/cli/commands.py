@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from importlib import import_module
+from typing import NamedTuple
 
-import attrs
 import click
 
 from raceway.cli.command import Command, Option
 
 
-@attrs.frozen
-class Later:
+class Later(NamedTuple):
     """A command that computes no answer: the click command at "module:name"."""
 
     name: str
