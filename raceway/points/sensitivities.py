@@ -159,14 +159,15 @@ class Sensitivities(Answer):
         for name, value in self.values.items():
             number, unit = read_in(value, DIFFERENTIABLE[name].unit)
             yield f"{name.replace('_', ' ')} {number:.5g} {unit}: {self.definitions[name]}"
+        if self.tolerances is not None:
+            yield sections(tolerance_rows(self.tolerances))
+            yield "first order holds where answers are nearly straight over the tolerances; --samples N samples them"
         yield [
             {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
             | {f"{name.replace('_', ' ')} [% per %]": _percent(row.influence.get(name)) for name in self.values}
             for row in self.rows
             if row.influence
         ]
-        if self.tolerances is not None:
-            yield sections(tolerance_rows(self.tolerances))
         yield from (f"warning: {text}" for text in self.warnings)
         yield f"cost: {self.gradients_s:.2g} s beside {self.run_s:.2g} s of the run, {self.models} models built"
         if zero := [row.key.path for row in self.rows if not row.influence]:
