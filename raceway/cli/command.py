@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,7 +16,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
-from raceway.cli.console import warn
 from raceway.cli.frame import (
     PATH,
     RESULTS,
@@ -25,6 +23,7 @@ from raceway.cli.frame import (
     changed_tables,
     common,
     has_matplotlib,
+    keeping,
     load,
     out_option,
     plugin_files,
@@ -189,11 +188,14 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     arguments = {name: value for name, value in values.items() if value != ()}
     as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
     out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())
-    registry, known, title = registry_with(plugins), inspect.signature(front).parameters, ""
+    registry, signature, title = registry_with(plugins), inspect.signature(front), ""
+    known = signature.parameters
     changed_by_front = "changes" in known and known["scene"].default is None
     if arguments.get("scene") is not None and not changed_by_front:
         arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
-    elif changes and not changed_by_front:
+    elif changed_by_front:
+        arguments["changes"] = changes
+    elif changes:
         raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
     if about.named_by:
         title = Path(arguments[about.named_by]).stem + "".join(title.partition("\n")[1:])
@@ -210,15 +212,14 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     shared = {"plugins": plugins, "kept": rows, "registry": registry}
     arguments |= {name: value for name, value in shared.items() if name in known}
     stopped = None
-    with _resumable(rows):
+    with keeping("what is finished is in", rows):
         with show_progress() as progress:
             if "progress" in known:
                 arguments["progress"] = progress
             try:
-                first = (
-                    [arguments.pop(name) for name in list(known)[: list(known).index("changes")]] if changed_by_front else []
-                )
-                answer: Answer = front(*first, *(changes if changed_by_front else ()), **arguments)
+                bound = signature.bind_partial()
+                bound.arguments.update(arguments)
+                answer: Answer = front(*bound.args, **bound.kwargs)
             except SceneError as error:
                 raise _by_flags(about, error) or error from None
             except Interrupted as stop:
@@ -242,17 +243,6 @@ def _scene(about: Command, path: Path, changes: tuple[str, ...], registry: Regis
     if mistakes:
         raise SceneError(mistakes)
     return tables, str(tables["title"])
-
-
-@contextmanager
-def _resumable(rows: Path | None) -> Iterator[None]:
-    """Say where a study goes on that is stopped meanwhile, if anything was finished."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        if rows is not None and rows.is_file():
-            warn(f"what is finished is in {rows}; the same command goes on from there", label="")
-        raise
 
 
 def _by_flags(about: Command, error: RacewayError | None) -> RacewayError | None:

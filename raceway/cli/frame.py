@@ -31,7 +31,6 @@ RESULTS = Path("raceway-out")
 #: A file or folder that need not be there yet: what reads it says what is wrong with it.
 PATH = click.Path(path_type=Path, readable=False)
 
-scene_file = click.argument("scene", type=PATH)
 #: For studies that have a scene of their own.
 scene_if_any = click.argument("scene", type=PATH, required=False)
 set_keys = click.option(
@@ -58,7 +57,7 @@ plugin_files = click.option(
 
 def on_scene(command: F) -> F:
     """SCENE and --set, of every command that reads a scene; ``load`` takes both."""
-    return scene_file(set_keys(command))
+    return click.argument("scene", type=PATH)(set_keys(command))
 
 
 def common(command: F) -> F:
@@ -121,13 +120,13 @@ def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Calla
 
 
 @contextmanager
-def keeping(what: str, file: Path) -> Iterator[None]:
+def keeping(words: str, file: Path | None) -> Iterator[None]:
     """Say where a study goes on that is stopped meanwhile, if anything was finished."""
     try:
         yield
     except KeyboardInterrupt:
-        if file.is_file():
-            warn(f"finished {what} are kept in {file}; the same command goes on from there", label="")
+        if file is not None and file.is_file():
+            warn(f"{words} {file}; the same command goes on from there", label="")
         raise
 
 

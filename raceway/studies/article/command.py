@@ -129,7 +129,7 @@ def article(options: _ArticleOptions) -> int:
 
         compute = partial(compute_curves, curves, options.processes)
     rows = folder / f"{name}-rows.jsonl"
-    with keeping("runs" if elastic else "curves", rows), show_progress() as progress:
+    with keeping(f"finished {'runs' if elastic else 'curves'} are kept in", rows), show_progress() as progress:
         answer = compute(rows, registry, options.plugins, progress, _command(context))
         progress("writing", 0, 0)
         files: list[str] = []
