@@ -28,7 +28,7 @@ For plug-ins, beside options and their rules:
 
 hookimpl       decorator of a function that hands plug-ins in, named after its hook
 Answer         base class of what a study answers: screen, files and picture
-Command        a command from the signature and docstring of a function that gives an Answer
+Command        a command from the signature and docstring of a function that gives an Answer;  Option  what its line says otherwise
 jit            makes a function a kernel of one signature
 LAW            signature of a contact law: (gap [m], gap_rate [m/s], params, state_old, state_new, dt [s], force [N], d_gap, d_rate)
 FORCE          signature of an excitation: (t [s], params, out (5,) [N, N m])
@@ -83,7 +83,7 @@ _MODULES = {
     "raceway.pipeline.result": "Result",
     "raceway.framework.hookspecs": "hookimpl",
     "raceway.out.answer": "Answer",
-    "raceway.cli.command": "Command",
+    "raceway.cli.command": "Command Option",
     "raceway.core.jit": "jit",
     "raceway.core.signatures": "LAW FORCE",
     "raceway.framework.options": (

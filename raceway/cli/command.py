@@ -1,7 +1,8 @@
 """A command from a public function: arguments, options and help come from its signature and its docstring.
 
 A front takes plain values and returns an ``Answer``, which is saved, shown and drawn the same way for all.  Names of arguments have one meaning:
-``scene`` is a file that --set changes, ``kept`` the file of finished rows in the folder of --out, ``progress`` a bar, ``plugins`` files.
+``scene`` is a file that --set changes, ``kept`` the file of finished rows in the folder of --out, ``progress`` a bar, ``plugins`` files,
+``pictures`` the folder of what is drawn while it is computed.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ Value = Any
 #: Types of options by annotation; of others, texts.
 _TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": PATH}
 #: Arguments that no option stands for.
-_SHARED = ("scene", "changes", "plugins", "progress", "kept", "out", "registry")
+_SHARED = ("scene", "changes", "plugins", "progress", "kept", "out", "registry", "pictures")
 
 
 class Option(NamedTuple):
@@ -194,6 +195,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     if arguments.get("scene") is not None and not changed_by_front:
         arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
     elif changed_by_front:
+        title = str(changed_tables(scene, changes, registry)[0]["title"]) if (scene := arguments.get("scene")) else ""
         arguments["changes"] = changes
     elif changes:
         raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
@@ -209,10 +211,10 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         pictures = pictures and has_matplotlib()
     tell_faults(registry)
     rows = None if folder is None or "kept" not in known else folder / f"{about.name}-rows.jsonl"
-    shared = {"plugins": plugins, "kept": rows, "registry": registry}
+    shared = {"plugins": plugins, "kept": rows, "registry": registry, "pictures": folder if pictures else None}
     arguments |= {name: value for name, value in shared.items() if name in known}
     stopped = None
-    with keeping("what is finished is in", rows):
+    with keeping(rows):
         with show_progress() as progress:
             if "progress" in known:
                 arguments["progress"] = progress

@@ -30,16 +30,10 @@ F = TypeVar("F", bound=Callable[..., object])
 RESULTS = Path("raceway-out")
 #: A file or folder that need not be there yet: what reads it says what is wrong with it.
 PATH = click.Path(path_type=Path, readable=False)
-
-#: For studies that have a scene of their own.
-scene_if_any = click.argument("scene", type=PATH, required=False)
 set_keys = click.option(
     "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
 )
 at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
-processes_at_a_time = click.option(
-    "--processes", type=click.IntRange(0, 256), default=2, show_default=True, help="That work at a time; 0: in this one."
-)
 
 
 def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Callable[[F], F]:
@@ -120,13 +114,13 @@ def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Calla
 
 
 @contextmanager
-def keeping(words: str, file: Path | None) -> Iterator[None]:
+def keeping(file: Path | None) -> Iterator[None]:
     """Say where a study goes on that is stopped meanwhile, if anything was finished."""
     try:
         yield
     except KeyboardInterrupt:
         if file is not None and file.is_file():
-            warn(f"{words} {file}; the same command goes on from there", label="")
+            warn(f"what is finished is in {file}; the same command goes on from there", label="")
         raise
 
 

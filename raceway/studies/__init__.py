@@ -28,9 +28,25 @@ class Article:
     help: ClassVar[str] = "The article's figures 9 to 12 and a verdict on each of its claims."
 
     def command(self) -> click.Command:
-        from raceway.studies.article.command import article
+        from raceway import Command, Option
 
-        return article
+        example = (
+            "raceway study article --bodies rigid --friction 0\n"
+            "raceway study article examples/b7206.toml \\\n"
+            "    --set rotor.mass=1.5 --axial 400,1000,2000\n"
+            "raceway study article --bodies elastic --set mesh.element_size=2e-3"
+        )
+        options = {
+            "bodies": Option(choices=("rigid", "condensed", "both", "elastic")),
+            "speeds": Option(metavar="LIST"),
+            "axial": Option(metavar="LIST"),
+            "shaft": Option(metavar="N·M/RAD"),
+            "friction": Option(metavar="MU"),
+            "turns": Option(metavar="N"),
+        }
+        return Command(
+            "article", "raceway.studies.article.front:article", self.help, example, options, folder="-article"
+        ).click()
 
 
 @attrs.frozen

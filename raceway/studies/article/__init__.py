@@ -6,5 +6,5 @@ claims         the claims, each with its rule, what was computed and the verdict
 study          runs, the trend of K with speed one choice swapped at a time, an independent solver's trends: ``article()``
 figures        figures 9 to 12;  page: page, tables and pictures on disk, the verdicts on the screen
 elastic        the article's own model: elastic bodies at one operating point, beside the others;  elastic_page: its page and screen
-command        ``raceway study article``
+front          ``raceway study article``
 """

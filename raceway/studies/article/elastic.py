@@ -17,7 +17,7 @@ import attrs
 
 from raceway import make_plan
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.progress import RemainingTime
@@ -496,34 +496,25 @@ class ElasticArticle(Answer):
 
 def elastic_article(
     design: Design,
-    folder: Path | None = None,
-    store: Path | None = None,
-    registry: Registry | None = None,
-    plugins: Sequence[Path] = (),
-    on_progress: OnProgress | None = None,
-    command: str = "raceway study article --bodies elastic",
+    folder: Path | None,
+    store: Path | None,
+    registry: Registry,
+    plugins: Sequence[Path],
+    on_progress: OnProgress,
+    command: str,
 ) -> ElasticArticle:
-    """Run the study.
+    """Compute every run but those that ``store`` holds, one after the other; what this machine refused is tried again.
 
     Parameters
     ----------
     folder : where the section through the most loaded contact is drawn; None: it is not
-    store : file that finished rows are stored in and taken from; what this machine refused is tried again
     command : what makes the page again
-
-    Raises
-    ------
-    SceneError
-        A mistake in the scene; nothing has been run.
-    KeyboardInterrupt
-        Finished rows are in ``store``.
     """
     begun, cpu = time.monotonic(), time.process_time()
-    registry = registry or default_registry()
     runs = design.runs()
     scenes = [design.scene(run, registry) for run in runs]
     finished = RowStore(store)
-    finished.rows = {key: row for key, row in finished.rows.items() if row["status"] != "refused"}
+    finished.rows = {key: row for key, row in finished.rows.items() if row.get("status") != "refused"}
     items = [Item(row_key(scene, registry, "article elastic"), run.name, k) for k, (run, scene) in enumerate(zip(runs, scenes, strict=True))]  # fmt: skip
     waiting = [k for k, item in enumerate(items) if finished.get(item.key) is None]
     seconds = _predicted([scenes[k] for k in waiting], registry)

@@ -18,7 +18,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, Status
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.quantities import K
@@ -219,7 +219,6 @@ def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
     return Trend(*case, (first, *ratios), computed, reason)
 
 
-_PROCESSES = 2
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
 RIG_SPEEDS, RIG_LOADS = (11000.0, 13000.0, 15000.0), (400.0, 2000.0)
 #: Turns of the motion that is integrated where no ring stays on a steady one; half of them are judged.
@@ -469,35 +468,24 @@ class Article(Answer):
         yield Words(cost + (f"; {self.reused} of {self.tasks} pieces taken from earlier" if self.reused else ""), "dim")
 
 
-def article(
+def solve_curves(
     design: Design,
-    processes: int = _PROCESSES,
-    store: Path | None = None,
-    registry: Registry | None = None,
-    plugins: Sequence[Path] = (),
-    on_progress: OnProgress | None = None,
-    command: str = "raceway study article",
+    processes: int,
+    store: Path | None,
+    registry: Registry,
+    plugins: Sequence[Path],
+    on_progress: OnProgress,
+    command: str,
 ) -> Article:
-    """Run the study.
+    """Compute everything but what ``store`` holds, where finished curves go; with all mistakes of the scenes refused first.
 
     Parameters
     ----------
-    design : by ``raceway.studies.article.design.design``
     processes : how many work at a time; 0 works in this one
-    store : file that finished curves are stored in and taken from
     plugins : one-off plug-in files, which each process loads
-    on_progress : called as ``on_progress(what, done, total)``; an exception stops the study
     command : what makes the page again
-
-    Raises
-    ------
-    SceneError
-        A mistake in the scene; nothing has been run.
-    KeyboardInterrupt
-        Finished curves are in ``store``.
     """
     begun, cpu, own_cpu = time.monotonic(), processor_time(), time.process_time()
-    registry = registry or default_registry()
     for setting in design.settings():  # mistakes are refused before anything is run
         title = scene_from_dict(design.point(setting, design.loads[0], design.speeds[0], registry), registry).title
     rows, program = RowStore(store), program_key(registry)
