@@ -15,7 +15,7 @@ from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import hann_line
 from raceway.points import precision as module
 from raceway.points.engine import measured
-from raceway.points.precision import THRESHOLDS, measure_settings
+from raceway.points.precision import THRESHOLDS, precision
 from raceway.points.settings import find_reference, make_design
 from raceway.points.store import RowStore, row_key
 from raceway.scene.inputs import read_toml
@@ -30,7 +30,7 @@ LADDER = ["integrator.kind=newmark,central_difference", "integrator.steps_per_tu
 
 @pytest.fixture(scope="module")
 def ladder():
-    return measure_settings(FEW, LADDER, repeats=1)
+    return precision(FEW, LADDER, repeats=1)
 
 
 def test_the_default_design_has_each_axis_and_says_what_it_leaves_out():
@@ -91,7 +91,7 @@ def test_json_is_what_the_design_promises(ladder, tmp_path):
 
 
 def test_model_error_and_numerical_error_are_told_apart():
-    found = measure_settings(FEW, ["contact.kind=hertz,penalty"], repeats=1)
+    found = precision(FEW, ["contact.kind=hertz,penalty"], repeats=1)
     base, other = found.models
     assert base["base"] and other["model"] == {"contact.kind": "penalty"}
     hertz, penalty = (row["value"] for row in found.judged)
@@ -103,7 +103,7 @@ def test_model_error_and_numerical_error_are_told_apart():
 
 def test_what_is_refused_or_fails_stays_in_the_table_with_its_reason():
     steps = "integrator.steps_per_turn=16,180"
-    found = measure_settings(
+    found = precision(
         FEW, ["integrator.kind=central_difference", steps, "contact.discretisation=resultant,nodal"], repeats=1
     )
     states = [(row["status"], bool(row["reason"])) for row in found.judged]
@@ -120,19 +120,19 @@ def test_finished_rows_survive_a_stop_and_are_reused(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        measure_settings(FEW, LADDER, repeats=1, store=store, on_progress=stop)
+        precision(FEW, LADDER, repeats=1, kept=store, progress=stop)
     assert len(RowStore(store).rows) == 2
     with store.open("ab") as file:
         file.write(b'{"key": "cut off by a ful')
-    found = measure_settings(FEW, LADDER, repeats=1, store=store)
+    found = precision(FEW, LADDER, repeats=1, kept=store)
     assert [row["reused"] for row in found.judged] == [True, True, False, False, False, False]
-    again = measure_settings(FEW, LADDER, repeats=1, store=store)
+    again = precision(FEW, LADDER, repeats=1, kept=store)
     assert all(row["reused"] for row in again.judged)
     assert again.to_dict()["reference"] == found.to_dict()["reference"]
 
 
 def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path):
-    found = measure_settings(FEW, ["integrator.steps_per_turn=90"], repeats=1, store=tmp_path)  # a folder takes no lines
+    found = precision(FEW, ["integrator.steps_per_turn=90"], repeats=1, kept=tmp_path)  # a folder takes no lines
     assert found.judged[0]["error"] is not None
     assert isinstance(found.fault, RacewayError) and "takes no more rows" in str(found.fault)
 
@@ -204,7 +204,7 @@ def test_no_converging_row_is_a_numerical_failure_with_the_reason(tmp_path):
 
 def test_a_static_scene_has_models_only():
     static = {name: table for name, table in TABLES.items() if name != "excitation"}
-    found = measure_settings(static, ["contact.kind=hertz,penalty"], repeats=1)
+    found = precision(static, ["contact.kind=hertz,penalty"], repeats=1)
     assert [row["error"] for row in found.judged] == [0.0, 0.0]
     assert found.models[1]["difference"] > 0.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, ClassVar
@@ -22,7 +22,6 @@ from raceway.out.quantities import DIFFERENTIABLE, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, values
-from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Item, local, work_through
 from raceway.points.sensitivities import Sensitivities, sensitivities
@@ -263,43 +262,6 @@ class Band(Answer):
         }
 
 
-def _band_of(
-    scene: Scene,
-    tolerances: Sequence[Tolerance],
-    count: int,
-    seed: int,
-    registry: Registry,
-    processes: int = 0,
-    kept: Path | None = None,
-    plugins: Sequence[Path] = (),
-    on_progress: OnProgress | None = None,
-) -> Band:
-    """The band by (d + 2) ``count`` samples, d the number of tolerances.
-
-    Parameters
-    ----------
-    kept : file of finished chunks, read and added to
-
-    Raises
-    ------
-    SceneError, ConvergenceError
-        The scene itself has no answer.
-    ConvergenceError
-        No sample has one.
-    """
-    nominal, words = _answer(scene)
-    unit = design(count, len(tolerances), seed)
-    low, high = (np.array([getattr(tolerance, end) for tolerance in tolerances]) for end in ("low", "high"))
-    numbers = low + unit * (high - low)
-    paths = [tolerance.key.path for tolerance in tolerances]
-    chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
-    key = row_key(scene, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
-    items = [Item(f"{key} {k}", "samples", (scene.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
-    chunk_rows, _ = work_through(sampled, items, RowStore(kept), local(registry, processes), registry, plugins, on_progress)
-    rows = [row for chunk in chunk_rows for row in chunk["rows"]]
-    return _summary(scene.title, tuple(tolerances), nominal, words, rows, len(tolerances))
-
-
 def sampled(task: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
     """Answers at some points: quantity -> number each, or the reason why there is none.
 
@@ -412,19 +374,19 @@ def band(
         raise SceneError.at(
             "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
-    varied = tolerances_of(read, tolerances or stated_tolerances(read))
+    varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
+    nominal, words = _answer(read)
+    low, high = (np.array([getattr(tolerance, end) for tolerance in varied]) for end in ("low", "high"))
+    numbers = low + design(count, len(varied), seed) * (high - low)
+    paths = [tolerance.key.path for tolerance in varied]
+    key = row_key(read, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
+    chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
+    items = [Item(f"{key} {k}", "samples", (read.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
+    store, files = RowStore(None if kept is None else Path(kept)), [Path(file) for file in plugins]
     with telling(progress) as report:
-        return _band_of(
-            read,
-            varied,
-            count,
-            seed,
-            default_registry(),
-            processes,
-            None if kept is None else Path(kept),
-            [Path(file) for file in plugins],
-            report,
-        )
+        chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
+    rows = [row for chunk in chunk_rows for row in chunk["rows"]]
+    return _summary(read.title, tuple(varied), nominal, words, rows, len(varied))
 
 
 @door

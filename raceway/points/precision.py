@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import door, member
-from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import given_axes
@@ -25,6 +25,7 @@ from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.engine import measured_once
 from raceway.points.settings import (
+    Design,
     Reference,
     Runner,
     Setting,
@@ -40,7 +41,7 @@ from raceway.points.store import RowStore
 from raceway.scene.changes import parse_change
 from raceway.scene.inputs import SceneSource, plain_tables, tidy
 from raceway.storage.files import writable
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -429,69 +430,25 @@ REPEATS = 3
 _LIMIT_S = 30.0
 
 
-def measure_settings(
-    tables: ReadTables,
-    vary: Vary = (),
-    reference: Vary = (),
-    repeats: int = REPEATS,
-    limit_s: float = _LIMIT_S,
-    store: Path | None = None,
-    registry: Registry | None = None,
-    on_progress: OnProgress | None = None,
+def _measured(
+    design: Design, reference: Tables, repeats: int, limit_s: float, rows: RowStore, registry: Registry, report: OnProgress
 ) -> Precision:
-    """A work-precision study of one scene.
-
-    Parameters
-    ----------
-    tables : plain tables of a TOML scene
-    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values, whose product is run; the default design without them
-    reference : changes ``KEY=VALUE``, or keys with values, that make the reference; found by itself without them
-    repeats : runs of each setting
-    limit_s : settings predicted to take longer are left out [s]
-    store : file that finished rows are kept in and taken from
-    on_progress : called as ``on_progress(what, done, total)`` before each run; an exception stops the study
-
-    Raises
-    ------
-    SceneError
-        A mistake in the scene, an axis or the reference; nothing has been run.
-    RacewayError
-        A file of rows that cannot be read.
-    """
-    registry = registry or default_registry()
-    design = make_design(tables, vary, limit_s, registry)
-    named_reference = _given(design.settings, reference, registry)
-    rows = RowStore(store)
+    """Every setting run, then the reference of each physics."""
     groups: dict[str, list[Setting]] = {}
     for setting in design.settings:
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    finished = 0
-
-    def tell(label: str) -> None:
-        if on_progress is not None:
-            on_progress(label, finished, total)
-
     measured = []
     for setting in design.settings:
-        tell(_words_of(setting.values))
+        report(_words_of(setting.values), len(measured), total)
         measured.append(_row(setting, repeats, registry, rows))
-        finished += 1
-    runner = Runner(registry, rows, limit_s, tell)
     references = {design.base: Reference({}, {}, "no setting could be run")}
-    for physics, group in groups.items():
-        references[physics] = find_reference(group, runner, named_reference)
-        finished += 1
+    for finished, (physics, group) in enumerate(groups.items(), start=len(measured)):
+        runner = Runner(registry, rows, limit_s, lambda label, finished=finished: report(label, finished, total))
+        references[physics] = find_reference(group, runner, reference)
     return Precision(
-        design.title,
-        tuple(measured),
-        references,
-        design.base,
-        design.left_out,
-        design.notes,
-        rows.fault,
-        bool(named_reference),
+        design.title, tuple(measured), references, design.base, design.left_out, design.notes, rows.fault, bool(reference)
     )
 
 
@@ -590,11 +547,10 @@ def precision(
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))
     kept = folder / _ROWS if folder is not None and kept is None else kept
-    tables = plain_tables(scene, registry=registry)
+    design = make_design(plain_tables(scene, registry=registry), vary or (), limit_s, registry)
+    named = _given(design.settings, reference, registry)
     with telling(progress) as report:
-        study = measure_settings(
-            tables, vary or (), reference, repeats, limit_s, None if kept is None else Path(kept), registry, report
-        )
+        study = _measured(design, named, repeats, limit_s, RowStore(None if kept is None else Path(kept)), registry, report)
     if study.fault is not None:
         warnings.warn(str(study.fault), stacklevel=3)
     if folder is not None:

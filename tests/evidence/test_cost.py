@@ -21,7 +21,7 @@ from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.points.precision import EXACT, measure_settings
+from raceway.points.precision import EXACT, precision
 from raceway.scene.inputs import read_toml
 from validation import fused_loop, left_out, plan_time
 from validation.command_line import ARTICLE, python, raceway
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.night
 @cache
 def studied():
     """Reference and rows of the scene's own model, by the default design of `raceway precision`."""
-    content = measure_settings(read_toml(ARTICLE), repeats=5).to_dict()
+    content = precision(read_toml(ARTICLE), repeats=5).to_dict()
     return content["reference"], [row for row in content["rows"] if row["base"] and row["error"] is not None]
 
 
