@@ -15,7 +15,7 @@ from raceway import ConvergenceError, SceneError
 from raceway.out.progress import RemainingTime
 from raceway.scene.inputs import read_toml
 from raceway.studies.article import elastic
-from raceway.studies.article.elastic import SCENE, Design, Run, design
+from raceway.studies.article.elastic import SCENE, _Design, _Run, design
 from raceway.studies.article.elastic_page import drawings, page
 from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
@@ -41,7 +41,7 @@ def tables(**more):
 @pytest.fixture
 def short(monkeypatch):
     """One load case, one excitation, a dozen steps: seconds."""
-    monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0)]))
+    monkeypatch.setattr(_Design, "load_cases", property(lambda _: [(1000.0, 500.0)]))
     monkeypatch.setattr(elastic, "CLAIMED", elastic.CLAIMED[:1])
     monkeypatch.setattr(elastic, "STEPS", 12)
 
@@ -59,7 +59,7 @@ def test_the_scene_is_the_article_s_mesh_of_the_examples():
 
 @pytest.mark.slow
 def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_runs(tmp_path, short, monkeypatch):
-    done, real = [], elastic.row_of
+    done, real = [], elastic._row_of
 
     def stop(*given):
         if len(done) == 4:
@@ -67,14 +67,14 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
         done.append(1)
         return real(*given)
 
-    monkeypatch.setattr(elastic, "row_of", stop)
+    monkeypatch.setattr(elastic, "_row_of", stop)
     words = (*WORDS, "--turns", "1", "--no-pictures", "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert found.stderr.count("goes on from there") == 1
     kept = tmp_path / "article-rows.jsonl"
     assert len(kept.read_text(encoding="utf-8").split()) > 0
-    monkeypatch.setattr(elastic, "row_of", real)
+    monkeypatch.setattr(elastic, "_row_of", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0, found.output
     content = json.loads(found.stdout)
@@ -171,7 +171,7 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
 
 @pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
-    monkeypatch.setattr(Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
+    monkeypatch.setattr(_Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
     monkeypatch.setattr(elastic, "CLAIMED", ())
     real, wrong, tried = elastic.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
@@ -223,16 +223,16 @@ def test_deviations_are_those_of_rows_made_by_hand():
     """Pressures of elastic bodies are 2 % above Hertz's, of the ball with the least load 3 %; K 1 % above that of condensed bodies."""
     study = elastic_study()
     row, other = (study.row("static", "1000 N axial + 500 N radial", kind) for kind in ("elastic", "condensed"))
-    hertz = elastic.from_hertz(row)["inner"]
+    hertz = elastic._from_hertz(row)["inner"]
     assert hertz["most_loaded"] == pytest.approx(0.02) and hertz["largest"] == pytest.approx(0.03)
     assert hertz["ball"] == 0 and hertz["loaded_balls"] == 3  # of four, one of which carries nothing
-    off = elastic.at_rest(row, other)
+    off = elastic._at_rest(row, other)
     assert off["x"] == pytest.approx(-0.01) and off["kyy"] == pytest.approx(0.004) and off["y"] is not None
     assert off["ball_loads"] == pytest.approx(0.005)
     axial = [study.row("static", "400 N axial", kind) for kind in ("elastic", "condensed")]
-    assert elastic.at_rest(*axial)["y"] is None
+    assert elastic._at_rest(*axial)["y"] is None
     moving = [study.row("motion", "bidirectional unbalance force", kind) for kind in ("elastic", "condensed")]
-    off = elastic.in_motion(*moving)
+    off = elastic._in_motion(*moving)
     assert off["k"] == pytest.approx(0.01) and off["c"] == pytest.approx(0.5)
     # w 50 N s/m over |Z|
     assert off["wc"] == pytest.approx(
@@ -277,6 +277,6 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
 
 
 def test_rows_of_bodies_name_their_runs():
-    assert Run("elastic", 400.0).name == "static 400 N axial with elastic bodies"
-    assert Run("rigid", 1000.0, 500.0).case == "1000 N axial + 500 N radial"
+    assert _Run("elastic", 400.0).name == "static 400 N axial with elastic bodies"
+    assert _Run("rigid", 1000.0, 500.0).case == "1000 N axial + 500 N radial"
     assert len(elastic_rows()) == 18

@@ -7,7 +7,7 @@ import pytest
 
 from raceway.studies.article import rules
 from raceway.studies.article.claims import verdicts
-from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding, exponent, judge, where
+from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding, _where, exponent, judge
 from validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
@@ -200,12 +200,12 @@ def test_regions_in_words():
             for tilt in ("locked", "shaft", "free") for inertia in (True, False) for load in (400.0, 600.0, 800.0)
         ]  # fmt: skip
 
-    assert where(findings(lambda *_: True), True) == "everywhere"
-    assert where(findings(lambda *_: False), True) == "nowhere"
-    assert where(findings(lambda tilt, *_: tilt != "free"), True) == "tilt locked or against the shaft"
-    assert where(findings(lambda t, inertia, load: inertia), True) == "with ball inertia"
-    assert where(findings(lambda t, i, load: load != 600.0), True) == "400 and 800 N"
-    mixed = where(findings(lambda tilt, i, load: tilt == "free" or (tilt == "shaft" and load < 700.0)), True)
+    assert _where(findings(lambda *_: True), True) == "everywhere"
+    assert _where(findings(lambda *_: False), True) == "nowhere"
+    assert _where(findings(lambda tilt, *_: tilt != "free"), True) == "tilt locked or against the shaft"
+    assert _where(findings(lambda t, inertia, load: inertia), True) == "with ball inertia"
+    assert _where(findings(lambda t, i, load: load != 600.0), True) == "400 and 800 N"
+    mixed = _where(findings(lambda tilt, i, load: tilt == "free" or (tilt == "shaft" and load < 700.0)), True)
     assert mixed == "tilt against the shaft, 400 to 600 N; tilt free"
 
 

@@ -35,7 +35,7 @@ from raceway.studies.rig import page as rig
 from raceway.studies.view import pictures as view_pictures
 from raceway.studies.view import stress
 from raceway.studies.view.bodies import Bearing
-from raceway.studies.view.view import at_rest
+from raceway.studies.view.view import _at_rest
 from raceway.testing import b7206c, run
 from tests import test_compare
 from tests.elastic.test_below_contact import TINY
@@ -136,7 +136,7 @@ def of_a_rig() -> list[Figure]:
                 )
             )
     study = SimpleNamespace(points=points)
-    return [rig.procedures(study), rig.causes(study)]
+    return [rig._procedures(study), rig._causes(study)]
 
 
 def of_a_record() -> list[Figure]:
@@ -149,19 +149,19 @@ def of_a_record() -> list[Figure]:
 
 def of_contacts() -> list[Figure]:
     found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [view_pictures.contacts(Bearing.of(found), at_rest(found), "made up")]
+    return [view_pictures.contacts(Bearing.of(found), _at_rest(found), "made up")]
 
 
 #: Module that makes figures -> how they come about here.
 def of_stresses() -> list[Figure]:
     result = run(scene_from_dict(TINY))
-    return [stress.drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
+    return [stress._drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
 
 
 def of_the_catalogue() -> list[Figure]:
     """Large and small, light and heavy, with few and with many balls."""
     return [
-        drawing.section(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
+        drawing._section(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
         for name in ("7000C", "7014A", "7930A5")
     ]
 

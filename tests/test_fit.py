@@ -13,7 +13,7 @@ from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
 from raceway.studies.fit.disturbances import aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
-from raceway.studies.fit.linear import Linear, _free_parts, _spectra_of
+from raceway.studies.fit.linear import _free_parts, _Linear, _spectra_of
 from raceway.studies.fit.signals import signals_of, write_recording
 from raceway.studies.fit.table import _TableResiduals, measurements_in
 from raceway.studies.rig.signals import record as rig_record
@@ -200,7 +200,7 @@ def test_derivatives_of_a_records_residuals_are_those_of_the_residuals():
     free = _free_parts(["K", "C", "mass"], lines, None)
     colours = np.array([1.0, 0.5, 0.2])[:, None]
     noise = np.stack([colours * [1e-18, 2e-18], colours * [1e-4, 2e-4]])
-    problem = Linear(lines, free, 0.0, noise, (2.0 * np.pi * 50.0,))
+    problem = _Linear(lines, free, 0.0, noise, (2.0 * np.pi * 50.0,))
     sizes = np.array([one.size for one in (*free, *problem.nuisance)])
     at = sizes * np.linspace(0.5, 1.0, len(sizes))
     exact = problem.jacobian(at) * sizes

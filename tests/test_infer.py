@@ -12,11 +12,11 @@ import raceway as rw
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.studies.catalogue.infer import infer_table
+from raceway.studies.catalogue.infer import _infer_table
 from raceway.studies.catalogue.inferred import STIFFNESS_90, infer_printed
-from raceway.studies.catalogue.printed import Printed, Rating, parse_table, printed_by, sizes_of
+from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by, sizes_of
 from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS
-from raceway.studies.catalogue.ratings import BallRow, _load_factor, _static_factor, groove
+from raceway.studies.catalogue.ratings import BallRow, _groove, _load_factor, _static_factor
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -77,7 +77,7 @@ def test_the_load_factor_is_that_of_the_core():
     shape = BallBearing(D, PITCH, Z, ANGLE, 0.522, 0.53)
     g = shape.gamma
     for race, (f, exact) in enumerate(zip((0.522, 0.53), shape.ellipses(modulus), strict=True)):
-        assert _load_factor(*groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
+        assert _load_factor(*_groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
 
 
 # --- the answers
@@ -117,7 +117,7 @@ def test_the_practice_need_not_be_said(series):
 
 def test_bearings_with_printed_balls_are_inferred_from_the_others():
     """Each is left out of the known ones: Z in 95 %, D and d_m within 1 % (the issue's limits)."""
-    found = infer_table("gmn").summary
+    found = _infer_table("gmn").summary
     assert found["internals_printed"] == 103
     assert found["ball_count_right"] >= 0.95
     assert found["ball_diameter_within_1_percent"] >= 0.95
@@ -225,7 +225,7 @@ TABLES = {
 @pytest.mark.parametrize(("text", "words"), TABLES.values(), ids=TABLES)
 def test_a_wrong_table_is_told_with_its_line(text, words):
     with pytest.raises(SceneError, match=words):
-        parse_table(text, "mine.csv")
+        _parse_table(text, "mine.csv")
 
 
 # --- the commands

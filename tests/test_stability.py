@@ -18,8 +18,8 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.studies.stability import scenes, systems
-from raceway.studies.stability.catalogue import BASE, SCENES, catalogue, laws_with, transient, with_law
-from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, measured, rows_of, stability
+from raceway.studies.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
+from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
 from raceway.studies.stability.systems import Bench, axial_displacement, axial_force
 from validation.command_line import ARTICLE, invoke
 
@@ -36,7 +36,7 @@ def rows_named(name, cases=CASES, registry=REGISTRY, **wanted):
     """Rows of the catalogue's cases with a name and a setting."""
     found = [one for one in cases if one.name == name and wanted.items() <= one.setting.items()]
     assert found, (name, wanted)
-    return [row for one in found for row in rows_of(one, registry)]
+    return [row for one in found for row in _rows_of(one, registry)]
 
 
 def verdicts(rows):
@@ -56,7 +56,7 @@ def test_the_catalogue_has():
 
 
 def test_every_law_and_transient_integrator_takes_part_and_a_third_partys_in_the_quick_set_too():
-    assert {*laws_with(REGISTRY, "resultant"), "unilateral"} <= {one.setting.get("law") for one in CASES}
+    assert {*_laws_with(REGISTRY, "resultant"), "unilateral"} <= {one.setting.get("law") for one in CASES}
     for name in ("steps around the limit, linear", "orbit at the safe limit", "undamped steps", "impact"):
         assert {one.setting["integrator"] for one in CASES if one.name == name and one.quick} == set(transient(REGISTRY))
     assert not {"periodic", "quasi_static"} & set(transient(REGISTRY))
@@ -98,7 +98,7 @@ def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
 
 def extreme_rows(judge, **changes):
     arguments = {"tables": BASE, "changes": {"integrator.turns": 1, **changes}, "judge": judge}
-    return rows_of(Case("c", "scenes:extreme", {}, arguments), REGISTRY)
+    return _rows_of(Case("c", "scenes:extreme", {}, arguments), REGISTRY)
 
 
 def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
@@ -174,7 +174,7 @@ def test_friction_is_judged_where_it_acts():
 
 
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
-    (row,) = rows_of(case("answer"), REGISTRY)
+    (row,) = _rows_of(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
     cases = [case("hang"), case("die"), case("answer", value="near"), case("answer", value="far")]
     hung, died, *answered = measured(cases, 2, REGISTRY, patience=6.0)[0]
@@ -202,9 +202,9 @@ def test_the_safe_limit_holds_on_large_orbits():
 @pytest.mark.parametrize("integrator", ["central_difference", "newmark"])
 def test_energy_of_symplectic_steps_has_no_trend(integrator):
     cases = [one for one in CASES if one.name == "undamped steps" and one.quick and one.setting["integrator"] == integrator]
-    assert len(cases) == 2 * len(laws_with(REGISTRY, "resultant"))
+    assert len(cases) == 2 * len(_laws_with(REGISTRY, "resultant"))
     for one in cases:
-        (row,) = rows_of(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
+        (row,) = _rows_of(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
         # The catalogue holds a million steps to the same bounds.
         assert row.verdict == AS_EXPECTED, row
 
@@ -256,7 +256,7 @@ def test_expectations_of_any_law_follow_from_its_own_force(name, law):
 def small_motions(**contact):
     changes = {"contact.kind": "hunt_crossley", **{f"contact.{key}": value for key, value in contact.items()}}
     arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes}
-    return rows_of(Case("c", "motions:small_motions", {}, arguments), registry_with([DAMPED]))
+    return _rows_of(Case("c", "motions:small_motions", {}, arguments), registry_with([DAMPED]))
 
 
 def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
@@ -271,7 +271,7 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
-    model = Bench(BASE, {**with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
+    model = Bench(BASE, {**_with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
     own, found = axial_displacement(model), solve_equilibrium(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
@@ -301,7 +301,7 @@ def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, exp
     monkeypatch.setattr(Bench, "model", refuse)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
     arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
-    (row,) = rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
+    (row,) = _rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
     assert row.verdict == expected
 
 

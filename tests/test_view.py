@@ -12,10 +12,10 @@ from raceway import scene_from_dict
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.plugins.formats import Vtu
 from raceway.plugins.pictures import picture
-from raceway.studies.view.bodies import Bearing, contact_patch
+from raceway.studies.view.bodies import Bearing, _contact_patch
 from raceway.studies.view.bodies import ball as solid_ball
-from raceway.studies.view.pictures import LETTERS, ball_labels, contacts
-from raceway.studies.view.view import at_peak, at_rest
+from raceway.studies.view.pictures import LETTERS, _ball_labels, contacts
+from raceway.studies.view.view import _at_peak, _at_rest
 from raceway.testing import b7206c, run
 from tests.test_commands import COARSE
 from validation.command_line import EXAMPLES, MINIMAL, invoke, python
@@ -52,7 +52,7 @@ def test_rings_and_balls_have_their_volume(result):
 
 
 def test_a_contact_ellipse_has_its_axes_and_peak():
-    patch = contact_patch(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0)
+    patch = _contact_patch(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0)
     reach = np.abs(patch.points).max(axis=0)
     # Laid on a ball of 5 mm: 1 mm across its tangent plane becomes 5 sin(atan(1/5)) = 0.98 mm, drawn 0.4 % above it.
     assert reach[0] == pytest.approx(0.98 * 1.004, rel=1e-3) and reach[2] == pytest.approx(0.1, rel=6e-3)
@@ -60,7 +60,7 @@ def test_a_contact_ellipse_has_its_axes_and_peak():
 
 
 def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = Bearing.of(result), _at_rest(result)
     z = 12
     loads = [part.load for part in bearing.balls(state)]
     assert loads == pytest.approx(list(result.equilibrium.contact_force[:z]))
@@ -76,7 +76,7 @@ def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
 
 
 def test_contacts_lie_where_ring_and_ball_meet(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = Bearing.of(result), _at_rest(result)
     towards, centres = bearing.towards(state), bearing.centres(state)
     for inner, ball in ((True, 0), (False, 12)):
         shape = ring_shape(bearing.shape, inner)
@@ -87,7 +87,7 @@ def test_contacts_lie_where_ring_and_ball_meet(result):
 
 
 def test_the_peak_is_the_record_s_largest_load(moving):
-    state, angle = at_peak(moving)
+    state, angle = _at_peak(moving)
     assert 0.0 <= angle < 360.0
     assert state.load[:12].max() == pytest.approx(moving.simulation.record.contact_force[:, :12].max(), rel=1e-9)
 
@@ -103,9 +103,9 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
     tables = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
     tables["bearing"] |= {"ball_count": ball_count, "ball_diameter": 9.525e-3 if ball_count == 12 else 4.5e-3}
     bearing = Bearing.of(found := run(scene_from_dict(tables)))
-    state = at_rest(found)
+    state = _at_rest(found)
     top = float(state.load.max())
-    labels = ball_labels(bearing, state, top, flat)
+    labels = _ball_labels(bearing, state, top, flat)
     assert [int(text.split(":")[0]) for text, _ in labels] == list(range(0, ball_count, every))
     boxes = [np.array([corner, np.add(corner, (12.0 * len(text), LETTERS))]) for text, corner in labels]
     overlap = [(a[0] < b[1]).all() and (b[0] < a[1]).all() for k, a in enumerate(boxes) for b in boxes[:k]]
@@ -117,7 +117,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
 
 
 def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = Bearing.of(result), _at_rest(result)
     factor = bearing.widening(state)
     assert factor > 2, "specks in truth"
     ball = int(np.argmax(state.load[:12]))
@@ -128,7 +128,7 @@ def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
 
 
 def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
-    state = at_rest(result)
+    state = _at_rest(result)
     ball = int(np.argmax(state.load[:12]))
     panel = contacts(Bearing.of(result), state, "made up").axes[1]
     at = np.asarray(panel.collections[0].get_coordinates()) / (1e3 * state.half[ball])
@@ -140,7 +140,7 @@ def test_a_pair_has_four_rings_and_loads_that_point_apart():
     found = run(scene_from_dict(b7206c(bearing=bearing, load={"axial": 0.0, "radial": [100.0, 0.0]})))
     drawn = Bearing.of(found)
     assert len(drawn.rings(cut=None)) == 4
-    towards = drawn.towards(at_rest(found))[24:]
+    towards = drawn.towards(_at_rest(found))[24:]
     assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
     labels = [text.get_text() for text in picture(found, "ball_loads").legends[0].get_texts()]
     assert labels == ["static, row 1", "static, row 2"]

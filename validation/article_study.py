@@ -10,7 +10,7 @@ from raceway.storage.tables import Tables
 from raceway.studies.article import elastic
 from raceway.studies.article import study as driver
 from raceway.studies.article.design import Curves, article_tables, design
-from raceway.studies.article.elastic import ElasticArticle, Run
+from raceway.studies.article.elastic import ElasticArticle, _Run
 from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
@@ -60,12 +60,12 @@ def static(deviation: float | None) -> list[dict[str, Any]]:
 def study(found: Curves) -> Article:
     """A whole study around invented curves."""
     compared = tuple(
-        driver.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in driver.TRENDS.items()
+        driver._Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in driver.TRENDS.items()
     )
     scan = {
         load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(driver.STIFFNESSES))
                for speed in (10980.0, 15000.0)]
-        for load in driver.scan_loads(found.design)
+        for load in driver._scan_loads(found.design)
     }  # fmt: skip
     rig = tuple(
         {"tilt": tilt, "bodies": "rigid", **row(speed, load, 2e8)}
@@ -74,12 +74,12 @@ def study(found: Curves) -> Article:
     return Article("invented", found, rig, tuple(static(0.01)), compared, scan, 1.0, 1.0, 0.5, 10, 0)
 
 
-def elastic_rows() -> dict[Run, Tables]:
+def elastic_rows() -> dict[_Run, Tables]:
     """Invented rows of ``raceway study article --bodies elastic``: elastic bodies are a little off condensed ones, these off Hertz."""
     return {run: _elastic_row(run) for run in elastic.design(read_toml(elastic.SCENE)).runs()}
 
 
-def elastic_study(failed: Sequence[Run] = ()) -> ElasticArticle:
+def elastic_study(failed: Sequence[_Run] = ()) -> ElasticArticle:
     """The study around them; of ``failed`` runs there is a reason."""
     made = elastic.design(read_toml(elastic.SCENE))
     rows = elastic_rows() | {
@@ -88,7 +88,7 @@ def elastic_study(failed: Sequence[Run] = ()) -> ElasticArticle:
     return ElasticArticle("invented", made, [rows[run] for run in made.runs()], 60.0, 60.0, 0)
 
 
-def _elastic_row(run: Run) -> Tables:
+def _elastic_row(run: _Run) -> Tables:
     off = float(run.bodies == "elastic")
     loads = [200.0, 100.0, 50.0, 0.0]
     balls = [_ball(place, load, 1.0 + 0.005 * off * (place == 0), run.bodies != "rigid", 0.02 + 0.01 * (place == 2))
@@ -118,6 +118,6 @@ def _ball(place: int, load: float, factor: float, points: bool, off: float) -> T
     return ball
 
 
-def _cost(run: Run) -> Tables:
+def _cost(run: _Run) -> Tables:
     return {"cpu_s": 3.0, "wall_s": 3.0, "compile_s": 0.0, "peak_memory_bytes": 2**30, "peak_memory_of": "run",
             "elements": 1_060_152 if run.bodies == "elastic" else None, "steps": 80, "newton_iterations": 200, "predicted_s": 3.0}  # fmt: skip

@@ -15,7 +15,7 @@ from raceway.core.mesh.hex_mesh import FACES
 from raceway.core.record import Motion
 from raceway.elastic.assembly import Assembly, Body
 from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, penalty_stiffness, plane
+from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, _plane, penalty_stiffness
 from raceway.elastic.linear_statics import solve_static
 from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import half_line
@@ -66,7 +66,7 @@ def model(fine: float, zone: float, formulation: str = "one_point", hourglass: f
     under = _surface(ball, lambda p: (np.hypot(p[:, 0], p[:, 1]) < 1.2 * zone) & (p[:, 2] < RADIUS), RADIUS)
     top = _surface(block, lambda p: p[:, 2] > -1e-9, None)
     points = surface_points(ball[0], under, np.array([0.0, 0.0, RADIUS]))
-    pair = Pair("ball on block", points, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
+    pair = Pair("ball on block", points, _plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
     stiffness = penalty_stiffness(MODULUS, 2.0 * np.sqrt(points.area))
     contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, stiffness[:, None]))
     system = ElasticSystem(assembly, contact, MODULUS, np.zeros(assembly.size))

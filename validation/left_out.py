@@ -257,7 +257,7 @@ def mirror() -> Rule:
 
     from raceway import load_scene
     from raceway.core.mesh.ring_mesh import ring_shape
-    from raceway.core.revolution.body import Revolution, factorised
+    from raceway.core.revolution.body import Revolution, _factorised
     from raceway.core.structural import ring_section
 
     bearing = load_scene(SCENE).bearing
@@ -269,11 +269,11 @@ def mirror() -> Rule:
     whole = [(diags_array(turn) @ one @ diags_array(turn.conj())).tocsc() for one in real]
 
     def halves() -> Answer:
-        return np.array([factorised(one, ordered=False).solve(loads) for one in real])
+        return np.array([_factorised(one, ordered=False).solve(loads) for one in real])
 
     def both() -> Answer:
         pushed = turn[:, None] * loads
-        found = (factorised(one, ordered=False).solve(pushed) for one in whole)
+        found = (_factorised(one, ordered=False).solve(pushed) for one in whole)
         return np.array([turn.conj()[:, None] * one for one in found])
 
     why = "the same systems, solved in complex numbers"

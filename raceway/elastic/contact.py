@@ -52,7 +52,7 @@ class Near:
 CIRCLE = 4
 
 
-def plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def _plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """(8,) a plane through a point [m]; the normal points away from the body."""
     n = np.asarray(normal, dtype=float)
     return np.concatenate([[0.0], point, n / np.linalg.norm(n), [0.0]])
@@ -64,7 +64,7 @@ def groove(centre: np.ndarray, circle: float, radius: float) -> np.ndarray:
 
 
 @jit(void(MATRIX, int64[::1], MATRIX, VECTOR, MATRIX, CUBE), releases=True)
-def gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
+def _gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
     """Signed distance from a surface, its gradient and its second derivative.
 
     Parameters
@@ -106,7 +106,7 @@ def gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-d
 
 
 @jit(void(VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, CUBE, MATRIX, CUBE, CUBE), releases=True)
-def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
+def _forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
     """Forces (n, 3) [N] on the points and minus their derivatives by place and velocity (n, 3, 3) [N/m, N s/m].
 
     Notes
@@ -287,7 +287,7 @@ class Contact(ABC):
         """Forces and tangents of the places, from their displacements and velocities (3 n,) against the second bodies."""
         moved = u.reshape(-1, 3)
         where = self.where = self.place + moved
-        gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
+        _gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
         if share > 0.0:
             deepest = np.minimum.reduceat(gap, self.starts)
@@ -298,7 +298,7 @@ class Contact(ABC):
         gap = self.press(gap, rate, dt)
         if dt > 0.0:
             add_damping(self.damping, gap, rate, self.pressure, self.d_gap, self.d_rate)
-        forces_and_tangents(
+        _forces_and_tangents(
             self.area, self.pressure, self.d_gap, self.d_rate, self.normal, self.bend,
             self.force, self.stiffness, self.rate_stiffness,
         )  # fmt: skip

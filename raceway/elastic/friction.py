@@ -73,7 +73,7 @@ def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resi
 
 
 @jit(void(MATRIX, MATRIX, MATRIX, boolean, CUBE), releases=True)
-def tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
+def _tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
     """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``_return_map`` found [N/m3]."""
     for i in range(out.shape[0]):
         for a in range(3):
@@ -124,7 +124,7 @@ class CoulombFriction:
             self._trial, self._direction, self._factors, self._lost,
         )  # fmt: skip
         tangent = np.empty((len(normal), 3, 3))
-        tangents(self._factors, self._direction, normal, self.symmetric, tangent)
+        _tangents(self._factors, self._direction, normal, self.symmetric, tangent)
         return -self._trial, tangent
 
     @property

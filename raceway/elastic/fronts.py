@@ -38,7 +38,7 @@ _DIRECTIONS = np.array(
 
 
 @attrs.frozen(eq=False)
-class Domain:
+class _Domain:
     """Cells that are eliminated together.
 
     Attributes
@@ -59,7 +59,7 @@ class Domain:
 class _Dissection:
     """Domains, children before parents, the whole mesh last, and the order of the cells in which leaves are contiguous."""
 
-    domains: list[Domain]
+    domains: list[_Domain]
     order: Nodes
 
 
@@ -85,7 +85,7 @@ def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Di
     measures = [np.round(x / size, 7) for x in (*(centre @ _DIRECTIONS.T).T, radius, np.abs(centre).max(axis=1))]
     uses = np.bincount(numbers.ravel(), minlength=len(points))
     uses[interface] = len(numbers) + 1
-    domains: list[Domain] = []
+    domains: list[_Domain] = []
     leaves: list[Nodes] = []
     placed = 0
 
@@ -97,13 +97,13 @@ def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Di
         border = nodes[~inside]
         if len(part) <= _LEAF:
             leaves.append(part)
-            domains.append(Domain(nodes[inside], border, (), (placed, placed + len(part))))
+            domains.append(_Domain(nodes[inside], border, (), (placed, placed + len(part))))
             placed += len(part)
             return len(domains) - 1
         _, first, second = min((_cut(x[part], local, len(nodes)) for x in measures), key=lambda cut: cut[0])
         children = visit(part[first]), visit(part[second])
         both = np.union1d(domains[children[0]].border, domains[children[1]].border)
-        domains.append(Domain(np.setdiff1d(both, border, assume_unique=True), border, children, None))
+        domains.append(_Domain(np.setdiff1d(both, border, assume_unique=True), border, children, None))
         return len(domains) - 1
 
     visit(np.arange(len(numbers)))
@@ -161,7 +161,7 @@ def _add_front(position, child, front):  # type: ignore[no-untyped-def]
 
 
 @attrs.frozen(eq=False)
-class Front:
+class _Front:
     """What is kept of an elimination: A_ss = L L^T and W = L^-1 A_sb of inner unknowns s and border unknowns b.
 
     Attributes
@@ -185,7 +185,7 @@ class Fronts:
     kept : (k,) unknowns that were not eliminated;  schur : (k, k) what A is for them, None where it is not known any more
     """
 
-    def __init__(self, fronts: list[Front], kept: np.ndarray, schur: np.ndarray | None = None) -> None:
+    def __init__(self, fronts: list[_Front], kept: np.ndarray, schur: np.ndarray | None = None) -> None:
         self.fronts, self.kept, self.schur = fronts, kept, schur
 
     @classmethod
@@ -196,7 +196,7 @@ class Fronts:
             inner, border = unknowns[at : at + s], unknowns[at + s : at + s + b]
             lower = values[begin : begin + s * s].reshape((s, s), order="F")
             across = values[begin + s * s : begin + s * (s + b)].reshape((s, b), order="F")
-            fronts.append(Front(inner, border, lower, across))
+            fronts.append(_Front(inner, border, lower, across))
             at, begin = at + s + b, begin + s * (s + b)
         return cls(fronts, arrays["kept"])
 
@@ -268,7 +268,7 @@ def factored(
     """
     position = np.full(len(free), -1, dtype=np.int64)
     waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}
-    fronts: list[Front] = []
+    fronts: list[_Front] = []
     count = len(dissection.domains)
     work = np.cumsum([_operations(domain) for domain in dissection.domains]).tolist()
     for number, domain in enumerate(dissection.domains):
@@ -296,13 +296,13 @@ def _unknowns(nodes: np.ndarray, free: np.ndarray) -> np.ndarray:
     return unknowns[free[unknowns]]
 
 
-def _operations(domain: Domain) -> int:
+def _operations(domain: _Domain) -> int:
     """Millions of multiplications that a front takes."""
     s, b = 3 * len(domain.inner), 3 * len(domain.border)
     return int(1e-6 * (s**3 / 3 + s * s * b + s * b * b)) + 1
 
 
-def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray, fronts: list[Front]) -> np.ndarray:
+def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray, fronts: list[_Front]) -> np.ndarray:
     """Keep the factors of the first s unknowns; the Schur complement of the others, lower triangle."""
     from scipy.linalg.blas import dsyrk, dtrsm
     from scipy.linalg.lapack import dpotrf
@@ -316,7 +316,7 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
     across = dtrsm(1.0, lower, np.asfortranarray(front[s:, :s].T), lower=1, overwrite_b=1)
     complement = np.asfortranarray(front[s:, s:])
     del front
-    fronts.append(Front(inner, border, *(np.asarray(x, dtype=np.float32, order="F") for x in (lower, across))))
+    fronts.append(_Front(inner, border, *(np.asarray(x, dtype=np.float32, order="F") for x in (lower, across))))
     return (
         np.asarray(dsyrk(-1.0, across, beta=1.0, c=complement, trans=1, lower=1, overwrite_c=1))
         if len(border)

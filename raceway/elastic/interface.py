@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from raceway.elastic.assembly import Assembly
 
 
-class Ring:
+class _Ring:
     """One ring, its displacement u = R q + w of the frame's motions q and of w, which is zero on the seat.
 
     Parameters
@@ -116,7 +116,7 @@ def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
     return Copies.single(body.points, cells, first) if ring_sectors is None else ring_sectors
 
 
-class Balls:
+class _Balls:
     """Copies of one ball.
 
     Parameters
@@ -353,7 +353,7 @@ class Interface:
     act on. The rings answer for all contacts at once.
     """
 
-    def __init__(self, rings: list[Ring], balls: list[tuple[Balls, list[int]]], nodes: int) -> None:
+    def __init__(self, rings: list[_Ring], balls: list[tuple[_Balls, list[int]]], nodes: int) -> None:
         self.rings, self.groups = rings, balls
         self.numbers = np.concatenate([ring.nodes for ring in rings] + [group.loose.nodes.ravel() for group, _ in balls])
         self.place = np.full(nodes, -1, dtype=np.int64)
@@ -361,7 +361,7 @@ class Interface:
         self.frame_size = max(ring.carried.shape[1] for ring in rings)
         self.extra = len(balls[0][0].springs)
         self._first = np.cumsum([0, *(len(ring.nodes) for ring in rings)])
-        self._balls: dict[int, tuple[Balls, int, int]] = {}
+        self._balls: dict[int, tuple[_Balls, int, int]] = {}
         self._flexibility: _RingFlexibility | None = None
         begin = int(self._first[-1])
         for group, members in balls:
@@ -472,7 +472,7 @@ def touchable(contact: NodalContact, nodes: int) -> np.ndarray:
     return under
 
 
-def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> Ring:
+def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Ring:
     (index,), copies = group.members, group.copies
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
     free = free_nodes(assembly, index)
@@ -503,7 +503,7 @@ def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on
         out[rows] = force * np.repeat(free, 3)
         return out
 
-    return Ring(element, rows, ride, apply, inertia, 3 * assembly.nodes)
+    return _Ring(element, rows, ride, apply, inertia, 3 * assembly.nodes)
 
 
 def _of_part(
@@ -515,7 +515,7 @@ def _of_part(
     return np.array([k for k, _ in matrices], dtype=np.int64), np.array([matrix for _, matrix in matrices])
 
 
-def _balls(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> Balls:
+def _balls(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Balls:
     copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
     contact = np.unique(np.concatenate([np.flatnonzero(touched[nodes]) for nodes in copies.nodes]))
@@ -532,4 +532,4 @@ def _balls(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, o
     free = np.ones(len(copies.points), dtype=bool)
     ball = _Substructure(body.name, copies, body.operator, contact, free, mass, None, on_progress)
     loose, response = ball.ball(forces, apply)
-    return Balls(loose, caged, stiffness, response, mass > 0.0)
+    return _Balls(loose, caged, stiffness, response, mass > 0.0)

@@ -275,7 +275,7 @@ MOST_ITERATIONS = 200
 
 
 @attrs.frozen(eq=False)
-class Solution:
+class _Solution:
     """Displacements that balance a load.
 
     Attributes
@@ -297,7 +297,7 @@ def solve_static(
     held: np.ndarray,
     values: np.ndarray | float = 0.0,
     tolerance: float = 1e-8,
-) -> Solution:
+) -> _Solution:
     """Displacements of a body under nodal forces and prescribed displacements.
 
     Parameters
@@ -345,7 +345,7 @@ class StaticSolver:
         elif len(self._free):
             self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A")
 
-    def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> Solution:
+    def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> _Solution:
         """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).
 
         Raises
@@ -358,7 +358,7 @@ class StaticSolver:
         right = (np.asarray(load, dtype=float).reshape(-1) - self._matrix @ displacement)[self._free]
         size = float(np.linalg.norm(right))
         if size == 0.0:
-            return Solution(displacement.reshape(-1, 3), 0, 0.0)
+            return _Solution(displacement.reshape(-1, 3), 0, 0.0)
         iterations = 0
         if self._precondition is None:
             solution = self._factors.solve(right)
@@ -369,7 +369,7 @@ class StaticSolver:
         if not residual <= 10.0 * tolerance:  # the true residual may lag behind the recursive one, and NaN fails too
             message = f"the static solution stopped after {iterations} iterations at a residual of {residual:.1e}"
             raise ConvergenceError(f"{message}, {tolerance:g} was asked for", {"displacement": displacement.reshape(-1, 3)})
-        return Solution(displacement.reshape(-1, 3), iterations, residual)
+        return _Solution(displacement.reshape(-1, 3), iterations, residual)
 
 
 class Preconditioner:

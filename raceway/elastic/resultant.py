@@ -36,7 +36,7 @@ class Footprint:
     share: np.ndarray
 
 
-def ellipse(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+def _ellipse(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 2) [m] of an ellipse and weights (n,) of a unit force, its pressure falling as 1 - (x / a)^2 - (y / b)^2."""
     x, w = np.polynomial.legendre.leggauss(_RINGS)
     r = 0.5 * (x + 1.0)
@@ -69,7 +69,7 @@ def footprint(
     arc, leave the line between the two centres where it is.
     """
     axes = np.stack([along, np.cross(normal, along)])
-    places, force = ellipse(semi_axes)
+    places, force = _ellipse(semi_axes)
     facet, weights, _ = facets.locate(pole + places @ axes)
     angle = 2.0 * np.pi * np.arange(_AROUND) / _AROUND
     circle = max(semi_axes) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -330,7 +330,7 @@ class LoadedBody:
         along = self.along(contact, normal)
         depth = reach * np.linspace(*DEPTHS, COUNT)
         nodes, weights = locate(self._points, self._cells, pole + depth[:, None] * normal)
-        places, force = ellipse(semi_axes)
+        places, force = _ellipse(semi_axes)
         half = normal_displacement(depth, np.linalg.norm(places, axis=1), *self._material[:2]) @ force
         difference = np.einsum("nk,nk->n", weights, along[nodes]) - half
         structural = float(difference.mean())

@@ -280,7 +280,7 @@ class Loose:
         schur, order = part.schur, part.places(part.contact)
         hold = float(np.trace(schur)) / len(schur) if held else 0.0
         stiffness, motions = schur[np.ix_(order, order)], _mean_motions(part, hold)
-        return cls(part, inverse(stiffness + hold * motions @ motions.T), hold)
+        return cls(part, _inverse(stiffness + hold * motions @ motions.T), hold)
 
     @classmethod
     def of_arrays(cls, copies: Copies, contact: np.ndarray, arrays: Mapping[str, np.ndarray]) -> Loose:
@@ -389,7 +389,7 @@ def _turned_vectors(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
     return np.einsum("cab,cnb->cna", turns, values.reshape(len(turns), -1, 3)).reshape(len(turns), -1)
 
 
-def inverse(matrix: np.ndarray) -> np.ndarray:
+def _inverse(matrix: np.ndarray) -> np.ndarray:
     """Of a symmetric, or Hermitian, positive definite matrix."""
     from scipy.linalg import cho_factor
     from scipy.linalg.lapack import dpotri, zpotri
@@ -450,7 +450,7 @@ class Closed:
             lower = cholesky(0.5 * (matrix + matrix.conj().T), lower=True)
             factors[h], mixed_all[h] = lower, mixed
             half = ztrsm(1.0, lower, mixed, lower=1)
-            harmonics[h] = inverse(contacts - half.conj().T @ half)
+            harmonics[h] = _inverse(contacts - half.conj().T @ half)
         return cls(part, factors, mixed_all, np.fft.irfft(harmonics, count, axis=0))
 
     @classmethod

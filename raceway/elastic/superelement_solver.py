@@ -19,7 +19,7 @@ from raceway.elastic.unknowns import of_nodes
 from raceway.errors import ConvergenceError
 
 
-class Beyond(Exception):
+class _Beyond(Exception):
     """A contact presses on nodes (k,) that its bodies were not reduced to."""
 
     def __init__(self, nodes: np.ndarray) -> None:
@@ -82,7 +82,7 @@ class _Pressing:
     def _on_nodes(self, forces: np.ndarray) -> np.ndarray:
         beyond = self._outside[forces[self._outside] != 0.0]
         if beyond.size:
-            raise Beyond(np.unique(self._near.entries[beyond] // 3))
+            raise _Beyond(np.unique(self._near.entries[beyond] // 3))
         out = np.zeros(3 * len(self._face.numbers))
         out[self._at] = forces[self._inside]
         return out.reshape(-1, 3)
@@ -109,7 +109,7 @@ def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def
 
 
 @attrs.frozen(eq=False)
-class BallTangent:
+class _BallTangent:
     """Tangent of the contacts of one ball with both rings.
 
     Attributes
@@ -123,7 +123,7 @@ class BallTangent:
     matrix: np.ndarray
 
     @classmethod
-    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> BallTangent:
+    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> _BallTangent:
         """From points: ``nodes`` (n, 8), four of the ball, then four of a ring, ``weights`` (n, 8), ``blocks`` (n, 3, 3)."""
         ball, rings = np.unique(nodes[:, :4]), np.unique(nodes[:, 4:])
         places = [np.searchsorted(ball, nodes[:, :4]), len(ball) + np.searchsorted(rings, nodes[:, 4:])]
@@ -140,7 +140,7 @@ _VECTORS = 120
 TIGHT = 1e-12
 
 
-class Linearised:
+class _Linearised:
     """x = driver - flexibility (T x) + carried q, with the tangents T of the contacts.
 
     Parameters
@@ -155,7 +155,7 @@ class Linearised:
     what couples them, the rings' stiffness from ball to ball and the frame, is smooth and has few modes.
     """
 
-    def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
+    def __init__(self, face: Interface, tangents: dict[int, _BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
         self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
         used = [tangent.rings for tangent in tangents.values()]
         nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
@@ -270,7 +270,7 @@ class _Ball:
     stiffness : of the rings' nodes through the ball;  across : force on them of the ball's nodes
     """
 
-    def __init__(self, face: Interface, ball: int, tangent: BallTangent) -> None:
+    def __init__(self, face: Interface, ball: int, tangent: _BallTangent) -> None:
         from scipy.linalg import lu_factor, lu_solve
         from scipy.sparse import csr_array
 
@@ -332,7 +332,7 @@ class CondensedSolver:
         self._wanted = touchable(contact, assembly.nodes)
         self._interface: tuple[float, Interface] | None = None
         #: The last linearised bearing: of which superelements, tangents and frame.
-        self.last: tuple[Interface, tuple[np.ndarray, ...], Linearised] | None = None
+        self.last: tuple[Interface, tuple[np.ndarray, ...], _Linearised] | None = None
 
     def interface(self, mass: float) -> Interface:
         """Superelements of K + mass * M, made at the first call; those of another mass go: they are as large as the rest of a run."""
@@ -378,7 +378,7 @@ class CondensedSolver:
         while True:
             try:
                 return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt)
-            except Beyond as beyond:
+            except _Beyond as beyond:
                 self._widen(beyond.nodes)
 
     def _widen(self, nodes: np.ndarray) -> None:
@@ -495,7 +495,7 @@ class _Step:
 
         return searched(float((way.nodes * residual).sum()), at)
 
-    def _linearised(self, close: float = _CLOSE) -> Linearised:
+    def _linearised(self, close: float = _CLOSE) -> _Linearised:
         """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
         contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
@@ -511,8 +511,8 @@ class _Step:
         tangents = {}
         for k in range(face.ball_count):
             of_ball = ball == k
-            tangents[k] = BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
-        linearised = Linearised(face, tangents, self.frame, self.unknown)
+            tangents[k] = _BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
+        linearised = _Linearised(face, tangents, self.frame, self.unknown)
         solver.last = face, tuple(array.copy() for array in made_of), linearised
         return linearised
 

@@ -101,7 +101,7 @@ def _among(entries: np.ndarray, sorted_ones: np.ndarray) -> tuple[np.ndarray, np
 
 
 @jit(void(MATRIX, int64, VECTOR, VECTOR), releases=True)
-def sums(rows, begin, u, out):  # type: ignore[no-untyped-def]
+def _sums(rows, begin, u, out):  # type: ignore[no-untyped-def]
     """out (k,) = rows (k, n) times u[begin : begin + n], entry after entry: the digits of a sparse product.
 
     Notes
@@ -183,4 +183,4 @@ class MeanMotions:
     @staticmethod
     def _sum(block: tuple[int, int, np.ndarray], u: np.ndarray, out: np.ndarray) -> None:
         row, begin, values = block
-        sums(values, begin, u, out[row : row + len(values)])
+        _sums(values, begin, u, out[row : row + len(values)])

@@ -43,7 +43,7 @@ _POINTS, _WEIGHTS = (
 
 
 @attrs.frozen(eq=False)
-class Beam:
+class _Beam:
     """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n).
 
     Attributes
@@ -66,7 +66,7 @@ class Beam:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
-    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
+    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> _Beam:
         """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
         k = 2 * self.node(position)
         m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
@@ -75,7 +75,7 @@ class Beam:
         p[k + 1, k + 1] += polar
         return attrs.evolve(self, mass=m, rotary=r, polar=p)
 
-    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
+    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> _Beam:
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
         k = 2 * self.node(position)
         s = self.stiffness.copy()
@@ -91,7 +91,7 @@ class Beam:
         return np.sort(1.0 / np.sqrt(real))
 
 
-def beam(
+def _beam(
     nodes: np.ndarray,
     diameter: float,
     young: float,
@@ -99,7 +99,7 @@ def beam(
     density: float,
     shear: bool = True,
     stiff: np.ndarray | None = None,
-) -> Beam:
+) -> _Beam:
     """A round shaft of one diameter.
 
     Parameters
@@ -128,7 +128,7 @@ def beam(
                 k[part, part] += weight * shear_stiffness * np.outer(slope - turn, slope - turn)
             m[part, part] += weight * density * area * np.outer(w, w)
             r[part, part] += weight * density * inertia * np.outer(turn, turn)
-    return Beam(np.asarray(nodes), k, m, r, 2.0 * r)
+    return _Beam(np.asarray(nodes), k, m, r, 2.0 * r)
 
 
 def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -197,7 +197,7 @@ class Rotor:
 
 
 @lru_cache(maxsize=32)  # one rig is asked for at many speeds, changed rigs again for each record
-def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
+def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> _Beam:
     """The rig's shaft with its disc.
 
     Parameters
@@ -214,7 +214,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
             nodes += np.linspace(before, after, parts + 1)[1:].tolist()
     centres = 0.5 * (np.array(nodes[1:]) + np.array(nodes[:-1]))
     stiff = np.where(np.abs(centres - middle) < half, rig.hub_diameter or rig.shaft_diameter, rig.shaft_diameter)
-    bare = beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear, stiff)
+    bare = _beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear, stiff)
     if not shear:
         bare = attrs.evolve(bare, rotary=0.0 * bare.rotary, polar=0.0 * bare.polar)
     inner, outer, width = 0.5 * rig.shaft_diameter, rig.disc_radius, rig.disc_thickness
@@ -223,7 +223,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     return bare.with_disc(middle, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
 
 
-def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
+def rotor(rig: Rig, speed: float, model: _Beam | None = None) -> Rotor:
     """The rotor at a speed [rad/s].
 
     Parameters
@@ -247,7 +247,7 @@ def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
     )
 
 
-def whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:
+def _whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:
     """The excitation of a force F_y + j F_z [N] and a moment M_z - j M_y [N m] that turn forward, both at time zero."""
     return harmonic_load(speed, np.array([0.0, force, -1j * force, 1j * moment, moment]))
 
@@ -302,7 +302,7 @@ class Bearing:
         if len(self.answers) < len(self.replayed):
             self.answers.append(self.replayed[len(self.answers)])
             return np.array(self.answers[-1]).view(complex)
-        scene = attrs.evolve(self.scene, excitation=whirling_load(speed, force, moment))
+        scene = attrs.evolve(self.scene, excitation=_whirling_load(speed, force, moment))
         # Loads that are tried one after another belong to one motion of the rig.
         result = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
         self.last[:] = [result]

@@ -119,7 +119,7 @@ class _Package:
         return [self.kind]
 
 
-def registry_with(bodies: BodiesKind) -> Registry:
+def _registry_with(bodies: BodiesKind) -> Registry:
     """What is installed, what else the kind's own package brings, and the kind itself."""
     registry, cls = Registry(), type(bodies)
     # A package's own contact laws may be all that its bodies run with.
@@ -132,9 +132,9 @@ def registry_with(bodies: BodiesKind) -> Registry:
     return registry
 
 
-def scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
+def _scene_of(bodies: BodiesKind, changes: Changes | None = None, registry: Registry | None = None) -> Scene:
     """The kind's ``example_scene()``, or the usual one, with these bodies; ``changes`` : keys by table."""
-    registry = registry or registry_with(bodies)
+    registry = registry or _registry_with(bodies)
     example = getattr(type(bodies), "example_scene", lambda: _USUAL)()
     tables = {name: table for name, table in example.items() if name != "bodies"}
     for name, keys in (changes or {}).items():
@@ -160,7 +160,7 @@ def _is_key(scene: Scene, path: str) -> bool:
     }
 
 
-def unbalanced(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
+def _unbalanced(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
     """What is left of the loads on the free coordinates at a state (5,), (Z, k), over all forces."""
     from raceway.core.ring.kernels.layout import CAGE
 
@@ -201,10 +201,10 @@ class BodiesSuite(Suite):
 
     @duty("faults(scene): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
     def test_faults(self, bodies: BodiesKind) -> str:
-        registry, refused = registry_with(bodies), []
+        registry, refused = _registry_with(bodies), []
         with _nothing_built():
             for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in _EXTRAS.items()}}.items():
-                scene = scene_of(bodies, changes, registry)
+                scene = _scene_of(bodies, changes, registry)
                 faults = bodies.faults(scene)
                 require(isinstance(faults, list), f"{word}: faults() returns {type(faults).__name__}, not a list")
                 for fault in faults:
@@ -219,7 +219,7 @@ class BodiesSuite(Suite):
         "traits, stable_step, decide, unused, cost: as the contract types them, finite, of keys that exist; nothing is built"
     )
     def test_plan(self, bodies: BodiesKind) -> None:
-        scene = scene_of(bodies)
+        scene = _scene_of(bodies)
         problem = resolve(scene)
         with _nothing_built():
             traits, limit, parts = bodies.traits(scene), bodies.stable_step(problem), Decisions()
@@ -246,7 +246,7 @@ class BodiesSuite(Suite):
 
     @duty("build(problem, plan): a Bearing with a system and a first guess (5,)")
     def test_build(self, bodies: BodiesKind) -> None:
-        scene = scene_of(bodies)
+        scene = _scene_of(bodies)
         bearing = bodies.build(resolve(scene), make_plan(scene))
         kind = type(bearing).__name__
         require(isinstance(bearing, Bearing), f"build() returns {kind}, not a raceway.bodies.model.Bearing")
@@ -258,15 +258,15 @@ class BodiesSuite(Suite):
 
     @duty("the equilibrium balances the loads")
     def test_equilibrium(self, bodies: BodiesKind) -> str:
-        model, equilibrium = settled(scene_of(bodies))
-        unbalance = unbalanced(model, equilibrium.displacement, equilibrium.ball)
+        model, equilibrium = settled(_scene_of(bodies))
+        unbalance = _unbalanced(model, equilibrium.displacement, equilibrium.ball)
         require(unbalance < _BALANCE, f"{unbalance:.2g} of the loads is left")
         require(equilibrium.iterations >= 0, f"{equilibrium.iterations} iterations")
         return f"{unbalance:.1e} of the loads is left"
 
     @duty("the tangent is the derivative of the force by the displacement, symmetric where forces have a potential")
     def test_tangent(self, bodies: BodiesKind) -> str:
-        model, equilibrium = settled(scene_of(bodies))
+        model, equilibrium = settled(_scene_of(bodies))
         system, free = model.system, np.flatnonzero(model.system.free > 0.0)
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm]) * _MORE * max(np.abs(system.load).max(), 1.0)
         K = system.reduced(equilibrium.stiffness + system.stiffness)
@@ -290,7 +290,7 @@ class BodiesSuite(Suite):
         "contact forces (2 Z,) and gaps: never negative, none in an open contact; with their angles they balance the loads"
     )
     def test_contacts(self, bodies: BodiesKind) -> str:
-        model, equilibrium = settled(scene_of(bodies))
+        model, equilibrium = settled(_scene_of(bodies))
         z, force, gap = model.system.ball_count, equilibrium.contact_force, equilibrium.gap
         for word, values in (("contact_force", force), ("gap", gap)):
             check_shape(f"`{word}`", values, (2 * z,))
@@ -312,7 +312,7 @@ class BodiesSuite(Suite):
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
     def test_told(self, bodies: BodiesKind) -> None:
-        model, equilibrium = settled(scene_of(bodies))
+        model, equilibrium = settled(_scene_of(bodies))
         bearing, load = model.bearing, np.linspace(0.0, 2.0 * equilibrium.contact_force.max(), 7)
         for race in (0, 1):
             ellipse = bearing.contact_ellipse(model, race, load)
@@ -337,7 +337,7 @@ class BodiesSuite(Suite):
         "steps of newmark, central_difference and quasi_static; where forces are compiled, compiled and stepped drivers agree"
     )
     def test_steps(self, bodies: BodiesKind) -> str:
-        model, equilibrium = settled(scene_of(bodies))
+        model, equilibrium = settled(_scene_of(bodies))
         system, compiled = model.system, model.traits.compiled
         schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(equilibrium.stiffness), _STEPS, 1), 0.0
         for method in (Newmark(), CentralDifference(), QuasiStatic()):
@@ -356,16 +356,16 @@ class BodiesSuite(Suite):
 
     @duty("the same scene gives the same equilibrium to the last bit")
     def test_repeats(self, bodies: BodiesKind) -> None:
-        first, second = (settled(scene_of(bodies))[1] for _ in range(2))
+        first, second = (settled(_scene_of(bodies))[1] for _ in range(2))
         for word in ("displacement", "stiffness", "contact_force"):
             require(np.array_equal(getattr(first, word), getattr(second, word)), f"`{word}` differs")
 
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
     def test_refused_or_computed(self, bodies: BodiesKind) -> str:
-        registry, computed = registry_with(bodies), []
-        plain = settled(scene_of(bodies, PLAIN, registry))[1].displacement
+        registry, computed = _registry_with(bodies), []
+        plain = settled(_scene_of(bodies, PLAIN, registry))[1].displacement
         for word, (changes, shows) in _EXTRAS.items():
-            scene = scene_of(bodies, changes, registry)
+            scene = _scene_of(bodies, changes, registry)
             if _refused(scene) or not bodies.traits(scene).resultants:
                 continue
             computed.append(word)
@@ -373,15 +373,15 @@ class BodiesSuite(Suite):
                 model, equilibrium = settled(scene)
             except RacewayError as why:
                 raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
-            left_over = unbalanced(model, equilibrium.displacement, equilibrium.ball)
+            left_over = _unbalanced(model, equilibrium.displacement, equilibrium.ball)
             require(left_over < _BALANCE, f"{word}: {left_over:.2g} of the loads is left")
             require(shows(model, equilibrium, plain), f"{word}: changes nothing: refuse it by faults()")
         return f"computed: {', '.join(computed) or 'nothing'}"
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
     def test_run(self, bodies: BodiesKind) -> str:
-        registry = registry_with(bodies)
-        result = run(scene_of(bodies, registry=registry), registry)
+        registry = _registry_with(bodies)
+        result = run(_scene_of(bodies, registry=registry), registry)
         stored = json.loads(json.dumps(result.to_dict(), allow_nan=False))
         require(stored["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
         stiffness = K.of(stored)

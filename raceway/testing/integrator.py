@@ -57,7 +57,7 @@ def has_both(method: Integrator) -> bool:
     return method.scheme.compiled is not None and method.scheme.stepped is not None
 
 
-class Stop(Exception):
+class _Stop(Exception):
     """What a user's progress function may raise."""
 
 
@@ -271,11 +271,11 @@ class IntegratorSuite(Suite):
         require(steps == sorted(steps) and calls[-1] == (120, 120), f"on_chunk ends with {calls[-1]}, not (120, 120)")
 
         def stop(_done: int, _total: int) -> None:
-            raise Stop
+            raise _Stop
 
         try:
             integrate(method, system, start, schedule, stop)
-        except Stop:
+        except _Stop:
             return
         require(False, "an exception of on_chunk does not stop the integration")
 

@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 _TEN_FIGURES = 1e-10
 
 
-def same(a: Any, b: Any, relative: float = 0.0) -> bool:
+def _same(a: Any, b: Any, relative: float = 0.0) -> bool:
     """Whether two things read from files are equal, arrays inside them too; attrs objects (meshes) field by field.
 
     Real numbers may differ by ``relative`` times themselves; integers and words may not differ.
     """
     if isinstance(a, dict) and isinstance(b, dict):
-        return set(a) == set(b) and all(same(a[k], b[k], relative) for k in a)
+        return set(a) == set(b) and all(_same(a[k], b[k], relative) for k in a)
     if isinstance(a, list | tuple) and isinstance(b, list | tuple):
-        return len(a) == len(b) and all(same(x, y, relative) for x, y in zip(a, b, strict=True))
+        return len(a) == len(b) and all(_same(x, y, relative) for x, y in zip(a, b, strict=True))
     if attrs.has(type(a)) and type(a) is type(b):
-        return all(same(getattr(a, field.name), getattr(b, field.name), relative) for field in attrs.fields(type(a)))
+        return all(_same(getattr(a, field.name), getattr(b, field.name), relative) for field in attrs.fields(type(a)))
     if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
         a, b = np.asarray(a), np.asarray(b)
         if a.dtype.kind == "f" and b.dtype.kind == "f":
@@ -75,7 +75,7 @@ class FormatSuite(Suite):
                 path = Path(folder) / f"content{suffix}"
                 form.write(path, content)
                 require(path.is_file() and path.stat().st_size > 0, f"write() leaves no file `{path.name}`")
-                equal = same(form.read(path), content, _TEN_FIGURES)
+                equal = _same(form.read(path), content, _TEN_FIGURES)
                 require(equal, f"`{path.name}` is read back different from what was written")
 
     @duty("a file that is missing or malformed is refused with a RacewayError that names it")
@@ -153,7 +153,7 @@ class MesherSuite(Suite):
         first, second = (mesher.mesh(example_scene().bearing) for _ in range(2))
         require(set(first) == set(second), "the bodies differ")
         for name in first:
-            equal = all(same(getattr(first[name], word), getattr(second[name], word)) for word in ("points", "cells"))
+            equal = all(_same(getattr(first[name], word), getattr(second[name], word)) for word in ("points", "cells"))
             require(equal, f"'{name}' differs")
 
 

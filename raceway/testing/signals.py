@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _SAMPLES, _SAMPLED = 4096, 1e-4
 
 
-def sampled(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
+def _sampled(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     """(n, 5) the force at times (n,), into an array that is full of NaN before."""
     from raceway.testing.systems import sample_force
 
@@ -37,11 +37,11 @@ def sampled(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.n
     return out
 
 
-def fundamental(excitation: Excitation) -> np.ndarray:
+def _fundamental(excitation: Excitation) -> np.ndarray:
     """(5,) complex line at ``frequency_hz`` over one period: the force is Re(line e^{jwt}) and other lines."""
     times = (excitation.period_s or 0.0) * np.arange(_SAMPLES) / _SAMPLES
     kernel = np.exp(-2j * np.pi * excitation.frequency_hz * times)
-    return 2.0 * (kernel[:, None] * sampled(excitation, times)).mean(axis=0)
+    return 2.0 * (kernel[:, None] * _sampled(excitation, times)).mean(axis=0)
 
 
 def _not_periodic(excitation: Excitation) -> str:
@@ -82,7 +82,7 @@ class ExcitationSuite(Suite):
     @duty("all five components are overwritten, in any order of times, the parameters untouched")
     def test_overwrites(self, excitation: Excitation) -> None:
         times = np.random.default_rng(1).uniform(0.0, 3.0 / excitation.frequency_hz, 200)
-        forward, backward = sampled(excitation, times), sampled(excitation, times[::-1])
+        forward, backward = _sampled(excitation, times), _sampled(excitation, times[::-1])
         missing = np.flatnonzero(np.isnan(forward).any(axis=0))
         require(not len(missing), f"components {missing.tolist()} are not overwritten")
         require(np.array_equal(forward, backward[::-1]), "the force depends on what was asked before")
@@ -94,7 +94,7 @@ class ExcitationSuite(Suite):
     @duty("finite at any time")
     def test_extreme_times(self, excitation: Excitation) -> None:
         times = np.array([0.0, -0.0, 5e-324, 1e-12, 1.0, 1e3, 1e6, -1e-3])
-        force = sampled(excitation, times)
+        force = _sampled(excitation, times)
         require(np.isfinite(force).all(), f"not finite at t = {times[~np.isfinite(force).all(axis=1)]} s")
 
     @duty("the kernel allocates no memory")
@@ -109,14 +109,14 @@ class ExcitationSuite(Suite):
     def test_period(self, excitation: Excitation) -> None:
         period = excitation.period_s or 0.0
         times = np.random.default_rng(2).uniform(0.0, 1.0, 300) * period
-        first, later = sampled(excitation, times), sampled(excitation, times + 7.0 * period)
+        first, later = _sampled(excitation, times), _sampled(excitation, times + 7.0 * period)
         # Rounding of the phase after seven periods, with a hundred for fast harmonics.
         wrong = np.abs(later - first).max() / max(np.abs(first).max(), 1e-300)
         require(wrong < 1e-10, f"after seven periods it differs by {wrong:.2g} of its largest value")
 
     @duty("the line at `frequency_hz` has the amplitude `amplitude_n`", _not_periodic)
     def test_amplitude(self, excitation: Excitation) -> None:
-        line = fundamental(excitation)[:3]
+        line = _fundamental(excitation)[:3]
         major = np.linalg.svd(np.array([line.real, line.imag]), compute_uv=False)[0]
         declared = excitation.amplitude_n
         words = f"its line at {excitation.frequency_hz:g} Hz has {major:.6g} N"
@@ -124,7 +124,7 @@ class ExcitationSuite(Suite):
 
     @duty("the line at `frequency_hz` turns as `sense` says: forward, backward, or not at all", _not_periodic)
     def test_sense(self, excitation: Excitation) -> None:
-        line = fundamental(excitation)[:3]
+        line = _fundamental(excitation)[:3]
         forward, backward = abs(line[1] + 1j * line[2]), abs(line[1] - 1j * line[2])
         size = np.abs(line).max()
         sense = 0 if abs(forward - backward) <= _SAMPLED * size else (1 if forward > backward else -1)
@@ -140,7 +140,7 @@ class ExcitationSuite(Suite):
         direction, lag = (getattr(excitation, word, None) for word in ("direction_deg", "phase_lag_deg"))
         if lag is None and direction is None:
             return "neither is an option"
-        line, amplitude = fundamental(excitation)[:3], excitation.amplitude_n
+        line, amplitude = _fundamental(excitation)[:3], excitation.amplitude_n
         along = line[1]
         if excitation.sense == 0:
             angle = radians(direction or 0.0)
@@ -158,7 +158,7 @@ STIFFNESS, MASS, DAMPING, FREQUENCY, FORCE = 2.0e8, 2.0, 4000.0, 200.0, 300.0
 _PER_TURN = 360
 
 
-def dynamic_stiffness(frequency: float = FREQUENCY) -> complex:
+def _dynamic_stiffness(frequency: float = FREQUENCY) -> complex:
     """Z = K - m w^2 + j w C of the records."""
     w = 2.0 * np.pi * frequency
     return complex(STIFFNESS - MASS * w**2, DAMPING * w)
@@ -183,7 +183,7 @@ def _synthetic_record(
     shape = np.array([0.0, *across, 0.0, 0.0], dtype=complex)
     wave = np.exp(2j * np.pi * frequency * time)[:, None]
     force = FORCE * np.exp(-0.4j) * shape
-    line = force / dynamic_stiffness(frequency)
+    line = force / _dynamic_stiffness(frequency)
     size = float(np.abs(line).max())
     displacement = (wave * line).real
     radial = np.array([0.0, 1.0, 1.0, 0.0, 0.0])
@@ -199,7 +199,7 @@ def _synthetic_record(
     )  # fmt: skip
 
 
-def model_of(sense: int = 1, direction: float = 0.0) -> Model:
+def _model_of(sense: int = 1, direction: float = 0.0) -> Model:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
     from raceway.core.excitations import harmonic
     from raceway.testing.systems import linear_system
@@ -290,7 +290,7 @@ class IdentifierSuite(Suite):
     def test_input_untouched(self, identifier: Identifier) -> None:
         records = self._records(identifier, {})
         before = [(r.displacement.copy(), r.force.copy()) for r in records]
-        identifier.identify(records, _equilibrium_at_rest(), model_of())
+        identifier.identify(records, _equilibrium_at_rest(), _model_of())
         for record, (x, f) in zip(records, before, strict=True):
             require(np.array_equal(record.displacement, x) and np.array_equal(record.force, f), "a record was changed")
 
@@ -301,12 +301,12 @@ class IdentifierSuite(Suite):
 
     def _identify(self, identifier: Identifier, sense: int = 1, direction: float = 0.0, **spoilt: float) -> Identification:
         records = self._records(identifier, {"sense": sense, "direction": direction, **spoilt})
-        return identifier.identify(records, _equilibrium_at_rest(), model_of(sense, direction))
+        return identifier.identify(records, _equilibrium_at_rest(), _model_of(sense, direction))
 
     def _recovers(self, identifier: Identifier, tolerance: float, **spoilt: float) -> str:
         if spoilt and not identifier.needs & {"record", "speeds"}:
             return "no record is used"
-        w, Z = 2.0 * np.pi * FREQUENCY, dynamic_stiffness()
+        w, Z = 2.0 * np.pi * FREQUENCY, _dynamic_stiffness()
         for sense, direction in _FORCES:
             answer = self._identify(identifier, sense, direction, **spoilt)
             where = f"force of sense {sense}" + (f" along {np.degrees(direction):.0f} deg" if sense == 0 else "")

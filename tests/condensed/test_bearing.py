@@ -10,7 +10,7 @@ import pytest
 
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core import structural as calibration
-from raceway.core.revolution.body import seat_areas
+from raceway.core.revolution.body import _seat_areas
 from raceway.testing import b7206c, run, settled
 from validation.command_line import EXAMPLES, invoke
 
@@ -56,7 +56,7 @@ def test_rings_that_do_not_deform_are_in_series_with_their_beds(seats):
     firm = at_rest(**plain, supports={"tilt": "locked"})[1].stiffness[0, 0]
     bed = 5e10
     case, found = at_rest(**plain, supports={"tilt": "locked", **{f"{seat}_seat": bed for seat in seats}})
-    areas = (seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
+    areas = (_seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
     expected = 1.0 / (1.0 / firm + sum(1.0 / (bed * area) for area in areas))
     assert expected < 0.8 * firm
     assert found.stiffness[0, 0] == pytest.approx(expected, rel=1e-3)

@@ -10,7 +10,7 @@ import pytest
 from scipy.sparse import csr_array
 
 from raceway.elastic.assembly import Cage, cage_rows, cage_stiffness
-from raceway.elastic.iterative_solver import LowRankContacts
+from raceway.elastic.iterative_solver import _LowRankContacts
 from tests.superelements.bearings import built
 
 #: Nodes, of which the last one is held, and contacts.
@@ -79,7 +79,7 @@ def test_it_is_the_inverse_of_bodies_contacts_and_cage(bodies, contact, held, ra
         asked.append(columns.shape)
         return inverse(columns)
 
-    whole = LowRankContacts(contact, held, counted, FREE)
+    whole = _LowRankContacts(contact, held, counted, FREE)
     residual = np.random.default_rng(4).standard_normal(len(FREE))
     for _ in range(2):
         apply = whole.inverse(inverse, rates)

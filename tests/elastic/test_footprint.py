@@ -10,7 +10,7 @@ from raceway import scene_from_dict
 from raceway.bodies.mesh import mesh_scene
 from raceway.core.mesh.hex_mesh import azimuth
 from raceway.core.mesh.ring_mesh import ring_shape
-from raceway.elastic.resultant import Footprint, ellipse, footprint
+from raceway.elastic.resultant import Footprint, _ellipse, footprint
 from raceway.elastic.surface import Facets
 from raceway.testing import b7206c
 
@@ -78,7 +78,7 @@ def place(bearing, request):
 
 def test_the_pressure_on_the_ellipse_falls_as_a_parabola():
     a, b = WIDE
-    points, weights = ellipse(WIDE)
+    points, weights = _ellipse(WIDE)
     share = (points / WIDE) ** 2
     # Gauss points integrate polynomials exactly, angles of equal distance the even powers: rounding is left.
     assert weights.sum() == pytest.approx(1.0, rel=1e-14)

@@ -8,7 +8,7 @@ import pytest
 from raceway import ConvergenceError
 from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.contact.laws import three_halves
-from raceway.elastic.contact import PlaceLaw, groove, plane
+from raceway.elastic.contact import PlaceLaw, _plane, groove
 from raceway.elastic.resultant import Footprint, ResultantContact, Touch
 
 #: A ball of 9.5 mm on a groove of a ring, about; loads of some hundred newtons make it approach by some micrometres.
@@ -180,7 +180,7 @@ def test_the_bound_of_the_explicit_step_is_below_the_exact_one():
 
 
 def test_a_pair_is_known_by_its_bodies_and_its_overlap():
-    made = contact(surface=plane(np.array([0.0499e-3, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0])))
+    made = contact(surface=_plane(np.array([0.0499e-3, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0])))
     made.evaluate(0.0, np.zeros(36))
     assert made.nodes_of(1) == (0, 6)
     name, depth, size = made.overlap(1)

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from raceway.core.record import Schedule
-from raceway.core.revolution.body import Revolution, seat_areas
+from raceway.core.revolution.body import Revolution, _seat_areas
 from raceway.core.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
@@ -186,7 +186,7 @@ def test_foundations_in_series(claim):
         softness = 1.0 / settled(tables(**given))[1].stiffness[0, 0]
         model, found = settled(tables(**given, supports={f"{seat}_seat": bed for seat in seats}))
         for seat in seats:
-            softness += 1.0 / (bed * 360 * seat_areas(model.bearing.ring_section(model, seat == "inner"), 360).sum())
+            softness += 1.0 / (bed * 360 * _seat_areas(model.bearing.ring_section(model, seat == "inner"), 360).sum())
         errors.append(abs(found.stiffness[0, 0] * softness - 1.0))
     quantity = "rings of 2e17 Pa on 10 and 50 N/mm3: axial stiffness: largest relative error"
     source = "springs in series; half the error that is stated for elastic rings"

@@ -16,7 +16,7 @@ from raceway.core.ring.orbit import steady_orbit
 from raceway.core.time.schemes import integrate
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.friction import CoulombFriction
-from raceway.elastic.iterative_solver import sticking
+from raceway.elastic.iterative_solver import _sticking
 from raceway.elastic.ring import from_orbit
 from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
@@ -186,7 +186,7 @@ def test_iterations_with_friction(claim, bearing):
     guess = ring.bodies.guess(place, places if places[:, 1].any() else ring._on_the_line(place, places))
     _, without = ring.settled(guess, ring.load)
     contact = system.contact
-    contact.friction = CoulombFriction(0.03, sticking(ring.bodies.setup, contact.area))
+    contact.friction = CoulombFriction(0.03, _sticking(ring.bodies.setup, contact.area))
     system.locate(guess)
     contact.friction.begin((contact.move @ system.assembly.nodal(guess)).reshape(-1, 3))
     found = system.settle(guess, 1e-7)

@@ -24,12 +24,12 @@ from raceway.scene.reading import rig_of
 from raceway.scene.tables import Rig
 from raceway.studies.fit.fit import fit
 from raceway.studies.fit.identify import identify, identify_recording
-from raceway.studies.fit.rig import coefficients
+from raceway.studies.fit.rig import _coefficients
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
-from raceway.studies.rig.signals import record, response, silent, slow_roll_record, white_noise
+from raceway.studies.rig.signals import _silent, record, response, slow_roll_record, white_noise
 from raceway.studies.rig.study import rig as rig_study
-from raceway.studies.shaft import balance, beam, bearing, rotor, shaft
+from raceway.studies.shaft import _beam, balance, bearing, rotor, shaft
 from raceway.testing import b7206c, default_registry
 from validation.shaker import hammer_record
 from validation.shaker import record as record_of_shaker
@@ -90,7 +90,7 @@ def undisturbed(rig: Rig, own, state, signals, true=None):
 def test_beam(claim):
     young, diameter, span, a, mass = 212e9, 0.03, 0.175, 0.025, 4.0
     stiffness = 48.0 * young * pi / 64.0 * diameter**4
-    line = beam(np.array([0.0, a, 0.5 * span, span]), diameter, young, 0.29, 1e-6, shear=False)
+    line = _beam(np.array([0.0, a, 0.5 * span, span]), diameter, young, 0.29, 1e-6, shear=False)
     line = line.with_spring(0.0, 1e16).with_spring(span, 1e16)
     load = np.zeros(len(line.stiffness))
     load[2 * line.node(0.5 * span)] = 1.0
@@ -124,7 +124,7 @@ def test_inverted_beam(claim):
     for side, kept in ratios.items():
         rig = RIG if RIG.sensor_side == side else attrs.evolve(RIG, sensor_side=side)
         for state, own in points(rig):
-            clean.append(off(undisturbed(rig, own, state, silent(rig.signals)), state))
+            clean.append(off(undisturbed(rig, own, state, _silent(rig.signals)), state))
             for seed in range(SEEDS):
                 found = disturbed(rig, own, state, seed)
                 noisy.append(off(found, state))
@@ -151,7 +151,7 @@ def test_files(claim, tmp_path):
     found = studied()[0]
     found.write_signals(tmp_path)
     stiffness, wide, uneven, random = [], [], [], np.random.default_rng(11)
-    drifting = attrs.evolve(silent(RIG.signals), speed_drift=0.01, sampling_hz=8e4)
+    drifting = attrs.evolve(_silent(RIG.signals), speed_drift=0.01, sampling_hz=8e4)
     for point, (state, own) in zip(found.points, points(), strict=True):
         loaded = with_number(SCENE, "load.axial", point.axial)
         signals, slow = (tmp_path / f"{kind}-{point.name}.csv" for kind in ("signals", "slow-roll"))
@@ -186,7 +186,7 @@ def test_files(claim, tmp_path):
 def test_speed_and_length(claim, words, changes, limit):
     errors = []
     for change in changes:
-        signals = attrs.evolve(silent(RIG.signals), **change)
+        signals = attrs.evolve(_silent(RIG.signals), **change)
         errors += [off(undisturbed(RIG, own, state, signals), state) for state, own in points()]
     quantity = f"clean signals, {words}, six points: largest relative error of K"
     claim(quantity, max(errors), at_most=limit, basis="own other method", source="the bearing that made the signals")
@@ -194,7 +194,7 @@ def test_speed_and_length(claim, words, changes, limit):
 
 def test_speed_column_instead_of_a_mark(claim):
     """The phase is taken as zero, and C is not identified."""
-    errors, signals = [], silent(RIG.signals)
+    errors, signals = [], _silent(RIG.signals)
     for state, own in points():
         without = attrs.evolve(record(RIG, response(RIG, own, state, signals), signals, 1), key=None)
         errors.append(off(identify_recording(attrs.evolve(without, speed=1.001 * without.speed), RIG, own), state))
@@ -208,7 +208,7 @@ def test_damping(claim):
     for axial in RIG.axial_loads:
         own = bearing(damped, axial, default_registry())
         state = balance(rotor(RIG, 13000.0 * pi / 30.0), own)
-        found = undisturbed(RIG, own, state, silent(RIG.signals))
+        found = undisturbed(RIG, own, state, _silent(RIG.signals))
         clean.append(abs(found.state.damping / state.damping - 1.0))
         noisy = [disturbed(RIG, own, state, seed) for seed in range(SEEDS)]
         widths.append(rms([(one.state.damping - state.damping) / one.uncertainty[1] for one in noisy]))
@@ -255,7 +255,7 @@ def test_noise_on_the_probe(claim):
             except (RacewayError, ValueError) as why:
                 failed.append(str(why))
                 continue
-            ratios.append((coefficients(found.state) - coefficients(state))[:2] / found.uncertainty[:2])
+            ratios.append((_coefficients(found.state) - _coefficients(state))[:2] / found.uncertainty[:2])
         shares.append(np.mean(np.abs(ratios) <= 1.0, axis=0))
         widths.append(np.sqrt(np.mean(np.square(ratios), axis=0)))
     where = f"0 to 5 % of noise on the probe, {RECORDS} records of each"

@@ -13,7 +13,7 @@ import raceway as rw
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
-from raceway.core.periodic.search import directly, force_continuation, highest_order, mesh_of, problem_of
+from raceway.core.periodic.search import _force_continuation, directly, highest_order, mesh_of, problem_of
 from raceway.core.record import Motion, Schedule
 from raceway.core.ring.system import by_address
 from raceway.core.signals import stiffness
@@ -183,7 +183,7 @@ def test_no_motion_grows_out_of_rest(claim):
         speed, q = 2.0 * np.pi / model.excitation.period_s, equilibrium.displacement
         problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
         mesh = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
-        shares = [point.parameter for point in force_continuation(problem, q, equilibrium.stiffness, mesh)]
+        shares = [point.parameter for point in _force_continuation(problem, q, equilibrium.stiffness, mesh)]
         assert abs(shares[-1]) < 0.02
         folds.append(max(shares))
         floquet = solved(tables).stability["floquet"]

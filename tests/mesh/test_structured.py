@@ -11,7 +11,7 @@ from raceway.bodies.mesh import mesh_scene, scene_mesher
 from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.mesh.hex_mesh import EDGES, graded, growing
-from raceway.core.mesh.quality import quality, refuse_bad_cells, summary
+from raceway.core.mesh.quality import _quality, refuse_bad_cells, summary
 from raceway.core.mesh.ring_mesh import ring_mesh, ring_shape
 from raceway.plugins.structured_mesh import Structured
 from tests.mesh.solids import facet_normals
@@ -182,6 +182,6 @@ def test_what_cannot_be_meshed_is_refused_with_numbers(mesher, change, words):
 def test_other_bearings_of_the_catalogue():
     known, unknown = (scene_from_dict({"bearing": {"preset": name}}).bearing for name in ("7206A", "DGB7-MASTA"))
     for mesh in COARSE.mesh(known).values():
-        assert quality(mesh).scaled_jacobian.min() > 0.2
+        assert _quality(mesh).scaled_jacobian.min() > 0.2
     with pytest.raises(MeshError, match="is missing"):
         COARSE.mesh(unknown)

@@ -9,7 +9,7 @@ import pytest
 from raceway import LAW, ConvergenceError, MeshError, jit
 from raceway.core.contact.laws import three_halves
 from raceway.core.patches.patch import Spacing
-from raceway.core.patches.pressure import BeyondPatch, Contact, Factor, PointLaw, pressure_field
+from raceway.core.patches.pressure import BeyondPatch, Contact, PointLaw, _Factor, pressure_field
 from validation.single import Single, single
 
 
@@ -58,7 +58,7 @@ def test_nothing_penetrates_and_nothing_pulls(coarse):
     contact = Contact(coarse.patch, None)
     coarse.press(contact, approach)
     gap = contact._gap.reshape(-1)
-    rest = gap + Factor(coarse.patch).displacement(np.arange(len(gap)), pressed.nodes, pressed.load)
+    rest = gap + _Factor(coarse.patch).displacement(np.arange(len(gap)), pressed.nodes, pressed.load)
     assert pressed.load.min() > 0.0
     # Rounding of gaps that are differences of lengths a thousand times larger.
     assert np.abs(rest[pressed.nodes]).max() < 1e-9 * approach

@@ -13,7 +13,7 @@ from raceway.bodies.condensed import patch_cost
 from raceway.core.patches.balls import Gyroscopic
 from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.pressure import Contact, SlipState
-from raceway.core.patches.system import History
+from raceway.core.patches.system import _History
 from raceway.core.ring.ring import Increment
 from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables
@@ -135,7 +135,7 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     assert again.force == pytest.approx(rest.force, abs=1e-2)
     back = system.evaluate(found.displacement, ball=now.ball, step=Increment(memory=now.memory))
     assert np.abs(back.force - rest.force)[:3].max() > 1.0
-    assert History.of(now.memory, 12).lost.sum() > 0.0
+    assert _History.of(now.memory, 12).lost.sum() > 0.0
 
 
 def test_points_that_get_more_neighbours_keep_their_memory():
@@ -151,7 +151,7 @@ def test_points_that_get_more_neighbours_keep_their_memory():
     wide = system.evaluate(far, ball=again.ball, step=Increment(memory=again.memory))
     # Rows lie elsewhere on the wider patches: some percent with 2 points along a semi-axis.
     assert there.force[0] == pytest.approx(wide.force[0], rel=0.02)
-    assert History.of(there.memory, 12).lost.sum() == pytest.approx(History.of(wide.memory, 12).lost.sum(), rel=0.1)
+    assert _History.of(there.memory, 12).lost.sum() == pytest.approx(_History.of(wide.memory, 12).lost.sum(), rel=0.1)
 
 
 def test_what_a_plan_says_of_friction_and_inertia():

@@ -8,7 +8,7 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
 from raceway import MeshError
-from raceway.core.revolution.body import Revolution, seat_areas, solved_harmonics
+from raceway.core.revolution.body import Revolution, _seat_areas, solved_harmonics
 from raceway.core.revolution.sections import dofs
 from tests.revolution.sections import STEEL, ball, ring
 from validation.reference.swept import Swept
@@ -44,7 +44,7 @@ def test_a_clamped_ring_equals_the_full_solve(inner, formulation):
 
 def test_a_ring_on_a_bed_equals_the_full_solve():
     profile = ring(False)
-    areas = seat_areas(profile, DIVISIONS)
+    areas = _seat_areas(profile, DIVISIONS)
     assert DIVISIONS * areas.sum() == pytest.approx(2.0 * np.pi * 31e-3 * 16e-3, rel=1e-12)  # the exact cylinder
     assert apart(profile, BED, lambda swept, force: swept.bedded(force, areas, BED)) < 1e-10
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.fit.rig import coefficients, invert, standard_errors, with_moment, with_tilt_of
-from raceway.studies.shaft import bearing, find_root, rotor, shaft, whirling_load
+from raceway.studies.fit.rig import _coefficients, invert, standard_errors, with_moment, with_tilt_of
+from raceway.studies.shaft import _whirling_load, bearing, find_root, rotor, shaft
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES
@@ -28,7 +28,7 @@ def test_no_root_ends_with_a_message():
 
 
 def test_force_and_moment_of_a_shaft_turn():
-    load = whirling_load(600.0 * np.pi / 30.0, 3.0 + 4.0j, 0.2 - 0.1j)
+    load = _whirling_load(600.0 * np.pi / 30.0, 3.0 + 4.0j, 0.2 - 0.1j)
     kernel, out = load.kernel(), np.empty(5)
     for t in (0.0, 0.013):
         kernel(t, load.parameters(), out)
@@ -90,7 +90,7 @@ def test_scatter_is_that_of_many_noisy_lines(rig, state):
     noise = error / np.sqrt(2.0) * (random.standard_normal(400) + 1j * random.standard_normal(400))
     found = [with_tilt_of(line, state, state.sensor + one) for one in noise]
     # 400 samples know a standard deviation to 1 / sqrt(800) = 3.5 %; three times that.
-    assert np.std([coefficients(one) for one in found], axis=0) == pytest.approx(
+    assert np.std([_coefficients(one) for one in found], axis=0) == pytest.approx(
         standard_errors(line, state, error), rel=0.11
     )
 

@@ -13,7 +13,7 @@ from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.scene.tables import Signals
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.signals import recording_of, signals_of, write_recording
-from raceway.studies.rig.signals import record, response, silent
+from raceway.studies.rig.signals import _silent, record, response
 from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
@@ -80,7 +80,7 @@ def test_damping_is_identified(rig, scene):
     state = balance(rotor(rig, SPEED), held)
     # The dashpot acts on the deflection; the shaft's slope is not in phase with it, and brings a part of its own.
     assert state.locked[1] == pytest.approx(3000.0, rel=5e-3)  # the coupling is that at rest
-    quiet = attrs.evolve(silent(Signals()), duration=0.5)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.5)
     found = identify_recording(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
     # Marks between samples turn all phases by a little: that is what its own uncertainty says.
     assert abs(found.state.damping - state.damping) < found.uncertainty[1]
@@ -89,7 +89,7 @@ def test_damping_is_identified(rig, scene):
 
 
 def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
-    drifting = attrs.evolve(silent(Signals()), speed_drift=0.01, duration=0.5, sampling_hz=8e4)
+    drifting = attrs.evolve(_silent(Signals()), speed_drift=0.01, duration=0.5, sampling_hz=8e4)
     whole = record(rig, response(rig, held, state, drifting), drifting, 1)
     groups = len(whole.time) // 8
     kept = 8 * np.arange(groups) + np.random.default_rng(2).integers(0, 8, groups)
@@ -98,7 +98,7 @@ def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
 
 
 def test_a_speed_alone_gives_k_without_c(rig, held, state):
-    quiet = attrs.evolve(silent(Signals()), duration=0.25)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.25)
     found = identify_recording(attrs.evolve(record(rig, response(rig, held, state, quiet), quiet, 1), key=None), rig, held)
     content = found.content()
     assert content["identification"]["equivalent_damping"] is None
@@ -109,7 +109,7 @@ def test_a_speed_alone_gives_k_without_c(rig, held, state):
 def test_a_bearing_unlike_the_scene_s_is_identified_with_the_scene_s_tilt(rig, scene, held):
     other = attrs.evolve(scene, bearing=attrs.evolve(scene.bearing, contact_angle_deg=19.0))
     true = balance(rotor(rig, SPEED), bearing(other, 2000.0, default_registry()))
-    quiet = attrs.evolve(silent(Signals()), duration=0.25)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.25)
     found = identify_recording(record(rig, response(rig, held, true, quiet), quiet, 1), rig, held)
     own = balance(rotor(rig, SPEED), held)
     assert abs(true.stiffness / own.stiffness - 1.0) > 0.05
@@ -217,7 +217,7 @@ def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
 
 
 def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
-    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     path = write_recording(attrs.evolve(own, y=3000.0 * own.y, z=3000.0 * own.z), tmp_path / "far.csv")
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
@@ -267,14 +267,14 @@ def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_pa
 
 
 def test_marks_and_a_speed_that_disagree(rig, held, state):
-    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="Sample faster, or leave one of the columns out"):
         identify_recording(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
 
 
 def test_columns_that_turn_the_wrong_way(rig, held, state):
-    quiet = attrs.evolve(silent(Signals()), duration=0.1)
+    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="swap y and z"):
         identify_recording(attrs.evolve(own, y=own.z, z=own.y), rig, held)

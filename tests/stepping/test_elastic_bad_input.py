@@ -15,7 +15,7 @@ from raceway.core.record import Schedule, drift
 from raceway.core.time.schemes import integrate
 from raceway.elastic.assembly import Assembly, Body
 from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, plane
+from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, _plane
 from raceway.elastic.surface import Facets, surface_points
 from raceway.integrators.methods import CentralDifference, Newmark
 from validation.impact import moving
@@ -42,7 +42,7 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     first = len(meshes[0][0])
     under, top = (_facets(mesh, height) for mesh, height in zip(meshes, (gap, 0.0), strict=True))
     at = surface_points(meshes[0][0], under)
-    pair = Pair("upper on lower", at, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
+    pair = Pair("upper on lower", at, _plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
     contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(at.area), 1), penalty)))
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0

@@ -14,7 +14,7 @@ from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
-from raceway.studies.verify.cases import impact_of, measure, transient_integrators
+from raceway.studies.verify.cases import _impact_of, _measure, transient_integrators
 from raceway.studies.verify.reference import reference_cases
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
@@ -30,9 +30,9 @@ def test_the_built_in_transient_integrators_are_among_them():
 @pytest.mark.parametrize("case", CASES)
 def test_order_two_through_touch_and_release(case, name):
     """The contact time converges with the square of the step: a slope within 0.1 of 2 over three halvings."""
-    method, impact = default_registry().find("integrator", name).plugin(), impact_of(reference_cases()[case].inputs)
+    method, impact = default_registry().find("integrator", name).plugin(), _impact_of(reference_cases()[case].inputs)
     steps = np.array([50, 100, 200, 400])
-    errors = [abs(measure(method, impact, n, 0.5)[1] / impact.contact_time - 1.0) for n in steps]
+    errors = [abs(_measure(method, impact, n, 0.5)[1] / impact.contact_time - 1.0) for n in steps]
     slope = np.polyfit(np.log(1.0 / steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(2.0, abs=0.1)
 

@@ -24,7 +24,7 @@ DEGENERATE = 1e-6
 
 
 @attrs.frozen(eq=False)
-class Quality:
+class _Quality:
     """Quality of each cell.
 
     Attributes
@@ -39,7 +39,7 @@ class Quality:
     skew: np.ndarray
 
 
-def quality(mesh: HexMesh) -> Quality:
+def _quality(mesh: HexMesh) -> _Quality:
     """Quality of every cell; flat cells get a scaled Jacobian of 0 and an infinite aspect."""
     count = len(mesh.cells)
     jacobian, aspect, skew = np.empty(count), np.empty(count), np.empty(count)
@@ -58,10 +58,10 @@ def quality(mesh: HexMesh) -> Quality:
         jacobian[here] = worst
         axes = [edge[:, 4 * i : 4 * i + 4].sum(axis=1) for i in range(3)]
         skew[here] = np.maximum.reduce([_cosine(axes[i], axes[(i + 1) % 3]) for i in range(3)])
-    return Quality(jacobian, aspect, skew)
+    return _Quality(jacobian, aspect, skew)
 
 
-def refuse_bad_cells(mesh: HexMesh, body: str = "") -> Quality:
+def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
     """The quality, unless a cell is inverted or degenerate.
 
     Raises
@@ -69,7 +69,7 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> Quality:
     MeshError
         How many cells, the first of them, its centre and its nodes.
     """
-    measures = quality(mesh)
+    measures = _quality(mesh)
     bad = np.flatnonzero(measures.scaled_jacobian < DEGENERATE)
     if not len(bad):
         return measures
@@ -265,7 +265,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
 
 
 def _body(mesh: HexMesh) -> Tables:
-    measures = quality(mesh)
+    measures = _quality(mesh)
     least, total, largest = np.inf, 0.0, 0.0
     for first in range(0, len(mesh.cells), BLOCK):
         length = _edges(mesh, mesh.cells[first : first + BLOCK])

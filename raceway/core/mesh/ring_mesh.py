@@ -20,7 +20,7 @@ from raceway.storage.tables import Tables
 
 
 @attrs.frozen(eq=False)
-class Outline:
+class _Outline:
     """Lines (k, 2) of x and radius [m], x strictly increasing.
 
     Attributes
@@ -63,10 +63,10 @@ class Outline:
         return np.column_stack([x, np.interp(x, *line.T)])
 
 
-def _plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> Outline:
+def _plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> _Outline:
     """A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m]."""
     half = 0.5 * width
-    return Outline(
+    return _Outline(
         np.array([[-half, land], [ends[0], land]]),
         np.array([[ends[1], land], [half, land]]),
         np.array([[-half, seat], [half, seat]]),
@@ -76,7 +76,7 @@ def _plain_outline(seat: float, land: float, width: float, ends: tuple[float, fl
 
 def _polygon_outline(
     key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
-) -> Outline:
+) -> _Outline:
     """The outline that a polygon of the whole section, groove not yet cut, stands for.
 
     Parameters
@@ -105,7 +105,7 @@ def _polygon_outline(
             f"`{key}`: the shoulder at x = {1e3 * left[-1, 0]:.4g} or {1e3 * right[0, 0]:.4g} mm closes over the groove: it "
             "must lie between the groove's bottom and its centre"
         )
-    return Outline(left, right, seat, (angles[0], angles[1]))
+    return _Outline(left, right, seat, (angles[0], angles[1]))
 
 
 def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -299,7 +299,7 @@ class RingShape:
     centre_x: float
     centre_r: float
     contact: float
-    profile: Outline | None = None
+    profile: _Outline | None = None
 
     def __attrs_post_init__(self) -> None:
         name = "inner ring" if self.inner else "outer ring"
@@ -346,7 +346,7 @@ class RingShape:
         return self.outline.edges
 
     @property
-    def outline(self) -> Outline:
+    def outline(self) -> _Outline:
         """The section without its groove."""
         if self.profile is not None:
             return self.profile

@@ -81,7 +81,7 @@ def _race_divisions(centre_radius: float, groove: float, sense: float, angle: fl
 
 
 @attrs.frozen(eq=False)
-class Race:
+class _Race:
     """A race's surface points and its compliance, seen from any ball.
 
     Attributes
@@ -125,7 +125,7 @@ class Race:
 
 
 @attrs.frozen(eq=False)
-class Ball:
+class _Ball:
     """The ball's surface points and its compliance, about its centre of mass.
 
     Attributes
@@ -154,8 +154,8 @@ class Patch:
     area : of a surface point [m2];  phi : (m,) angle of every row on the ball [rad];  points : for kernels
     """
 
-    ball: Ball
-    race: Race
+    ball: _Ball
+    race: _Race
     area: float
     phi: np.ndarray = attrs.field(init=False)
     points: Points = attrs.field(init=False)
@@ -216,7 +216,7 @@ class RingBody:
     window: tuple[float, float]
 
 
-def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patch:
+def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Patch:
     """The patch of a ring for a ball, ``balls`` in a row; compliances along the groove where the ball has them.
 
     Raises
@@ -252,11 +252,11 @@ def make_patch(ring: RingBody, ball: Ball, spacing: Spacing, balls: int) -> Patc
     crossing[0] = crossing[1]
     along_axis = normal[::-1]
     near = np.ascontiguousarray(near - along_axis.T @ crossing[0] @ along_axis)
-    race = Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing, shear)
+    race = _Race(sense, shape.groove, shape.centre_r, section.angles, near, spacing.across, edges, crossing, shear)
     return Patch(ball, race, spacing.area)
 
 
-def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: bool = False) -> Ball:
+def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: bool = False) -> _Ball:
     """The floating ball on a grid of so many rows; ``shear``: with its compliance along the rows' direction, for friction."""
     steps = np.append(np.arange(rows), spacing.ball_divisions // 2)
     finest = min(spacing.along, spacing.across)
@@ -272,7 +272,7 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     if shear:
         rolling = free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
         around = np.ascontiguousarray(rolling.compliance(radius, solid.young)[:-1])
-    return Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
+    return _Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
 
 
 def _projected(full: np.ndarray, normal: np.ndarray) -> np.ndarray:

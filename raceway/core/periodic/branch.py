@@ -310,7 +310,7 @@ def between(first: Path, second: Path, part: float) -> Path:
     return attrs.evolve(second, **{x: (1.0 - part) * getattr(first, x) + part * getattr(second, x) for x in names})
 
 
-def twice(symmetry: Symmetry) -> Symmetry:
+def _twice(symmetry: Symmetry) -> Symmetry:
     """The symmetry of two spans."""
     turned = symmetry.rotation @ symmetry.rotation
     return Symmetry(2.0 * symmetry.span, turned, 2.0 * symmetry.angle, symmetry.order[symmetry.order], symmetry.pitch)
@@ -319,7 +319,7 @@ def twice(symmetry: Symmetry) -> Symmetry:
 def _two_spans(problem: Problem) -> Problem:
     """The same problem with a period of two spans."""
     return Problem(
-        problem.system, problem.speed, twice(problem.symmetry), problem.share, problem.clock, problem.rule, problem.watch
+        problem.system, problem.speed, _twice(problem.symmetry), problem.share, problem.clock, problem.rule, problem.watch
     )
 
 
@@ -374,7 +374,7 @@ Test = Callable[[Point], float]
 
 
 @attrs.frozen(eq=False)
-class Special:
+class _Special:
     """A special point.
 
     Attributes
@@ -389,7 +389,7 @@ class Special:
     angle: float | None = None
 
 
-def special_points(branch: Branch, start: Point, end: Point, size: float) -> list[Special]:
+def special_points(branch: Branch, start: Point, end: Point, size: float) -> list[_Special]:
     """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds.
 
     Notes
@@ -413,7 +413,7 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
     specials = []
     for kind, test in ((FOLD, _fold), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
         if test(start) * test(end) < 0.0:
-            specials.append(Special(kind, *located(branch, start, end, size, test)))
+            specials.append(_Special(kind, *located(branch, start, end, size, test)))
     before, after = _outside(start), _outside(end)
     by_pairs = after[1] - before[1]
     if abs(by_pairs) >= 2 and abs(sum(after) - sum(before) - by_pairs) <= len(specials):
@@ -421,7 +421,7 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
         point, length = located(branch, start, end, size, lambda at: _pair(at, count))
         critical = point.floquet.of_span
         pairs = critical[np.abs(critical.imag) > 1e-6]
-        specials.append(Special(PAIR, point, length, float(abs(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))])))))
+        specials.append(_Special(PAIR, point, length, float(abs(np.angle(pairs[np.argmin(np.abs(np.abs(pairs) - 1.0))])))))
     return specials
 
 

@@ -43,7 +43,7 @@ _TRIED = (0.0, 0.19, 0.5, 0.81, 1.0)
 
 
 @attrs.frozen(eq=False)
-class Rule:
+class _Rule:
     """Numbers of the rule with s stages.
 
     Attributes
@@ -88,7 +88,7 @@ def integrals(points: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 @cache
-def rule(stages: int = STAGES) -> Rule:
+def _rule(stages: int = STAGES) -> _Rule:
     """The rule with a number of Gauss points an interval."""
     x, _ = np.polynomial.legendre.leggauss(stages)
     points = 0.5 * (x + 1.0)
@@ -102,7 +102,7 @@ def rule(stages: int = STAGES) -> Rule:
     packed[2 * e], packed[2 * e + 1], packed[2 * e + 2, :e] = v_all[0], q_all[0], tried
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
     both = np.ascontiguousarray(np.vstack([velocity, position, v_end, q_end, points]))
-    return Rule(points, velocity, position, both, values, packed, legendre)
+    return _Rule(points, velocity, position, both, values, packed, legendre)
 
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
@@ -249,7 +249,7 @@ class Problem:
     symmetry: Symmetry
     share: float = 1.0
     clock: float = attrs.field()
-    rule: Rule = attrs.field(factory=rule)
+    rule: _Rule = attrs.field(factory=_rule)
     watch: Callable[[], None] = lambda: None
 
     free: np.ndarray = attrs.field(init=False)
@@ -401,12 +401,12 @@ def _longer(nodes: np.ndarray) -> np.ndarray:
 
 
 @cache
-def _steepest(rule: Rule) -> float:
+def _steepest(rule: _Rule) -> float:
     """Largest entry of the derivative on an interval of length 1 among equals."""
     return float(np.abs(_weights(rule, np.array([0.0, 1.0]))).max())
 
 
-def _weights(rule: Rule, nodes: np.ndarray) -> np.ndarray:
+def _weights(rule: _Rule, nodes: np.ndarray) -> np.ndarray:
     """D (m s, s + 4) by the angle: row i has the weights of samples k s - 2 to k s + s + 1, k the interval of sample i."""
     m, s = len(nodes) - 1, len(rule.points)
     width = s + 4

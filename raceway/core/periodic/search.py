@@ -25,7 +25,7 @@ from raceway.errors import ConvergenceError
 _SAMPLES = 32
 
 
-def response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Orders k (m,) of the force and the linear response's complex lines (m, 5): Re(x e^{j k theta}).
 
     Parameters
@@ -47,9 +47,9 @@ def response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndar
     return orders, amplitudes
 
 
-def guess(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
+def _guess(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
     """Linear response about an equilibrium q (5,), on a mesh."""
-    orders, lines = response(problem, tangent)
+    orders, lines = _response(problem, tangent)
 
     def at(angles: np.ndarray, derivative: int) -> np.ndarray:
         waves = np.exp(1j * angles[:, None] * orders) * (1j * orders) ** derivative
@@ -113,7 +113,7 @@ def mesh_of(problem: Problem, highest: float, factor: int = 1) -> np.ndarray:
 
 def directly(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """The motion that full steps from the linear response about an equilibrium q (5,) lead to."""
-    first = guess(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
+    first = _guess(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent)))
     return refine(_full_steps(problem, first, 1e-2 * tolerance), tolerance)
 
 
@@ -135,7 +135,7 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
         problem.watch()
         step = min(step, 1.0 - share)
         here = part(share + step)
-        first = guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)
+        first = _guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)
         try:
             solved = _full_steps(here, first, ROUGH)
         except ConvergenceError:
@@ -156,7 +156,7 @@ MOST_NONLINEAR = 0.1
 
 
 @attrs.frozen(eq=False)
-class Neighbour:
+class _Neighbour:
     """A solved motion, to be followed.
 
     Attributes
@@ -186,7 +186,7 @@ class Neighbour:
         """
         if not self._alike(problem):
             return None
-        first = guess(problem, q, tangent, nodes)
+        first = _guess(problem, q, tangent, nodes)
         dq, dv, _, _, _ = motion_at(self.problem, self.excess, nodes)
         _, _, da, ball, rate = motion_at(self.problem, self.excess, problem.angles(nodes))
         return Path(nodes, first.q + dq, first.v + dv, first.a + da, np.ascontiguousarray(ball), np.ascontiguousarray(rate))
@@ -219,7 +219,7 @@ class Recorded:
     near_linear: ClassVar[bool] = False
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
-        """The same motion on a mesh; parameters as of ``Neighbour``'s."""
+        """The same motion on a mesh; parameters as of ``_Neighbour``'s."""
         w, inner = problem.speed, problem.angles(nodes)
         still = _standing(problem, q, nodes)
         return attrs.evolve(
@@ -238,13 +238,13 @@ class Recorded:
         return np.ascontiguousarray((waves @ lines).real)
 
 
-def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+def _neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
     """A solved motion, for other problems to start from; ``q``, ``tangent`` as in ``first_guess``."""
     problem, path = solved.problem, solved.path
-    first = guess(problem, q, tangent, path.nodes)
+    first = _guess(problem, q, tangent, path.nodes)
     excess = attrs.evolve(path, q=path.q - first.q, v=path.v - first.v, a=path.a - first.a)
     share = float(np.abs(excess.v / problem.weight).max()) / max(solved.size, 1e-300)
-    return Neighbour(problem, excess, share)
+    return _Neighbour(problem, excess, share)
 
 
 #: Points of a branch.
@@ -295,10 +295,10 @@ def _force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: n
     ConvergenceError
         It has no first point.
     """
-    return _ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+    return _ForceBranch.of(_force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
 
 
-def force_continuation(
+def _force_continuation(
     problem: Problem,
     q: np.ndarray,
     tangent: np.ndarray,
@@ -318,7 +318,7 @@ def force_continuation(
     ConvergenceError
         There is no first point.
     """
-    _, lines = response(problem, tangent)
+    _, lines = _response(problem, tangent)
     length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
 
     def slope(at: Problem, path: Path) -> np.ndarray:
@@ -489,12 +489,12 @@ class PeriodicMotion:
     floquet: Floquet
     fold: float | None = None
     coexisting: tuple[PeriodicMotion, ...] = ()
-    _neighbour: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
+    _neighbour: list[_Neighbour] = attrs.field(factory=list, init=False, repr=False)
 
-    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
+    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
         """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
         if not self._neighbour:
-            self._neighbour.append(neighbour_of(self.refined.solved, q, tangent))
+            self._neighbour.append(_neighbour_of(self.refined.solved, q, tangent))
         return self._neighbour[0]
 
     @property
@@ -508,7 +508,7 @@ def find(
     q: np.ndarray,
     tangent: np.ndarray,
     tolerance: float,
-    near: Neighbour | Recorded | None = None,
+    near: _Neighbour | Recorded | None = None,
     stay: bool = False,
 ) -> PeriodicMotion:
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
@@ -558,7 +558,7 @@ def find(
 
 
 def _continued(
-    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: _Neighbour | Recorded
 ) -> PeriodicMotion | None:
     """The motion that continues a neighbour, if it is close to it and not unstable."""
     first = near.first_guess(problem, q, tangent, mesh_of(problem, highest))

@@ -200,7 +200,7 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 
 
 @attrs.frozen(eq=False)
-class StartingOrbit:
+class _StartingOrbit:
     """The motion that a transient starts on.
 
     Attributes
@@ -217,7 +217,7 @@ class StartingOrbit:
 
 def starting_orbit(
     system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None
-) -> StartingOrbit | None:
+) -> _StartingOrbit | None:
     """The motion to start on; None where it is not searched for, because each try would take seconds.
 
     Parameters
@@ -252,7 +252,7 @@ def starting_orbit(
         except ConvergenceError:
             if highest <= HIGHEST:
                 raise
-            return StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
+            return _StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
     tables = orbit_tables(motion.all)
     warnings = _coexistence(tables)
     if not tables[0]["stable"]:
@@ -260,7 +260,7 @@ def starting_orbit(
             f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(tables[0])}; no stable one was found, and a real "
             "ring does not stay on it",
         )
-    return StartingOrbit(_sampled(motion, period), tables, warnings)
+    return _StartingOrbit(_sampled(motion, period), tables, warnings)
 
 
 def _collocated(problem: Problem, orbit: Orbit, highest: float) -> PeriodicMotion:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from scipy.sparse.linalg import SuperLU
 
 
-class Sector:
+class _Sector:
     """One sector of a body of N equal ones: element matrices and masses.
 
     Attributes
@@ -63,7 +63,7 @@ class Sector:
         masses = operator.element_masses
         self.mass = np.bincount(profile.quads.ravel(), weights=(masses[:, :4] + masses[:, 4:]).ravel(), minlength=count)
 
-    def assembled(self, quads: np.ndarray, row: np.ndarray) -> Pencil:
+    def assembled(self, quads: np.ndarray, row: np.ndarray) -> _Pencil:
         """The sector's matrices with the degree of freedom 3 node + component in row ``row`` (-1: held)."""
         from scipy.sparse import coo_matrix
 
@@ -76,10 +76,10 @@ class Sector:
         def total(part: np.ndarray) -> csr_matrix:
             return coo_matrix((part.ravel()[free], (rows, columns)), shape=(size, size)).tocsc()
 
-        return Pencil(total(self.even), total(self.cosine).data, total(self.sine).data)
+        return _Pencil(total(self.even), total(self.cosine).data, total(self.sine).data)
 
 
-class Pencil:
+class _Pencil:
     """K(n) = A + B cos(n a) + S sin(n a) in one sparsity pattern."""
 
     def __init__(self, even: csr_matrix, cosine: np.ndarray, sine: np.ndarray) -> None:
@@ -109,7 +109,7 @@ def _frame(angle: float) -> np.ndarray:
 _SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
+def _factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
     """scipy.sparse.linalg.SuperLU of a symmetric csc_matrix; ``ordered``: its rows already stand in an order of little fill."""
     from scipy.sparse.linalg import splu
 
@@ -118,7 +118,7 @@ def factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
 
 def _elimination_order(matrix: csr_matrix) -> np.ndarray:
     """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
-    return np.argsort(factorised(matrix, ordered=False).perm_c)
+    return np.argsort(_factorised(matrix, ordered=False).perm_c)
 
 
 def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
@@ -309,13 +309,13 @@ class Revolution:
         if not self.seat > 0.0:
             raise MeshError(f"a seat stiffness of {self.seat:g} N/m3 holds nothing: it must be greater than 0, or 'clamped'")
         for component in range(3):
-            springs[3 * self.profile.seat + component] = self.seat * seat_areas(self.profile, self.divisions)
+            springs[3 * self.profile.seat + component] = self.seat * _seat_areas(self.profile, self.divisions)
         return springs
 
     @cached_property
-    def sector(self) -> Sector:
+    def sector(self) -> _Sector:
         """One of the equal sectors."""
-        return Sector(self)
+        return _Sector(self)
 
     @property
     def mass(self) -> float:
@@ -434,7 +434,7 @@ class Revolution:
             rigid = len(self._rigid_motions(int(n))[0]) if self.seat == "free" else 0
             # Far below the elastic eigenvalues, far above the rounding of the largest.
             shift = 1e-9 * float(scaled.diagonal().max())
-            factor = factorised(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
+            factor = _factorised(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
             inverse = LinearOperator(scaled.shape, matvec=factor.solve, dtype=float)
             start = np.random.default_rng(0).standard_normal(len(mass))
             eigenvalues = eigsh(inverse, count + rigid + 2, which="LM", v0=start, return_eigenvectors=False)
@@ -459,9 +459,9 @@ class Revolution:
             if rigid is not None and len(rigid[0]):
                 response = self._relieved(matrix, rigid, row, row_load, row_seen)
             elif small:
-                response = _condensed(factorised(matrix), retained)[np.ix_(at_seen, at_load)]
+                response = _condensed(_factorised(matrix), retained)[np.ix_(at_seen, at_load)]
             else:
-                response = factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
+                response = _factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
             yield np.where(held, 0.0, response) if held.any() else response
 
     def _relieved(
@@ -488,7 +488,7 @@ class Revolution:
         inertia = np.repeat(self.sector.mass, 3)[order][:, None] * r
         springs = np.zeros(len(order))
         springs[row[pins]] = matrix.diagonal().mean()
-        factor = factorised((matrix + diags_array(springs)).tocsc())
+        factor = _factorised((matrix + diags_array(springs)).tocsc())
         small = np.linalg.inv(r.T @ inertia)
         moved = factor.solve(inertia)
         far, near = r[observed] @ small, r[load] @ small
@@ -518,7 +518,7 @@ class Revolution:
         row[order] = np.arange(len(order))
         return row
 
-    def _pencil(self, row: np.ndarray) -> Pencil:
+    def _pencil(self, row: np.ndarray) -> _Pencil:
         pencil = self.sector.assembled(self.profile.quads, row)
         if self._springs.any():
             springs = np.zeros(pencil.even.shape[0])
@@ -527,7 +527,7 @@ class Revolution:
         return pencil
 
 
-def seat_areas(profile: Profile, divisions: int) -> np.ndarray:
+def _seat_areas(profile: Profile, divisions: int) -> np.ndarray:
     """(k,) Area of the exact cylinder that each seat node of one sector stands for [m2]: linear shape functions along x."""
     if len(profile.seat) < 2:
         raise MeshError("a profile without a seat has no area for an elastic bed")
@@ -562,7 +562,7 @@ _DIGITS = 9
 
 
 @attrs.frozen(eq=False)
-class FreeBall:
+class _FreeBall:
     """Compliance of a floating ball between points near its equator.
 
     Attributes
@@ -616,7 +616,7 @@ def free_ball(
     components: tuple[int, ...] = (0, 2),
     formulation: str = "incompatible",
     harmonics: str = "all",
-) -> FreeBall:
+) -> _FreeBall:
     """The floating ball of a radius [m], from the cache where it is there.
 
     Parameters
@@ -629,4 +629,4 @@ def free_ball(
     degrees = dofs(profile.race, components)
     body = Revolution(profile, mesh.divisions, 1.0, poisson, formulation=formulation, seat="free")
     label = f"ball, {mesh.divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}"
-    return FreeBall(profile.angles, body.cached_compliance(label, degrees, degrees, np.asarray(offsets), harmonics))
+    return _FreeBall(profile.angles, body.cached_compliance(label, degrees, degrees, np.asarray(offsets), harmonics))

@@ -161,7 +161,7 @@ class Design:
         return tables_at(self.tables, values, registry)
 
 
-def shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
+def _shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
     """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
     Notes
@@ -196,7 +196,7 @@ def design(
     """
     excitation, tilt = excitation_of(tables), tables.get("supports", {}).get("tilt")
     if shaft is None:
-        shaft = float(tilt) if isinstance(tilt, int | float) and not isinstance(tilt, bool) else shaft_tilt_stiffness()
+        shaft = float(tilt) if isinstance(tilt, int | float) and not isinstance(tilt, bool) else _shaft_tilt_stiffness()
     if not (math.isfinite(shaft) and shaft > 0.0):
         raise SceneError.at("--shaft", shaft, "must be a tilt stiffness above 0 N m/rad")
     friction = friction_of(tables, friction)
@@ -306,7 +306,7 @@ class Curve:
 
 
 @attrs.frozen(eq=False)
-class Surface:
+class _Surface:
     """Curves of one setting at all of its axial loads; arrays are (loads, speeds)."""
 
     loads: tuple[float, ...]
@@ -340,11 +340,11 @@ class Curves:
     def curve(self, setting: Setting, load: float) -> Curve:
         return Curve(setting, load, self.rows[setting, load])
 
-    def surface(self, setting: Setting) -> Surface:
+    def surface(self, setting: Setting) -> _Surface:
         loads = self.design.loads_of(setting)
-        return Surface(loads, self.design.speeds_of(setting), [self.curve(setting, load) for load in loads])
+        return _Surface(loads, self.design.speeds_of(setting), [self.curve(setting, load) for load in loads])
 
-    def surfaces(self, excitation: ReadTables) -> Iterator[tuple[Tables, Surface]]:
+    def surfaces(self, excitation: ReadTables) -> Iterator[tuple[Tables, _Surface]]:
         """Every way to model the bearing under an excitation, and its curves."""
         return ((model, self.surface(Setting(**excitation, **model))) for model in self.design.models())
 

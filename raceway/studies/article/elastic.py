@@ -92,7 +92,7 @@ _DIFFERENCES = (
 
 
 @attrs.frozen
-class Run:
+class _Run:
     """One run of the study.
 
     Attributes
@@ -123,7 +123,7 @@ class Run:
 
 
 @attrs.frozen
-class Design:
+class _Design:
     """All runs of one scene.
 
     Attributes
@@ -144,13 +144,13 @@ class Design:
     def speed_rpm(self) -> float:
         return float(self.tables["excitation"]["speed_rpm"])
 
-    def runs(self) -> list[Run]:
+    def runs(self) -> list[_Run]:
         """Those at rest first, motions last: they cost most."""
-        static = [Run(bodies, *loads) for loads in self.load_cases for bodies in BODIES]
+        static = [_Run(bodies, *loads) for loads in self.load_cases for bodies in BODIES]
         axial = float(self.tables["load"]["axial"])
-        return static + [Run(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
+        return static + [_Run(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
 
-    def point(self, run: Run, registry: Registry) -> Tables:
+    def point(self, run: _Run, registry: Registry) -> Tables:
         """The scene's tables of one run."""
         values: Tables = {
             "bodies.kind": run.bodies,
@@ -179,11 +179,11 @@ class Design:
         tables = tables_at(scene, values, registry)
         return tables if run.excitation is not None else {k: v for k, v in tables.items() if k not in _OF_MOTION}
 
-    def scene(self, run: Run, registry: Registry) -> Scene:
+    def scene(self, run: _Run, registry: Registry) -> Scene:
         return scene_from_dict(self.point(run, registry), registry)
 
 
-def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS) -> Design:
+def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS) -> _Design:
     """The runs for a scene.
 
     Parameters
@@ -210,10 +210,10 @@ def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS
     if "force" not in excitation and "reference_speed_rpm" not in excitation:
         why = "is needed, or `excitation.force`: one force has a constant amplitude, that at this speed"
         raise SceneError.at("excitation.reference_speed_rpm", None, why)
-    return Design(with_value(tables, "bodies.kind", "elastic"), friction, turns)
+    return _Design(with_value(tables, "bodies.kind", "elastic"), friction, turns)
 
 
-def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, folder: Path | None = None) -> Tables:
+def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, folder: Path | None = None) -> Tables:
     """Run a scene.
 
     Parameters
@@ -289,7 +289,7 @@ def _section(result: Result, folder: Path) -> Tables:
         return {"pictures": [], "no_picture": failure(why)["reason"]}
 
 
-def from_hertz(row: ReadTables) -> Tables:
+def _from_hertz(row: ReadTables) -> Tables:
     """Nodal peak pressures over Hertz's at the same ball load, less 1.
 
     Returns
@@ -318,7 +318,7 @@ def _pressures(balls: list[ReadTables], race: str) -> Tables | None:
     }
 
 
-def below_contact(row: ReadTables) -> list[Tables]:
+def _below_contact(row: ReadTables) -> list[Tables]:
     """Largest shear stress and its depth in ball and ring below the most loaded contact of each race, over Hertz's, less 1."""
     return [
         {
@@ -330,7 +330,7 @@ def below_contact(row: ReadTables) -> list[Tables]:
     ]
 
 
-def at_rest(row: ReadTables, reference: ReadTables) -> Tables:
+def _at_rest(row: ReadTables, reference: ReadTables) -> Tables:
     """Relative differences of two rows at rest: x, y, kyy, and the largest of a ball's load over the largest load.
 
     y is None where the load is axial.
@@ -345,15 +345,15 @@ def at_rest(row: ReadTables, reference: ReadTables) -> Tables:
     }
 
 
-def in_motion(row: ReadTables, reference: ReadTables) -> Tables:
+def _in_motion(row: ReadTables, reference: ReadTables) -> Tables:
     """Relative differences of K, C and |Z| of two motions; ``wc``: that of w C over the reference's |Z|, where C is next to nothing."""
-    z, expected = identified(row), identified(reference)
+    z, expected = _identified(row), _identified(reference)
     speed = reference["identification"]["speed_rpm"] * math.pi / 30.0
     differences: Tables = {name: _over(z[name], expected[name]) for name in z}
     return differences | {"wc": speed * (z["c"] - expected["c"]) / expected["abs_z"]}
 
 
-def identified(row: ReadTables) -> dict[str, float]:
+def _identified(row: ReadTables) -> dict[str, float]:
     """K [N/m], C [N s/m] and |Z| [N/m] of a motion."""
     return {"k": K.of(row), "c": C.of(row), "abs_z": Z.of(row)}
 
@@ -381,7 +381,7 @@ class ElasticArticle(Answer):
     stem: ClassVar[str] = "article-elastic"
 
     title: str
-    design: Design
+    design: _Design
     rows: list[Tables]
     seconds: float
     cpu_s: float
@@ -390,7 +390,7 @@ class ElasticArticle(Answer):
     command: str = "raceway study article --bodies elastic"
 
     @cached_property
-    def of_run(self) -> dict[Run, Tables]:
+    def of_run(self) -> dict[_Run, Tables]:
         """Completed rows by run."""
         pairs = zip(self.design.runs(), self.rows, strict=True)
         return {run: row for run, row in pairs if row["status"] == "completed"}
@@ -479,23 +479,23 @@ class ElasticArticle(Answer):
         cost = f"{len(runs)} runs, {self.failed} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
         yield Words(cost + (f"; {self.reused} rows taken from earlier" if self.reused else ""), "dim")
 
-    def _compared(self, run: Run, row: Tables) -> Tables:
+    def _compared(self, run: _Run, row: Tables) -> Tables:
         """A row with its run and its differences."""
         table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
         if row["status"] != "completed":
             return table
         reference = None if run.bodies == _REFERENCE else self.row(run.phase, run.case, _REFERENCE)
         if run.excitation is None:
-            table |= {"from_hertz": from_hertz(row), "below_contact": below_contact(row)}
-            differences = at_rest
+            table |= {"from_hertz": _from_hertz(row), "below_contact": _below_contact(row)}
+            differences = _at_rest
         else:
-            table |= {"identified": identified(row), "energy_balance": row["stability"]["energy_drift"]}
-            differences = in_motion
+            table |= {"identified": _identified(row), "energy_balance": row["stability"]["energy_drift"]}
+            differences = _in_motion
         return table | {f"from_{_REFERENCE}": None if reference is None else differences(row, reference)}
 
 
 def elastic_article(
-    design: Design,
+    design: _Design,
     folder: Path | None,
     store: Path | None,
     registry: Registry,
@@ -527,7 +527,7 @@ def elastic_article(
 
     def compute(k: int, registry: Registry) -> Tables:
         progress.begin(k, f"{runs[k].bodies} {'at rest' if runs[k].excitation is None else 'in motion'}", runs[k].case)
-        return row_of(scenes[k], registry, progress, folder if k == drawn else None)
+        return _row_of(scenes[k], registry, progress, folder if k == drawn else None)
 
     rows, reused = work_through(compute, items, finished, local(registry, 0), registry, plugins)
     spent = time.monotonic() - begun, time.process_time() - cpu

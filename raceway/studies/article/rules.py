@@ -173,7 +173,7 @@ class Finding:
     why: str = ""
 
 
-def where(findings: Sequence[Finding], holds: bool | None) -> str:
+def _where(findings: Sequence[Finding], holds: bool | None) -> str:
     """The region with one outcome; "everywhere", "nowhere", or phrases between semicolons."""
     keys = [key for key in _ORDER if any(key in finding.at for finding in findings)]
     phrases = _phrases([(dict(finding.at), finding.holds is holds) for finding in findings], keys)
@@ -297,7 +297,7 @@ def judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[
     failed = region = ""
     if len(judged) < len(findings):
         reason = next(finding.why for finding in findings if finding.holds is None)
-        failed = f"{where(findings, None)} (the first reason: {reason or 'a run is missing'})"
+        failed = f"{_where(findings, None)} (the first reason: {reason or 'a run is missing'})"
     if not judged:
         kind = FAILED
     elif not any(judged):
@@ -305,5 +305,5 @@ def judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[
     elif all(finding.holds for finding in findings):
         kind = HOLDS
     else:
-        kind, region = PARTLY, where(findings, True)
+        kind, region = PARTLY, _where(findings, True)
     return Verdict(number, claim, rule, computed, kind, region, failed, tuple(findings))

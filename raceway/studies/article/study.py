@@ -64,40 +64,40 @@ _SWAPS: dict[str, Tables] = {
 STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
 
 
-def base(tilt: str, bodies: Sequence[str]) -> Setting:
+def _base(tilt: str, bodies: Sequence[str]) -> Setting:
     """The article's model: rigid bodies where they are run."""
     return Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid" if "rigid" in bodies else bodies[0])
 
 
 def _one_at_a_time(curves: Curves, load: float) -> list[tuple[str, dict[str, float | str]]]:
-    """Of each swap that is run at a load the ``change`` of K at each tilt boundary."""
+    """Of each swap that is run at a load the ``_change`` of K at each tilt boundary."""
     rows = []
     for name, swap in _SWAPS.items():
-        settings = {tilt: attrs.evolve(base(tilt, curves.design.bodies), **swap) for tilt in TILTS}
+        settings = {tilt: attrs.evolve(_base(tilt, curves.design.bodies), **swap) for tilt in TILTS}
         if (settings[TILTS[0]], load) in curves.rows:  # with friction every other axial load is run
-            rows.append((name, {tilt: change(curves.curve(setting, load)) for tilt, setting in settings.items()}))
+            rows.append((name, {tilt: _change(curves.curve(setting, load)) for tilt, setting in settings.items()}))
     return rows
 
 
-def change(curve: Curve) -> float | str:
+def _change(curve: Curve) -> float | str:
     """k*(1) - 1, or why there is no number: "unstable", "failed", "refused"."""
     value = curve.normalised()[-1] - 1.0
     ends = [curve.rows[end]["status"] for end in (0, -1)]
     return float(value) if np.isfinite(value) else str(next(status for status in ends if status != "completed"))
 
 
-def friction_trends(curves: Curves) -> list[Tables]:
+def _friction_trends(curves: Curves) -> list[Tables]:
     """k*(1) - 1 under the rotating force m e w^2 for each kind of friction: ``tilt``, ``axial_n``, ``none`` and so on."""
     design, rows = curves.design, []
     for tilt in TILTS if len(design.frictions) > 1 else ():
-        settings = {friction: attrs.evolve(base(tilt, ("rigid",)), friction=friction) for friction in design.frictions}
+        settings = {friction: attrs.evolve(_base(tilt, ("rigid",)), friction=friction) for friction in design.frictions}
         for load in design.loads_of(settings[design.frictions[-1]]):
-            changes = {friction: change(curves.curve(setting, load)) for friction, setting in settings.items()}
+            changes = {friction: _change(curves.curve(setting, load)) for friction, setting in settings.items()}
             rows.append({"tilt": tilt, "axial_n": load, **changes})
     return rows
 
 
-def scan_loads(design: Design) -> list[float]:
+def _scan_loads(design: Design) -> list[float]:
     """The lightest, the middle and the heaviest axial load."""
     return [design.loads[0], design.loads[len(design.loads) // 2], design.loads[-1]]
 
@@ -105,7 +105,7 @@ def scan_loads(design: Design) -> list[float]:
 def _scan_points(design: Design, load: float, registry: Registry) -> list[Tables]:
     """Scenes at the lowest and highest speed over the shaft's tilt stiffness."""
     ends = [
-        design.point(base("shaft", design.bodies), load, speed, registry) for speed in (design.speeds[0], design.speeds[-1])
+        design.point(_base("shaft", design.bodies), load, speed, registry) for speed in (design.speeds[0], design.speeds[-1])
     ]
     return [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
 
@@ -116,7 +116,7 @@ def hardening(rows: list[Tables]) -> np.ndarray:
     return np.asarray(k[:, 1] / k[:, 0])
 
 
-def turning_point(ratio: np.ndarray) -> float | None:
+def _turning_point(ratio: np.ndarray) -> float | None:
     """Tilt stiffness above which k falls with speed instead of rising [N m/rad]; None where it does not turn.
 
     Notes
@@ -150,7 +150,7 @@ TRENDS: dict[tuple[str, float, bool], tuple[float, tuple[float, ...]]] = {
 
 
 @attrs.frozen
-class Trend:
+class _Trend:
     """One row: expected and computed k at the first speed [N/um] and the ratios at the others; None where a run failed."""
 
     tilt: str
@@ -210,13 +210,13 @@ def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     return rows
 
 
-def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> Trend:
+def _trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> _Trend:
     """The printed numbers of a case beside the rows of ``_secants``."""
     first, ratios = TRENDS[case]
     reason = next((row["reason"] for row in rows if row["status"] != "completed"), "")
     k = [] if reason else [row["k"] for row in rows]
     computed = (k[0] / 1e6, *(value / k[0] for value in k[1:])) if k else None
-    return Trend(*case, (first, *ratios), computed, reason)
+    return _Trend(*case, (first, *ratios), computed, reason)
 
 
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
@@ -231,7 +231,7 @@ def failure(why: RacewayError) -> Tables:
     return {"status": why.status, "reason": " ".join(str(why).split())}
 
 
-def curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
+def _curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
     Where the steady motion is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside
@@ -286,7 +286,7 @@ def _plain(motion: Attractor) -> Tables:
     return {name: value for name, value in motion.to_dict().items() if name != "section"}
 
 
-def static_pressures(case: str, registry: Registry) -> list[Tables]:
+def _static_pressures(case: str, registry: Registry) -> list[Tables]:
     """Rows of the article's static verification, as ``raceway verify`` computes it."""
     return [attrs.asdict(row) for row in verification.compute(reference_cases()[case], registry)]
 
@@ -301,19 +301,19 @@ def _tasks(design: Design, registry: Registry) -> list[_Task]:
     def points(setting: Setting, loads: Sequence[float], speeds: Sequence[float]) -> list[Tables]:
         return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
 
-    tasks: list[_Task] = [("static verification", static_pressures, _STATIC)]
+    tasks: list[_Task] = [("static verification", _static_pressures, _STATIC)]
     tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
-    for load in scan_loads(design):
-        tasks.append((f"tilt stiffness at {load:g} N", curve, _scan_points(design, load, registry)))
-    tasks += [("the rig's speeds", curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
+    for load in _scan_loads(design):
+        tasks.append((f"tilt stiffness at {load:g} N", _curve, _scan_points(design, load, registry)))
+    tasks += [("the rig's speeds", _curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
     for setting, load in design.tasks():
         name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
-        tasks.append((name, curve, points(setting, [load], design.speeds_of(setting))))
+        tasks.append((name, _curve, points(setting, [load], design.speeds_of(setting))))
     return tasks
 
 
 def _rig_settings(design: Design) -> list[Setting]:
-    return [base(tilt, [bodies]) for bodies in design.bodies for tilt in TILTS]
+    return [_base(tilt, [bodies]) for bodies in design.bodies for tilt in TILTS]
 
 
 def _rows(task: _Task, registry: Registry) -> Tables:
@@ -341,7 +341,7 @@ class Article(Answer):
     curves: Curves
     rig: tuple[Tables, ...]
     static: tuple[Tables, ...]
-    trends: tuple[Trend, ...]
+    trends: tuple[_Trend, ...]
     scan: dict[float, list[Tables]]
     seconds: float
     cpu_s: float
@@ -384,14 +384,14 @@ class Article(Answer):
                 "shaft_tilt_stiffness": design.shaft,
                 "bodies": design.bodies,
                 "friction": design.friction if len(design.frictions) > 1 else 0.0,
-                "friction_trends": friction_trends(self.curves),
+                "friction_trends": _friction_trends(self.curves),
                 "verdicts": [verdict.to_dict() for verdict in self.verdicts],
                 "quasi_static": [trend.to_dict() for trend in self.trends],
                 "static": self.static,
                 "rig": self.rig,
                 "causes": {f"{load:g}": dict(_one_at_a_time(self.curves, load)) for load in design.loads},
                 "tilt_stiffness": [
-                    {"axial_n": load, "stiffness": STIFFNESSES, "ratio": ratio.tolist(), "turning_point": turning_point(ratio)}
+                    {"axial_n": load, "stiffness": STIFFNESSES, "ratio": ratio.tolist(), "turning_point": _turning_point(ratio)}
                     for load, ratio in ratios.items()
                 ],
                 "rows": rows,
@@ -496,8 +496,8 @@ def solve_curves(
     finished, reused = work_through(_rows, items, rows, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
     static = next(results)
-    compared = [trend(case, next(results)) for case in TRENDS]
-    scan = {load: next(results) for load in scan_loads(design)}
+    compared = [_trend(case, next(results)) for case in TRENDS]
+    scan = {load: next(results) for load in _scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
     spent = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu

@@ -31,7 +31,7 @@ _LENGTHS = {
 
 
 @door
-def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
+def _catalogue(pattern: str = "*") -> tuple[Preset, ...]:
     """Bearings of the catalogue, which ``preset`` of a scene's [bearing] takes by name.
 
     Parameters
@@ -91,7 +91,7 @@ def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bo
     """
     if materials:
         return _materials()
-    presets = catalogue(pattern)
+    presets = _catalogue(pattern)
     if picture is not None and Path(picture).suffix.lower() != ".png":
         raise SceneError.at("picture", str(picture), "the file must end in .png")
     if len(presets) == 1:

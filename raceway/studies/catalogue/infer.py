@@ -219,7 +219,7 @@ def _line(answer: Inferred) -> dict[str, str]:
     return line
 
 
-def infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> InferredTable:
+def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> InferredTable:
     """All sizes of a table.
 
     Parameters
@@ -284,7 +284,7 @@ def infer_texts(
     if table is not None:
         if any((*single.values(), *pairs)):
             raise SceneError.at("TABLE", table, "give it, or --bore, --outer-diameter and --rating, not both")
-        return infer_table(table, maker, conformity)
+        return _infer_table(table, maker, conformity)
     if missing := [word for word, value in single.items() if not value]:
         raise SceneError.at("TABLE", None, f"is missing, or {', '.join(missing)}")
     assert bore is not None and outer_diameter is not None

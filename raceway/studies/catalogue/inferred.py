@@ -33,7 +33,7 @@ QUANTITIES = ("dynamic rating", "static rating", "pair stiffness")
 
 
 @attrs.frozen
-class Number:
+class _Number:
     """A number, its relative scatter, and why it is this one."""
 
     value: float
@@ -42,7 +42,7 @@ class Number:
 
 
 @attrs.frozen
-class Check:
+class _Check:
     """A printed number met: contact angle [deg], what, printed and computed, relative error."""
 
     contact_angle_deg: float
@@ -80,18 +80,18 @@ class Inferred(Answer):
     stem: ClassVar[str] = "inferred"
     printed: Printed
     practice: str
-    ball_count: Number
-    ball_diameter: Number
-    pitch_diameter: Number
-    conformity_inner: Number
-    conformity_outer: Number
+    ball_count: _Number
+    ball_diameter: _Number
+    pitch_diameter: _Number
+    conformity_inner: _Number
+    conformity_outer: _Number
     share: float
     other: Tables | None
-    checks: tuple[Check, ...]
+    checks: tuple[_Check, ...]
     stiffness_error: float
 
     @property
-    def numbers(self) -> dict[str, Number]:
+    def numbers(self) -> dict[str, _Number]:
         """By the keys of [bearing]."""
         keys = "ball_count", "ball_diameter", "pitch_diameter", "conformity_inner", "conformity_outer"
         return {key: getattr(self, key) for key in keys}
@@ -207,13 +207,13 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
     return Inferred(
         printed=size,
         practice=best.practice,
-        ball_count=Number(best.ball_count, 1.0 - share, _why_count(best, share)),
-        ball_diameter=Number(
+        ball_count=_Number(best.ball_count, 1.0 - share, _why_count(best, share)),
+        ball_diameter=_Number(
             best.ball_diameter,
             max(map(abs, best.dynamic_errors)) / 1.8,
             f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter",
         ),
-        pitch_diameter=Number(size.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
+        pitch_diameter=_Number(size.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
         conformity_inner=inner,
         conformity_outer=outer,
         share=share,
@@ -282,22 +282,22 @@ def _why_count(best: Candidate, share: float) -> str:
     return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
 
 
-def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[Number, Number]:
+def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[_Number, _Number]:
     if conformity is not None:
-        both = Number(conformity, _CONFORMITY, "given")
+        both = _Number(conformity, _CONFORMITY, "given")
         return both, both
     if best.practice == "grooves":
         why = "gives C0 as Hertz contact at 4200 MPa"
         outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"
-        return Number(best.conformity_inner, _CONFORMITY, why), Number(best.conformity_outer, _CONFORMITY, outer)
+        return _Number(best.conformity_inner, _CONFORMITY, why), _Number(best.conformity_outer, _CONFORMITY, outer)
     fitted = _fitted_conformity(size, best)
     if fitted is None:
-        both = Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
+        both = _Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
     else:
         several = (
             f"{len(size.pairs)} printed stiffnesses of pairs" if len(size.pairs) > 1 else "the printed stiffness of a pair"
         )
-        both = Number(fitted[0], fitted[1], f"meets {several}")
+        both = _Number(fitted[0], fitted[1], f"meets {several}")
     return both, both
 
 
@@ -322,12 +322,12 @@ def _fitted_conformity(size: Printed, best: Candidate) -> tuple[float, float] | 
     return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
 
 
-def _checks(size: Printed, best: Candidate, inner: float, outer: float) -> tuple[Check, ...]:
+def _checks(size: Printed, best: Candidate, inner: float, outer: float) -> tuple[_Check, ...]:
     checks = []
     for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
         for word, printed, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
-            checks.append(Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
+            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
     computed: Iterable[float] = stiffnesses(size, best.ball_count, best.ball_diameter, inner, outer) if size.pairs else []
     for pair, k in zip(size.pairs, computed, strict=True):
-        checks.append(Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
+        checks.append(_Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
     return tuple(checks)

@@ -53,7 +53,7 @@ class PairStiffness:
 
 
 @attrs.frozen
-class Internals:
+class _Internals:
     """Balls as a maker prints them: count, diameter and pitch diameter [m]."""
 
     ball_count: int
@@ -77,7 +77,7 @@ class Printed:
     width: float | None = None
     pairs: tuple[PairStiffness, ...] = ()
     names: tuple[str, ...] = ()
-    internals: Internals | None = None
+    internals: _Internals | None = None
 
     def __attrs_post_init__(self) -> None:
         numbers = [("bore", self.bore), ("outer diameter", self.outer_diameter), ("width", self.width or 1.0)]
@@ -142,7 +142,7 @@ class Printed:
 def printed_by(maker: str) -> tuple[Printed, ...]:
     """One entry a designation of a table that comes with the package: "nsk" or "gmn"."""
     text = files("raceway").joinpath(f"data/printed/{maker}.csv").read_text(encoding="utf-8")
-    return parse_table(text, f"{maker}.csv").lines
+    return _parse_table(text, f"{maker}.csv").lines
 
 
 @attrs.frozen
@@ -168,10 +168,10 @@ def read_table(path: Path) -> Table:
         raise SceneError.at(str(path), None, "no such file") from None
     except (OSError, ValueError) as why:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
-    return parse_table(text, str(path))
+    return _parse_table(text, str(path))
 
 
-def parse_table(text: str, name: str) -> Table:
+def _parse_table(text: str, name: str) -> Table:
     """One ``Printed`` a line of a CSV text; lines that start with # are remarks.
 
     Raises
@@ -208,7 +208,7 @@ def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
     angle = number("contact_angle_deg")
     internals = None
     if all(cells.get(key) for key in _OPTIONAL):
-        internals = Internals(int(cells["ball_count"]), number("ball_diameter_mm"), number("pitch_diameter_mm"))
+        internals = _Internals(int(cells["ball_count"]), number("ball_diameter_mm"), number("pitch_diameter_mm"))
     return Printed(
         bore=number("bore_mm"),
         outer_diameter=number("outer_diameter_mm"),

@@ -62,7 +62,7 @@ def _table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return difference, area, 2.0 * first / np.pi * (np.pi / (2.0 * chi2 * second)) ** (1.0 / 3.0)
 
 
-def groove(diameter: ArrayLike, g: ArrayLike, conformity: ArrayLike, inner: bool) -> tuple[np.ndarray, np.ndarray]:
+def _groove(diameter: ArrayLike, g: ArrayLike, conformity: ArrayLike, inner: bool) -> tuple[np.ndarray, np.ndarray]:
     """Curvature sum [1/m] and difference of a ball in a groove, at g = D cos(a) / d_m; arrays that broadcast."""
     d, g, f = np.asarray(diameter), np.asarray(g), np.asarray(conformity)
     rolling = 2.0 * g / (1.0 - g) if inner else -2.0 * g / (1.0 + g)
@@ -109,7 +109,7 @@ class BallRow:
     def _grooves(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Curvature sum and difference at the inner and at the outer race."""
         races = ((self.inner, True), (self.outer, False))
-        return [groove(self.diameter, self.gamma, conformity, inner) for conformity, inner in races]
+        return [_groove(self.diameter, self.gamma, conformity, inner) for conformity, inner in races]
 
     def dynamic_rating(self) -> np.ndarray:
         """C of ISO 281 [N]; conformities other than the tables' change f_c as the closed form of ISO/TR 1281-1 does."""
@@ -167,6 +167,6 @@ def _static_factor(g: ArrayLike) -> np.ndarray:
     """f_0 [N/mm2] of ISO 76, below g = 0.1 that of the inner race."""
     g = np.asarray(g, dtype=float)
     low = np.clip(g, 1e-3, 0.1)
-    inner = _load_at_pressure(*groove(1.0, low, _STANDARD, True), _MODULUS, _PERMITTED)
-    edge = _load_at_pressure(*groove(1.0, np.array(0.1), _STANDARD, True), _MODULUS, _PERMITTED)
+    inner = _load_at_pressure(*_groove(1.0, low, _STANDARD, True), _MODULUS, _PERMITTED)
+    edge = _load_at_pressure(*_groove(1.0, np.array(0.1), _STANDARD, True), _MODULUS, _PERMITTED)
     return np.where(g < 0.1, _F_0[_INNER_LIMITS] * inner / edge, np.interp(g, _G, _F_0))

@@ -32,10 +32,10 @@ def draw_section(name: str, bearing: Bearing, path: Path) -> Path:
     RacewayError
         matplotlib is missing, or the file cannot be written.
     """
-    return save_figure(section(name, bearing), path, 150)
+    return save_figure(_section(name, bearing), path, 150)
 
 
-def section(name: str, bearing: Bearing) -> Figure:
+def _section(name: str, bearing: Bearing) -> Figure:
     """The figure: left the whole bearing, right one ball."""
     try:
         rings = [_outline(bearing, inner) for inner in (True, False)]

@@ -82,7 +82,7 @@ def columns_of(
     ValueError
         Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
     """
-    mapping = {plain(text): name.strip() for text, name in (mapping or {}).items()}
+    mapping = {_plain(text): name.strip() for text, name in (mapping or {}).items()}
     if all(_is_number(text) for text in headers):
         raise ValueError(f"{where.rstrip(': ')} must name the columns, {_EXAMPLE}")
     _refuse_mapping(headers, mapping, where)
@@ -100,26 +100,26 @@ def columns_of(
     return {COLUMNS[header.name][0]: (k, COLUMNS[header.name][1]) for k, header in enumerate(columns) if header.name}
 
 
-def plain(text: str) -> str:
+def _plain(text: str) -> str:
     """A header in small letters, with u for micro and single blanks."""
     return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "u").lower().split())
 
 
 def quantity_of(text: str) -> str:
     """Quantity of a header: "time", "y", "force y", or a word that is none of them."""
-    return _parts(plain(text))[0]
+    return _parts(_plain(text))[0]
 
 
 def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
     """Each header by itself, then the axes together: X beside Y is another axis than X beside Z."""
-    parts = [_parts(plain(text)) for text in headers]
+    parts = [_parts(_plain(text)) for text in headers]
     axes: dict[str | None, set[str]] = {"force ": set(), None: set()}
     for text, (quantity, _) in zip(headers, parts, strict=True):
-        if mapping.get(plain(text)) != IGNORE and (match := _AXIS.fullmatch(quantity)):
+        if mapping.get(_plain(text)) != IGNORE and (match := _AXIS.fullmatch(quantity)):
             axes[match["kind"]].add(quantity[-1])
     columns = []
     for text, (quantity, unit) in zip(headers, parts, strict=True):
-        if (name := mapping.get(plain(text))) is not None:
+        if (name := mapping.get(_plain(text))) is not None:
             columns.append(_Header(text, "" if name == IGNORE else name))
         else:
             match = _AXIS.fullmatch(quantity)
@@ -176,7 +176,7 @@ def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Head
 
 def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: str) -> None:
     """A map of a column that does not exist, to an unknown name, or to another unit than the header's."""
-    texts = {plain(text): text for text in headers}
+    texts = {_plain(text): text for text in headers}
     for header, name in mapping.items():
         if header not in texts:
             raise ValueError(
@@ -199,7 +199,7 @@ def _message(columns: Sequence[_Header], where: str) -> str:
     missing = [name for name in ("time", "y", "z", "key") if name not in present]
     pairs = []
     for header in faulty:
-        unit = _parts(plain(header.text))[1]
+        unit = _parts(_plain(header.text))[1]
         if header.guess and unit is not None:
             continue  # its unit is the fault, which no name mends
         name = header.guess or next((name for name in missing if _fits(name, unit)), IGNORE)
@@ -210,7 +210,7 @@ def _message(columns: Sequence[_Header], where: str) -> str:
     first = f"{len(faulty)} columns are not known"
     if len(faulty) == 1:
         (text,) = (header.text for header in faulty)
-        first = f"unknown column '{_shortened(text)}'{nearest(plain(text), COLUMNS) if len(text) < 30 else ''}"
+        first = f"unknown column '{_shortened(text)}'{nearest(_plain(text), COLUMNS) if len(text) < 30 else ''}"
     mend = f"Say what is meant, for instance {_options(pairs, where)}; " if pairs else ""
     return f"{where}{first}. Found: {', '.join(map(str, columns))}. {mend}names: {_names()} ({_EXAMPLE})"
 

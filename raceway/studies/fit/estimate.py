@@ -138,7 +138,7 @@ def with_free(scene: Scene, free: Sequence[Free], values: np.ndarray) -> Scene:
 
 
 @attrs.frozen
-class Uncertain:
+class _Uncertain:
     """Numbers that deviate together.  ``cause``: in words;  ``sizes``: path -> standard error, in the unit of the key."""
 
     cause: str
@@ -151,7 +151,7 @@ class Uncertain:
         return scene
 
 
-def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = ()) -> tuple[Uncertain, ...]:
+def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = ()) -> tuple[_Uncertain, ...]:
     """Uncertain numbers of a scene, without free ones.
 
     Parameters
@@ -179,8 +179,8 @@ def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = (
     }
     grooves = {path: size for path, size in errors.items() if ".conformity" in path}
     alone = {path: size for path, size in {**ranges, **errors}.items() if path not in {*free, *grooves}}
-    causes = [Uncertain(path, {path: size}) for path, size in alone.items()]
-    return tuple([*causes, Uncertain("groove conformities", grooves)] if grooves else causes)
+    causes = [_Uncertain(path, {path: size}) for path, size in alone.items()]
+    return tuple([*causes, _Uncertain("groove conformities", grooves)] if grooves else causes)
 
 
 class Residuals(Protocol):

@@ -126,7 +126,7 @@ def _word(part: str) -> str:
 
 
 @attrs.define(eq=False)
-class Linear:
+class _Linear:
     """Weighted residuals of the spectra, ``raceway.studies.fit.estimate.Residuals``: free numbers, then the parts of T.
 
     Attributes
@@ -220,7 +220,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
     return np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2])
 
 
-def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, Linear, np.ndarray]:
+def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, _Linear, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
     while hum := tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
@@ -243,10 +243,10 @@ def _share_of_force(spectra: _Spectra, tones: Sequence[float]) -> float:
     return float((np.abs(spectra.force[near]) ** 2).sum() / (np.abs(spectra.force) ** 2).sum())
 
 
-def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, Linear]:
+def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, _Linear]:
     """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
     d = len(spectra.axes)
-    problem = Linear(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
+    problem = _Linear(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
     numbers = [*free, *problem.nuisance]
     for iteration in range(_ITERATIONS):  # linear at first, the force's noise alone: the end does not depend on the start
         answer = estimate(problem, numbers, stated=False)
@@ -257,7 +257,7 @@ def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple
     return estimate(problem, numbers, stated=False), problem
 
 
-def _variances(problem: Linear, at: np.ndarray) -> np.ndarray:
+def _variances(problem: _Linear, at: np.ndarray) -> np.ndarray:
     """Variances (2, k, d) of displacement and force by which |e|^2 (n, d) is likeliest: exponential with the mean s^2."""
     z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.unweighted(at)) ** 2
     n, d = e2.shape
@@ -277,7 +277,7 @@ def _variances(problem: Linear, at: np.ndarray) -> np.ndarray:
     return np.asarray(variances.reshape(2, _COLOURS, d))
 
 
-def _without_nuisance(answer: Estimate, count: int, problem: Linear) -> Estimate:
+def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimate:
     """The free numbers alone, the parts of T taken out of the derivatives, where they are fitted whatever the numbers are.
 
     Residuals that are not white and a force that is folded back widen the intervals.
@@ -341,7 +341,7 @@ def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted
     return Fitted(title, signals.source, "record", False, answer, _series(model, answer, residuals), (), tuple(notes))
 
 
-def _series(model: Linear, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
+def _series(model: _Linear, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
     """Real and imaginary part of F / x over frequency beside the model's, per axis, where there is force.
 
     Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.

@@ -108,20 +108,20 @@ def _state(shaft: Rotor, force: complex, moment: complex, tested: State | Bearin
     return State(shaft.speed, force, moment, deflection, slope, sensor, tested.mass, tested.coupling, runs)
 
 
-def coefficients(state: State) -> np.ndarray:
+def _coefficients(state: State) -> np.ndarray:
     """K [N/m] and C [N s/m] with the rig's tilt, then with the tilt locked (4,)."""
     return np.array([state.stiffness, state.damping, *state.locked])
 
 
 def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
-    """Standard errors of ``coefficients`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
+    """Standard errors of ``_coefficients`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
 
     Notes
     -----
     Z is analytic in the deflection while moment over tilt stays; half of its variance lies along each direction.
     """
     step = 1e-4 * abs(state.sensor)
-    more, less = (coefficients(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
+    more, less = (_coefficients(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
     change = (more - less) / (2.0 * step)
     slopes = np.hypot(change[::2], state.speed * change[1::2])
     stiffness = slopes * error / np.sqrt(2.0)
@@ -129,8 +129,8 @@ def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
 
 
 def largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
-    """Largest change of ``coefficients`` (4,) among changed states."""
-    return np.max([np.abs(coefficients(near) - coefficients(state)) for near in changed], axis=0)
+    """Largest change of ``_coefficients`` (4,) among changed states."""
+    return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
 
 
 def turned(shaft: Rotor, state: State, response: complex, angle: float) -> list[State]:
@@ -201,7 +201,7 @@ class _Balanced:
 
 
 @attrs.frozen(eq=False)
-class Slope:
+class _Slope:
     """Derivatives by one number: of the weighted residuals (n,), of K [N/m] and C [N s/m] (2,), and of the response [m]."""
 
     residuals: np.ndarray
@@ -226,7 +226,7 @@ class _RigResiduals:
     component: Synchronous
     run_out: RunOut | Synchronous | None
     last: _Balanced = attrs.field(init=False)
-    slopes: list[Slope] = attrs.field(factory=list, init=False)
+    slopes: list[_Slope] = attrs.field(factory=list, init=False)
     _motion: list[Result] = attrs.field(factory=list, init=False)
 
     @property
@@ -243,7 +243,7 @@ class _RigResiduals:
         self.slopes = [self._slope((self.scene, at - step), (self.scene, at + step), 2.0 * step.sum()) for step in steps]
         return np.column_stack([slope.residuals for slope in self.slopes])
 
-    def uncertain(self, at: np.ndarray) -> dict[str, Slope]:
+    def uncertain(self, at: np.ndarray) -> dict[str, _Slope]:
         """Cause -> derivatives by its standard error."""
         slopes = {}
         for numbers in uncertain(self.scene, [key.name for key in self.free]):
@@ -253,13 +253,13 @@ class _RigResiduals:
             slopes[numbers.cause] = self._slope(before, after, 2.0 * step)
         return slopes
 
-    def _slope(self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], step: float) -> Slope:
+    def _slope(self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], step: float) -> _Slope:
         """Between two scenes with numbers."""
         low, high = self._balanced(*before), self._balanced(*after)
         # Of the run-out, too: the response to the unbalance in a slow roll depends on the bearing.
         column = self._weighted(high.computed - high.measured, low.computed - low.measured) / step
         stiffness, damping = high.state.stiffness - low.state.stiffness, high.state.damping - low.state.damping
-        return Slope(column, np.array([stiffness, damping]) / step, (high.computed - low.computed) / step)
+        return _Slope(column, np.array([stiffness, damping]) / step, (high.computed - low.computed) / step)
 
     def _weighted(self, residual: complex, less: complex = 0.0) -> np.ndarray:
         """A difference of two responses along the measured one and across it, over the errors."""

@@ -228,7 +228,7 @@ def _without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalan
 
 
 @attrs.frozen(eq=False)
-class Response:
+class _Response:
     """The 1x response at the sensor against the unbalance: of a record, less its run-out.
 
     Attributes
@@ -242,7 +242,9 @@ class Response:
     fourier: complex
 
 
-def response_of(component: Synchronous, rig: Rig, bearing: Bearing, run_out: RunOut | Synchronous | None = None) -> Response:
+def response_of(
+    component: Synchronous, rig: Rig, bearing: Bearing, run_out: RunOut | Synchronous | None = None
+) -> _Response:
     """The response in a record's 1x component.
 
     Parameters
@@ -266,7 +268,7 @@ def response_of(component: Synchronous, rig: Rig, bearing: Bearing, run_out: Run
     run_out = run_out or RunOut()
     if component.marked:
         forward, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (component.forward, component.fourier))
-        return Response(run_out, forward, fourier)
+        return _Response(run_out, forward, fourier)
     if run_out.vector:
         raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; leave it out, or record the mark")
-    return Response(run_out, abs(component.forward) + 0j, abs(component.fourier) + 0j)
+    return _Response(run_out, abs(component.forward) + 0j, abs(component.fourier) + 0j)

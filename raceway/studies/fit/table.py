@@ -39,7 +39,7 @@ _HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?
 
 
 @attrs.frozen(eq=False)
-class Measurements:
+class _Measurements:
     """Measurements, one per row.
 
     Attributes
@@ -83,7 +83,9 @@ class Measurements:
         return scenes
 
 
-def measurements_in(table: NumberTable, source: str, scene: Scene, columns: Mapping[str, str] | None = None) -> Measurements:
+def measurements_in(
+    table: NumberTable, source: str, scene: Scene, columns: Mapping[str, str] | None = None
+) -> _Measurements:
     """The measurements in a table.
 
     Parameters
@@ -111,7 +113,7 @@ def measurements_in(table: NumberTable, source: str, scene: Scene, columns: Mapp
                 f"errors are stated of {', '.join(parts['error'])}, none of {', '.join(missing)}: state all of them or none"
             )
         standard_errors = {name: numbers / COVERAGE for name, numbers in parts["error"].items()}
-        measured = Measurements(source, parts["key"], parts["value"], standard_errors)
+        measured = _Measurements(source, parts["key"], parts["value"], standard_errors)
         _refuse_contradictions(measured)
         return measured
     except ValueError as why:
@@ -170,7 +172,7 @@ def _factor(header: str, unit: str, written: str) -> float:
         raise ValueError(f"'{header}': {why}") from None
 
 
-def _refuse_contradictions(measured: Measurements) -> None:
+def _refuse_contradictions(measured: _Measurements) -> None:
     """Two measurements under the same keys whose stated errors do not explain their difference."""
     if not measured.errors:
         return
@@ -197,7 +199,7 @@ class _TableResiduals:
     scenes : of the rows
     """
 
-    measured: Measurements
+    measured: _Measurements
     free: Sequence[Free]
     scenes: list[Scene]
     _answers: list[Gradients] = attrs.field(factory=list, init=False)
@@ -279,7 +281,7 @@ def _across(displacement: np.ndarray) -> dict[str, float]:
     return {name: float(displacement[k]) for name, k in _ACROSS.items()}
 
 
-def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
+def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted:
     """Free keys of a scene from a table."""
     free = free_keys(scene, names)
     refuse_few(measured.count * len(measured.values), len(free), measured.source)
@@ -304,7 +306,7 @@ def fit_table(measured: Measurements, scene: Scene, names: list[str]) -> Fitted:
 
 
 def _series(
-    measured: Measurements, scene: Scene, answer: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
+    measured: _Measurements, scene: Scene, answer: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
 ) -> tuple[Series, ...]:
     key = next((path for path, numbers in measured.keys.items() if np.ptp(numbers) > 0.0), None)
     x = measured.keys[key] if key else np.arange(1.0, measured.count + 1.0)

@@ -28,7 +28,7 @@ _KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "windo
 _LEAST_PERCENT = 1e-4
 
 
-def procedures(study: RigStudy) -> Figure:
+def _procedures(study: RigStudy) -> Figure:
     """True K over speed, and what each correction makes of it."""
     figure = new_figure(9.2, 3.8)
     loads = list(dict.fromkeys(point.axial for point in study.points))
@@ -54,7 +54,7 @@ def procedures(study: RigStudy) -> Figure:
     return figure
 
 
-def causes(study: RigStudy) -> Figure:
+def _causes(study: RigStudy) -> Figure:
     """Error of K by one cause at a time: a dot for each speed and load, on a logarithmic scale."""
     names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
     figure = new_figure(9.2, 0.34 * len(names) + 1.1)
@@ -87,9 +87,9 @@ def write_page(study: RigStudy, folder: Path) -> list[Path]:
         matplotlib is missing, or a folder that cannot be written.
     """
     record = figures(study.points[0].identified)
-    drawn = {"procedures": procedures(study), **record, "error-split": causes(study)}
+    drawn = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawn.items()]
-    return [page(study, drawn).write(folder / "rig.html"), *files]
+    return [_page(study, drawn).write(folder / "rig.html"), *files]
 
 
 _ASSUMED = [
@@ -101,7 +101,7 @@ _ASSUMED = [
 ]
 
 
-def page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
+def _page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
     content, rig, signals = study.to_dict(), study.rig, study.rig.signals
     worst, rows = content["worst"], content["rows"]

@@ -184,7 +184,7 @@ def _large_field(value: object) -> str:
     return f"{float(value):.9E}" if isinstance(value, float | np.floating) else str(value)
 
 
-def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
+def _ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     """Commands of Ansys.
 
     Parameters
@@ -314,7 +314,7 @@ def _entry_unit(letter: str, row: str, column: str) -> str:
 
 
 @attrs.frozen
-class Program:
+class _Program:
     """A program, or a plain format: its name, notes for the reader of its file, and the file's text.
 
     ``notes``: of a table with the ``number`` of its first entry;  ``text``: of a table, notes, number, node and tag
@@ -326,12 +326,12 @@ class Program:
 
 
 PROGRAMS = {
-    "nastran": Program(
+    "nastran": _Program(
         "Nastran", _nastran_notes, lambda table, head, number, node, _: _nastran_text(table, head, number, node)
     ),
-    "ansys": Program("Ansys", _ansys_notes, lambda table, head, number, *_: ansys_text(table, head, number)),
-    "csv": Program("CSV", lambda *_: _NUMBERS_NOTES, lambda table, head, *_: _csv_text(table, head)),
-    "json": Program(
+    "ansys": _Program("Ansys", _ansys_notes, lambda table, head, number, *_: _ansys_text(table, head, number)),
+    "csv": _Program("CSV", lambda *_: _NUMBERS_NOTES, lambda table, head, *_: _csv_text(table, head)),
+    "json": _Program(
         "JSON", lambda *_: _NUMBERS_NOTES, lambda table, head, _number, _node, tag: _json_text(table, head, tag)
     ),
 }

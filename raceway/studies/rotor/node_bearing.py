@@ -116,7 +116,7 @@ class NodeBearing:
         """Z (n, n) that carries a motion of ``moving`` under its load: the smallest symmetric change of that of small motions."""
         z = self.dynamic_stiffness(speed, speed)
         part = np.ix_(self.moving, self.moving)
-        z[part] = secant(z[part].real, motion, load, self.units(speed)) + 1j * z[part].imag
+        z[part] = _secant(z[part].real, motion, load, self.units(speed)) + 1j * z[part].imag
         return z
 
     def units(self, speed: float) -> np.ndarray:
@@ -219,7 +219,7 @@ def _is_preset(bearing: SceneSource) -> bool:
     return isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
 
 
-def secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
+def _secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Real symmetric (n, n) K with K u = f, nearest to the tangent.
 
     Parameters

@@ -77,7 +77,7 @@ def run_unbalance_response(
     equilibria, is the rotor's: u(f) = u_0 - H f with the response u_0 and the receptance H of the rotor without these
     bearings.  The search (Broyden) begins at small motions, at each speed anew, so that speeds do not depend on each other; of
     several motions at one speed it finds the one nearest to these.  At the end K is the smallest symmetric
-    change of the tangent that carries this motion (``raceway.studies.rotor.node_bearing.secant``), C that of small motions.
+    change of the tangent that carries this motion, C that of small motions.
     """
     bearings = _rolling_bearings(rotor, "run_unbalance_response")
     speeds = np.atleast_1d(np.asarray(getattr(frequency, "m_as", lambda _: frequency)("rad/s"), dtype=float))

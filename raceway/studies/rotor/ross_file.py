@@ -83,7 +83,7 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
     )
     if generation >= 3:
         return (*notes, "ROSS 3 passes through every point; beyond the ends it goes on in a straight line")
-    changes = {name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in smoothing(table).items()}
+    changes = {name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in _smoothing(table).items()}
     return (
         *notes,
         "ROSS 2 does not pass through the points: it smooths with a bound of 1 N/m, or 1 N s/m, a point, which is a lot for a "
@@ -123,18 +123,18 @@ def check_name(path: Path) -> None:
         raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and tells them by the ending: choose one of them")
 
 
-def smoothing(table: Coefficients) -> Mapping[str, float]:
+def _smoothing(table: Coefficients) -> Mapping[str, float]:
     """Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind; by our names, above 1e-12."""
     columns = table.columns()
     sizes = largest(columns)
     changes = {
-        name: float(np.max(np.abs(smoothed(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
+        name: float(np.max(np.abs(_smoothed(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
         for name, values in columns.items()
     }
     return {name: change for name, change in changes.items() if change > 1e-12}
 
 
-def smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values by ROSS 2 at the points of a table: a cubic smoothing spline with scipy's default bound.
 
     Parameters

@@ -38,7 +38,7 @@ def refuse_without_motion(selection: Selection) -> None:
         raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
 
 
-def rotating(selection: Selection) -> Matrices:
+def _rotating(selection: Selection) -> Matrices:
     """One complex number for both directions."""
     kind = selection.value("excitation.kind")
     if kind == "unidirectional":
@@ -71,7 +71,7 @@ def rotating(selection: Selection) -> Matrices:
     return stiffness, damping, np.broadcast_to(resolved[..., None, None], damping.shape), words, notes
 
 
-def directions(selection: Selection) -> Matrices:
+def _directions(selection: Selection) -> Matrices:
     """Receptances along 0, 90 and 45 deg, inverted as a matrix.
 
     Notes
@@ -146,7 +146,7 @@ def _across(data: Dataset, angles: list[float], h: dict[Hashable, np.ndarray]) -
     return across
 
 
-def tangent(selection: Selection) -> Matrices:
+def _tangent(selection: Selection) -> Matrices:
     """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out.
 
     Notes
@@ -193,7 +193,7 @@ def tangent(selection: Selection) -> Matrices:
 
 
 #: What coefficients are taken from.
-SOURCES = {"rotating": rotating, "directions": directions, "tangent": tangent}
+SOURCES = {"rotating": _rotating, "directions": _directions, "tangent": _tangent}
 
 
 def _following_tilts(selection: Selection) -> np.ndarray:

@@ -28,7 +28,7 @@ BASE: Tables = {
 UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
 
 
-def force(newton: float) -> Tables:
+def _force(newton: float) -> Tables:
     """A rotating force that is the same at every speed."""
     return {"excitation.amplitude": "constant", "excitation.force": newton}
 
@@ -51,17 +51,17 @@ _SUDDEN: Tables = {"integrator.start": "static"}
 #: orbit is steady or friction remembers, "" for the equilibrium alone.
 SCENES: tuple[tuple[str, Tables, bool, str], ...] = (
     ("base", {}, True, "orbit"),
-    ("axial load 1 N", {"load.axial": 1.0, **force(0.1), **STATIC}, False, "orbit"),
-    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **force(50.0), **STATIC, **_SUDDEN}, False, "finer"),
-    ("axial load 100 kN", {"load.axial": 1e5, **force(400.0)}, True, "orbit"),
-    ("speed 1 r/min", {"excitation.speed_rpm": 1.0, **force(400.0), "integrator.turns": 3}, True, "slow"),
-    ("speed 200 000 r/min", {"excitation.speed_rpm": 2e5, **force(100.0)}, False, "orbit"),
-    ("radial load = axial", {"load.radial": [1000.0, 0.0], **force(100.0)}, False, "orbit"),
-    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0], **force(100.0)}, False, "orbit"),
-    ("radial load 20 x axial", {"load.radial": [20000.0, 0.0], **force(300.0)}, False, "orbit"),
-    ("radial load 50 x axial", {"load.radial": [50000.0, 0.0], **force(300.0)}, False, "orbit"),
-    ("lift-off: rotating 3000 N at 1000 N axial", force(3000.0), True, "orbit"),
-    ("3 balls", {"bearing.ball_count": 3, **force(100.0)}, True, "orbit"),
+    ("axial load 1 N", {"load.axial": 1.0, **_force(0.1), **STATIC}, False, "orbit"),
+    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **_force(50.0), **STATIC, **_SUDDEN}, False, "finer"),
+    ("axial load 100 kN", {"load.axial": 1e5, **_force(400.0)}, True, "orbit"),
+    ("speed 1 r/min", {"excitation.speed_rpm": 1.0, **_force(400.0), "integrator.turns": 3}, True, "slow"),
+    ("speed 200 000 r/min", {"excitation.speed_rpm": 2e5, **_force(100.0)}, False, "orbit"),
+    ("radial load = axial", {"load.radial": [1000.0, 0.0], **_force(100.0)}, False, "orbit"),
+    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0], **_force(100.0)}, False, "orbit"),
+    ("radial load 20 x axial", {"load.radial": [20000.0, 0.0], **_force(300.0)}, False, "orbit"),
+    ("radial load 50 x axial", {"load.radial": [50000.0, 0.0], **_force(300.0)}, False, "orbit"),
+    ("lift-off: rotating 3000 N at 1000 N axial", _force(3000.0), True, "orbit"),
+    ("3 balls", {"bearing.ball_count": 3, **_force(100.0)}, True, "orbit"),
     (
         "60 balls",
         {"bearing.ball_diameter": 4e-3, "bearing.pitch_diameter": 80e-3, "bearing.ball_count": 60, **_BARE,
@@ -72,27 +72,27 @@ SCENES: tuple[tuple[str, Tables, bool, str], ...] = (
     ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}, True, "orbit"),
     (
         "loose: clearance 50 um, rattling",
-        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 50e-6, "load.axial": 20.0, **force(200.0), **STATIC},
+        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 50e-6, "load.axial": 20.0, **_force(200.0), **STATIC},
         False, "finer",
     ),
     (
         "clearance 20 um",
-        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 20e-6, **force(100.0)},
+        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 20e-6, **_force(100.0)},
         True, "orbit",
     ),
-    ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **force(100.0)}, False, "orbit"),
-    ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **force(100.0)}, False, "orbit"),
+    ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **_force(100.0)}, False, "orbit"),
+    ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **_force(100.0)}, False, "orbit"),
     ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, True, "orbit"),
-    ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
+    ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **_force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
     ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}, True, "orbit"),
-    ("friction 0.3", {"contact.friction": 0.3, **force(100.0)}, True, "finer"),
-    ("friction 1.0", {"contact.friction": 1.0, **force(100.0)}, True, "finer"),
-    ("gyroscopic moments, 40 000 r/min", {"kinematics.gyroscopic": "outer_race", "excitation.speed_rpm": 4e4, **force(100.0)}, False, "orbit"),
+    ("friction 0.3", {"contact.friction": 0.3, **_force(100.0)}, True, "finer"),
+    ("friction 1.0", {"contact.friction": 1.0, **_force(100.0)}, True, "finer"),
+    ("gyroscopic moments, 40 000 r/min", {"kinematics.gyroscopic": "outer_race", "excitation.speed_rpm": 4e4, **_force(100.0)}, False, "orbit"),
     ("orbiting balls", {"kinematics.orbiting": True}, True, "orbit"),
     ("rotor of 1 g", {**_BARE, **_B7206C, "rotor.mass": 1e-3}, True, "orbit"),
     ("rotor of 10 t", {"rotor.mass": 1e4}, True, "orbit"),
-    ("tilt free", {"supports.tilt": "free", **force(100.0)}, False, "orbit"),
-    ("tilt free, radial load = axial", {"supports.tilt": "free", "load.radial": [1000.0, 0.0], **force(50.0)}, False, "orbit"),
+    ("tilt free", {"supports.tilt": "free", **_force(100.0)}, False, "orbit"),
+    ("tilt free, radial load = axial", {"supports.tilt": "free", "load.radial": [1000.0, 0.0], **_force(50.0)}, False, "orbit"),
     ("no damping", dict(UNDAMPED), True, "orbit"),
 )  # fmt: skip
 
@@ -167,7 +167,7 @@ _RESULTANTS: tuple[tuple[str, Tables], ...] = (
     ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
 )
 #: 15 000 r/min, a force that acts at once.
-_EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **force(60.0)}
+_EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **_force(60.0)}
 
 #: name, changes, words of the message, why there is no answer.
 _REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
@@ -234,13 +234,13 @@ def transient(registry: Registry) -> list[str]:
     return [entry.name for entry in transient_integrators(registry)]
 
 
-def laws_with(registry: Registry, *discretisations: str) -> list[str]:
+def _laws_with(registry: Registry, *discretisations: str) -> list[str]:
     """Names of the laws that know these discretisations."""
     laws = [entry for entry in registry.all() if entry.kind == "contact_law"]
     return [law.name for law in laws if set(discretisations) <= set(law.plugin.discretisations)]
 
 
-def with_law(name: str, registry: Registry) -> Tables:
+def _with_law(name: str, registry: Registry) -> Tables:
     """The changes that give a scene a law: a law that needs options has those of its first example."""
     plugin = registry.find("contact_law", name).plugin
     try:
@@ -277,12 +277,12 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
 
 def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
     """Steps around the limit, orbits, undamped steps, penalties; ``own``: of a user's scene, whose orbit is its own."""
-    laws = laws_with(registry, "resultant")
+    laws = _laws_with(registry, "resultant")
     for name in transient(registry):
         by_name: Tables = {"tables": base, "integrator": name}
         yield Case("steps around the limit, linear", "motions:linear", {"integrator": name}, by_name)
         for law in laws:
-            setting, changes = {"integrator": name, "law": law}, with_law(law, registry)
+            setting, changes = {"integrator": name, "law": law}, _with_law(law, registry)
             arguments = {**by_name, "changes": changes}
             for tilt in ("locked", "free"):
                 tilted = {**arguments, "changes": {**changes, "supports.tilt": tilt}}
@@ -292,7 +292,7 @@ def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
             if own:
                 yield Case(*orbit, setting, arguments)
             for axial, newton, tilt, quick in () if own else _ORBITS:
-                orbiting = {**changes, "load.axial": axial, **force(newton), "supports.tilt": tilt}
+                orbiting = {**changes, "load.axial": axial, **_force(newton), "supports.tilt": tilt}
                 shown = {**setting, "axial": axial, "force": newton, "tilt": tilt}
                 yield Case(*orbit, shown, {**arguments, "changes": orbiting}, quick)
             for steps in (100_000,) if own else (100_000, 1_000_000):
@@ -309,8 +309,8 @@ def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
 def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
     """Impacts, deep penetrations, equilibria from afar, chatter."""
     names = transient(registry)
-    for law in laws_with(registry, "resultant"):
-        arguments: Tables = {"tables": base, "changes": with_law(law, registry)}
+    for law in _laws_with(registry, "resultant"):
+        arguments: Tables = {"tables": base, "changes": _with_law(law, registry)}
         for name in names:
             moved, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
             for speed in (0.01, 1.0, 10.0):
@@ -329,8 +329,8 @@ def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
         if closed:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {}, {"tables": base, "changes": changes})
-        for law in laws_with(registry, "resultant"):
-            lawful = {**changes, **with_law(law, registry)}
+        for law in _laws_with(registry, "resultant"):
+            lawful = {**changes, **_with_law(law, registry)}
             arguments: Tables = {"tables": base, "judge": judge, "changes": lawful}
             yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _QUICK)
             if name in _CONDENSED:
@@ -341,7 +341,7 @@ def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
 def _points(base: Tables, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
     turn: Tables = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
-    for law in laws_with(registry, "nodal"):
+    for law in _laws_with(registry, "nodal"):
 
         def case(name: str, measure: str, changes: Tables, shown: Tables | None = None, law: str = law, **more: Any) -> Case:
             setting = {"law": law, "bodies": "condensed, points", **(shown or {})}
@@ -372,7 +372,7 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
         changes = {**changes, "contact.kind": law} if law else changes
         return Case(f"elastic bodies: {name}", measure, setting, {"tables": tables, "changes": changes, **more}, False)
 
-    for law in laws_with(registry, "nodal", "resultant"):
+    for law in _laws_with(registry, "nodal", "resultant"):
         for name, changes in _RESULTANTS if law == "hertz" else _RESULTANTS[:1]:
             yield case(name, "scenes:calibrated_at_rest", {**changes, "excitation": None}, "resultants", base, law)
         for name, changes in _ELASTIC_POINTS if law == "hertz" else _ELASTIC_POINTS[:1]:

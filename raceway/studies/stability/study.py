@@ -329,10 +329,10 @@ def measured(
 
 
 def _answer(case: Case, registry: Registry) -> Tables:
-    return {"rows": [attrs.asdict(row) for row in rows_of(case, registry)]}
+    return {"rows": [attrs.asdict(row) for row in _rows_of(case, registry)]}
 
 
-def rows_of(case: Case, registry: Registry) -> list[_Row]:
+def _rows_of(case: Case, registry: Registry) -> list[_Row]:
     """The rows of a case; whatever its code raises becomes a failed row."""
     rows, (module, _, function) = Rows(case.name, case.setting), case.measure.partition(":")
     arguments, bench = dict(case.arguments), None

@@ -177,7 +177,7 @@ class _Impact:
         return _CONTACT_TIME * self.largest_approach / self.speed
 
 
-def impact_of(inputs: Tables) -> _Impact:
+def _impact_of(inputs: Tables) -> _Impact:
     """The impact that a case describes; its ``type`` says what the sphere meets."""
     radius, speed = inputs["R_m"], inputs["v_each_m_s"]
     mass = inputs["rho_kg_m3"] * 4.0 / 3.0 * pi * radius**3
@@ -191,7 +191,7 @@ def impact_of(inputs: Tables) -> _Impact:
 
 def impact_of_spheres(case: Case, registry: Registry) -> Rows:
     """Closed formulas with the factor of ``raceway.core.contact.hertz``, then each integrator."""
-    impact, out = impact_of(case.inputs), case.outputs
+    impact, out = _impact_of(case.inputs), case.outputs
     yield case.row("peak force, closed form [N]", out["Fmax_N"], impact.largest_force, case.rel_tol)
     yield case.row("largest approach, closed form [m]", out["dmax_m"], impact.largest_approach, case.rel_tol)
     yield case.row("contact time, closed form [s]", out["tc_s"], impact.contact_time, case.rel_tol)
@@ -207,13 +207,13 @@ def impact_of_spheres(case: Case, registry: Registry) -> Rows:
 
 def _worst_measured(method: Integrator, impact: _Impact, steps: int) -> tuple[float, float]:
     """Peak force [N] and contact time [s] that lie farthest off, over touches at several instants within a step."""
-    measured = [measure(method, impact, steps, phase) for phase in _PHASES]
+    measured = [_measure(method, impact, steps, phase) for phase in _PHASES]
     force = max((m[0] for m in measured), key=lambda f: abs(f - impact.largest_force))
     time = max((m[1] for m in measured), key=lambda t: abs(t - impact.contact_time))
     return force, time
 
 
-def measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
+def _measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
     """Peak force [N] and contact time [s] of one impact at ``steps`` steps a contact.
 
     Parameters

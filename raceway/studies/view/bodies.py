@@ -95,7 +95,7 @@ def _grid(rows: int, columns: int) -> np.ndarray:
     return np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
 
 
-def section(race: np.ndarray, seat: np.ndarray, azimuth: float, sense: float) -> Surface:
+def _section(race: np.ndarray, seat: np.ndarray, azimuth: float, sense: float) -> Surface:
     """The cut face of a ring between two lines (k, 2) over the same x, facing along ``sense`` times growing azimuth."""
     points = _swept(np.concatenate([race, seat]), np.array([azimuth]))
     normal = sense * np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
@@ -110,7 +110,7 @@ def ball(diameter: float, rows: int = 24, columns: int = 36) -> Surface:
     return Surface(0.5 * diameter * normals, normals, _grid(columns + 1, rows + 1))
 
 
-def contact_patch(
+def _contact_patch(
     centre: np.ndarray, towards: np.ndarray, along: np.ndarray, diameter: float, half: tuple[float, float], peak: float
 ) -> Surface:
     """A contact ellipse on a ball, with Hertz's pressure.
@@ -132,7 +132,7 @@ def contact_patch(
     return Surface(points.reshape(-1, 3), normals.reshape(-1, 3), _grid(*s.shape), np.ascontiguousarray(values).ravel())
 
 
-def arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: float) -> Surface:
+def _arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: float) -> Surface:
     """An arrow from ``start`` (3,) along a unit vector; its head is at most 2.5 thicknesses long [mm]."""
     head = min(2.5 * thickness, 0.6 * length)
     thin, wide = 0.3 * thickness * head / (2.5 * thickness), 0.8 * thickness * head / (2.5 * thickness)
@@ -267,7 +267,7 @@ class Bearing:
                 opacity = 0.32 if glass and not inner else 1.0
                 parts.append(Part(name, _revolved(outline, azimuths), colour, opacity))
                 if cut is not None:
-                    faces = [section(race, seat, at, sense) for at, sense in ((high, -1.0), (low, 1.0))]
+                    faces = [_section(race, seat, at, sense) for at, sense in ((high, -1.0), (low, 1.0))]
                     parts.append(Part(f"{name}, cut face", joined(faces), _FACE if glass else colour))
         return parts
 
@@ -299,7 +299,7 @@ class Bearing:
         for k, (start, tip) in enumerate(zip(*self.arrow_ends(state, top), strict=True)):
             length = float(np.linalg.norm(tip - start))
             if length > 0.01 * self.diameter:
-                solid = arrow(start, towards[k], length, 0.22 * self.diameter)
+                solid = _arrow(start, towards[k], length, 0.22 * self.diameter)
                 parts.append(Part(f"load {k}", solid, load=float(state.load[k])))
         return parts
 
@@ -332,7 +332,7 @@ class Bearing:
             if race in races:
                 along = np.array([0.0, -np.sin(state.azimuth[k]), np.cos(state.azimuth[k])])
                 a, b = factor * _MM * state.half[i]
-                patch = contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
+                patch = _contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
                 parts.append(Part(f"{race} contact {k}", patch, scale="pressure", ball=k))
         return parts
 

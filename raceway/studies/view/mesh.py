@@ -89,7 +89,7 @@ def _outside(cells: np.ndarray) -> np.ndarray:
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class Meshes(Answer):
+class _Meshes(Answer):
     """Meshes of the bodies of a scene.
 
     Attributes
@@ -178,7 +178,7 @@ class Meshes(Answer):
 
 def mesh(
     scene: Scene, form: str = "vtu", picture: bool = False, *, plugins: Iterable[Path] = (), progress: OnProgress
-) -> Meshes:
+) -> _Meshes:
     """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each ring, one for all balls.
 
     A scene without a table [mesh] gets the mesher `structured` with its defaults.
@@ -216,7 +216,7 @@ def mesh(
     seconds = time.perf_counter() - start
     progress("judging the cells", 0, 0)
     content: Tables = {"title": scene.title, "mesher": scene.mesh.name, "seconds": seconds, **summary(meshes), "files": []}
-    return Meshes(content, meshes, written, picture)
+    return _Meshes(content, meshes, written, picture)
 
 
 def _format(registry: Registry, word: str) -> Entry:

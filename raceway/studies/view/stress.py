@@ -37,7 +37,7 @@ _SHOWN = 0.95
 
 
 @attrs.frozen(eq=False)
-class Fields:
+class _Fields:
     """Fields of all bodies in one mesh, at the static equilibrium.
 
     Attributes
@@ -55,7 +55,7 @@ class Fields:
     stress: np.ndarray
 
     @classmethod
-    def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> Fields:
+    def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> _Fields:
         """Of a result with elastic bodies: of all elements, or of those near some places.
 
         Parameters
@@ -89,7 +89,7 @@ class Fields:
         return largest_shear(self.stress)
 
 
-def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> Fields:
+def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> _Fields:
     points, cells = body.points, body.cells
     if near is not None:
         places, reach = near
@@ -97,7 +97,7 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
         used, numbers = np.unique(cells, return_inverse=True)
         points, u, cells = points[used], u[used], numbers.reshape(-1, 8).astype(np.uint32)
     stress = centre_stress(points, cells, u, body.moduli, body.formulation)
-    return Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
+    return _Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
 
 def contacts_left_out(result: Result) -> str:
@@ -120,7 +120,7 @@ def field_files(result: Result) -> dict[str, bytes]:
         pyvista or its system libraries are missing.
     """
     pyvista = pyvista_of()
-    grid = _new_grid(pyvista, Fields.of(result))
+    grid = _new_grid(pyvista, _Fields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
@@ -128,7 +128,7 @@ def field_files(result: Result) -> dict[str, bytes]:
     return {"fields.vtu": _vtu(grid), "stress.png": _section_image(grid, float(result.model.azimuth[most]), title)}
 
 
-def _new_grid(pyvista: ModuleType, fields: Fields) -> Grid:
+def _new_grid(pyvista: ModuleType, fields: _Fields) -> Grid:
     """pyvista's grid with the fields in SI units, units in their names."""
     grid = pyvista.UnstructuredGrid({_HEXAHEDRON: fields.cells}, fields.points)
     grid.point_data["displacement [m]"] = fields.displacement
@@ -200,18 +200,18 @@ def contact_stress_files(result: Result) -> dict[str, bytes]:
     sides = below_contacts(bodies, result.model, result.equilibrium)
     if not sides:
         return {}
-    figure, grid = drawn(result, sides)
+    figure, grid = _drawn(result, sides)
     return {"contact.vtu": _vtu(grid), "stress_contact.png": figure_png(figure, 110)}
 
 
-def drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
+def _drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
     """The figure of the contacts of ``below_contacts``, and pyvista's grid of the elements near them."""
     pyvista = pyvista_of()
     near: dict[int, tuple[np.ndarray, float]] = {}
     for side in sides:
         places = np.concatenate([near[side.index][0] if side.index in near else np.empty((0, 3)), side.axis.pole[None]])
         near[side.index] = places, _NEAR * max(contact.semi_axes[0] for contact in sides)
-    grid = _new_grid(pyvista, Fields.of(result, near))
+    grid = _new_grid(pyvista, _Fields.of(result, near))
     races = [[side for side in sides if side.race == race] for race in dict.fromkeys(side.race for side in sides)]
     figure = new_figure(15.6, 5.6 * len(races))
     panels = figure.subplots(len(races), 3, squeeze=False, width_ratios=(1.0, 1.0, 0.75))

@@ -138,7 +138,7 @@ _DOTS_PER_INCH = 110
 _EVERY = 360
 
 
-def at_rest(result: Result) -> State:
+def _at_rest(result: Result) -> State:
     """The static state, with the numbers of result.json."""
     equilibrium, model = result.equilibrium, result.model
     balls = equilibrium_table(model, equilibrium)["balls"]
@@ -151,7 +151,7 @@ def at_rest(result: Result) -> State:
     return State(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
 
 
-def at_peak(result: Result) -> tuple[State, float]:
+def _at_peak(result: Result) -> tuple[State, float]:
     """The moment of the last turn when a ball carries most on either race, and how far the turn is by then [deg].
 
     Raises
@@ -201,9 +201,9 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
         A package that is missing.
     """
     bearing = Bearing.of(result)
-    moments = {"bearing.png": (at_rest(result), "at rest")}
+    moments = {"bearing.png": (_at_rest(result), "at rest")}
     if result.simulation is not None:
-        state, angle = at_peak(result)
+        state, angle = _at_peak(result)
         moments["bearing-peak.png"] = state, f"when a ball carries most, {angle:.0f} deg into the turn"
     state, when = list(moments.values())[-1]
     images = dict(_images(result, bearing, moments, on_progress))
