@@ -186,12 +186,8 @@ def _spread_copies(first, last, nodes, numbers, turns, force, out):  # type: ign
 class _CopiedStiffness:
     """K u of all copies of a mesh.
 
-    Parameters
-    ----------
     copies : Copies;  operator : HexOperator, whose material and formulation it has
 
-    Notes
-    -----
     A node on a cut plane belongs to the sector behind it, and the cells of the sector before it that share its cut plane are
     part of the matrix: every row is whole, every force is written once.
     """
@@ -290,14 +286,10 @@ def _fitting_threads(elements: int) -> int:
 class _BodyForces:
     """Forces K u of bodies whose nodes follow one another.
 
-    Parameters
-    ----------
     operators : of the bodies;  starts : (bodies + 1,) first node of each
     groups : equal parts; bodies in none of them, and single ones of one-point elements, whose forces cost no more without a
         matrix, are computed element by element
 
-    Notes
-    -----
     The sums have one order whatever the number of threads (``raceway.core.hexahedron.rows``).
     """
 

@@ -67,14 +67,10 @@ def groove(centre: np.ndarray, circle: float, radius: float) -> np.ndarray:
 def _gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
     """Signed distance from a surface, its gradient and its second derivative.
 
-    Parameters
-    ----------
     where : (n, 3) float [m];  pair : (n,) int, row of ``surfaces`` (m, 8)
     gap : (n,) out [m], negative inside the body;  normal : (n, 3) out, away from the body
     bend : (n, 3, 3) out: second derivative of the gap [1/m]
 
-    Notes
-    -----
     A groove: with the radius r about the axis and m the unit vector from the centre circle (x0, R) to the point, at the
     distance d, gap = tube - d, normal = -m, and the second derivative is minus that of d: 1/d across m in the meridian
     plane, (m . e_r)/r around the axis.
@@ -109,8 +105,6 @@ def _gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-
 def _forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
     """Forces (n, 3) [N] on the points and minus their derivatives by place and velocity (n, 3, 3) [N/m, N s/m].
 
-    Notes
-    -----
     F = A p n, so -dF/dy = -A (dp/dg n n^T + p d2g/dy2): symmetric.
     """
     for i in range(area.size):

@@ -36,8 +36,6 @@ _ACROSS, _ALONG, _COUPLING = range(3)
 def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, lost):  # type: ignore[no-untyped-def]
     """Resistances of n points, their tangents and what they lost.
 
-    Parameters
-    ----------
     pressure, d_gap : (n,) normal pressure [Pa] and its derivative by the gap [N/m3];  normal : (n, 3) unit normals
     shift : (n, 3) motion of the points against their partners since the commit [m];  before : (n, 3) resistances at the commit [Pa]
     coefficient : of friction;  stick : (n,) stiffness of sticking points [N/m3]

@@ -41,8 +41,6 @@ _DIRECTIONS = np.array(
 class _Domain:
     """Cells that are eliminated together.
 
-    Attributes
-    ----------
     inner : (k,) sorted nodes that belong to these cells alone and to no child's inner ones: eliminated here
     border : (b,) sorted nodes that other cells share, or that are kept
     children : numbers of the two halves, lower than the own one; none of a leaf
@@ -164,8 +162,6 @@ def _add_front(position, child, front):  # type: ignore[no-untyped-def]
 class _Front:
     """What is kept of an elimination: A_ss = L L^T and W = L^-1 A_sb of inner unknowns s and border unknowns b.
 
-    Attributes
-    ----------
     inner, border : (s,), (b,) unknowns
     lower : (s, s) float32 L;  across : (s, b) float32 W
     """

@@ -24,16 +24,11 @@ if TYPE_CHECKING:
 class _Ring:
     """One ring, its displacement u = R q + w of the frame's motions q and of w, which is zero on the seat.
 
-    Parameters
-    ----------
     element : Loose | Closed
     part : rows of the ring among all nodes' (3 nodes,)
     ride : (3 n, m) R at all nodes; m = 0 without a frame
     apply : function of w (3 nodes,) -> c K w + d M w;  inertia : (3 n,) d / c times the nodes' masses
     size : 3 nodes
-
-    Attributes
-    ----------
     follow : (3 n, m) R - W, W the displacement by which the ring falls behind its frame for its inertia
     carried : (3 k, m) ``follow`` at the contacts' nodes
     """
@@ -119,15 +114,10 @@ def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
 class _Balls:
     """Copies of one ball.
 
-    Parameters
-    ----------
     loose : Loose
     rows : (c, 3 n) mean motions of the first copy that the cage holds;  stiffness : (c,) [N/m, N m/rad]
     response : (3 n, c) displacements of the first copy under forces on them
     inert : whether a mass holds a ball that touches nothing
-
-    Attributes
-    ----------
     flexibility : (3 k + e, 3 k + e) of the first copy: contacts' nodes, then mean motions of the contacts' nodes and of the cage
     springs : (e,) stiffness of what acts on these motions: minus the springs of ``loose``, and the cage's
     alone : (e,) of a ball that touches nothing: without a mass the springs of ``loose`` stay, or nothing would hold it
@@ -175,8 +165,6 @@ class _Balls:
     def backward(self, carried: np.ndarray, moved: np.ndarray, forces: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,).
 
-        Parameters
-        ----------
         moved : (copies, 3 k) of the contacts' nodes;  forces : (copies, e) on the other motions
         """
         held = self.loose.motions.shape[1]
@@ -203,8 +191,6 @@ OnProgress = Callable[[str, int, int], None]
 class _Substructure:
     """A mesh that is factored, or read from the store.
 
-    Attributes
-    ----------
     name : of its body;  copies, operator, contact, free, mass, bed : see ``Part.of``
     """
 
@@ -232,8 +218,6 @@ class _Substructure:
     def ball(self, caged: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> tuple[Loose, np.ndarray]:
         """A ball, held by springs on its mean motions, which the caller takes off again, and its answers (3 n, c) to its cage.
 
-        Parameters
-        ----------
         caged : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
         """
 
@@ -276,8 +260,6 @@ class _Substructure:
 class _RingFlexibility:
     """A matrix with one dense block for each ring.
 
-    Attributes
-    ----------
     nodes : (k,) sorted numbers of nodes
     blocks : rows of each ring among the unknowns (3 k,), and its flexibility [m/N]
     carried : (3 k, m) motion with the frame

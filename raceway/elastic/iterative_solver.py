@@ -31,14 +31,8 @@ _MOST_UNKNOWNS, _MOST_OF_A_BODY = 60_000, 15_000
 class _Factorised:
     """LU of a symmetric matrix on the rows that are not held.
 
-    Parameters
-    ----------
     matrix : (n, n) CSR;  held : (n,) bool
-
-    Raises
-    ------
-    ConvergenceError
-        A singular matrix: a motion that nothing holds.
+    ConvergenceError: a singular matrix: a motion that nothing holds.
     """
 
     def __init__(self, matrix: csr_matrix, held: np.ndarray) -> None:
@@ -59,13 +53,9 @@ class _Factorised:
 class _LowRankContacts:
     """Low-rank change of an inverse by a few contact resultants and a cage.
 
-    Parameters
-    ----------
     contact : Contact;  cage : Cage | None
     inverse : of the bodies without either, on columns (m, k) of the free nodes;  free : (m,) their rows of all nodes
 
-    Notes
-    -----
     With the contacts' motions and the cage's as rows of B and their stiffness D, (A + B^T D B)^-1 = A^-1 - Y (I + D G)^-1 D B A^-1,
     where Y = A^-1 B^T and G = B Y (Woodbury).  Each of them acts on dozens of nodes or on all of a ball: in the matrix itself
     it would couple all of these, and no factor or multigrid stays sparse.  Y does not depend on D, which changes from

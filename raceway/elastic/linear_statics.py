@@ -36,8 +36,6 @@ COARSEST = 80
 class _Levels:
     """Aggregates from fine to coarse.
 
-    Attributes
-    ----------
     strong : for each level (n, n), which nodes are strongly coupled
     aggregates : for each level (n, k), 1 where a node belongs to an aggregate; the k nodes of the next level
     """
@@ -49,14 +47,10 @@ class _Levels:
 def _aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
-    Parameters
-    ----------
     graph : (n, n) CSR, not zero where two nodes share a cell
     points : (n, 3) float [m]
     fewest : nodes that an aggregate holds on average at least; aggregates of aggregates are taken until they do
 
-    Notes
-    -----
     An aggregate stands at the mean of its nodes, and neighbours those that share a cell with one of its nodes.
 
     Cells that are long or flat are stiff along their short edges. Smoothing there only works along them, so that coarsening
@@ -143,8 +137,6 @@ def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.nd
 def _free_motions(points: np.ndarray, held: np.ndarray) -> list[int]:
     """Indices into ``MOTIONS`` of what the supports leave free; rotations are those about the middle of the held points.
 
-    Parameters
-    ----------
     points : (n, 3) float [m]
     held : (n, 3) bool
     """
@@ -213,12 +205,8 @@ _DEGREE, _LOWEST, _MARGIN = 4, 1.0 / 30.0, 1.1
 class _WCycle:
     """A symmetric W-cycle.
 
-    Parameters
-    ----------
     levels : list of objects with ``A`` and, but for the last, ``P`` and ``R``: sparse, symmetric, R = P^T
 
-    Notes
-    -----
     The same cycle as pyamg's with Chebyshev smoothing, without the norms that its solver takes, and with matrices in single
     precision: a preconditioner needs no more, and memory traffic is what it costs.  Every coarse system is solved by two
     cycles: flat cells are coarsened in many small steps, whose errors would add up in a V-cycle; on compact cells the coarse
@@ -278,8 +266,6 @@ MOST_ITERATIONS = 200
 class _Solution:
     """Displacements that balance a load.
 
-    Attributes
-    ----------
     displacement : (n, 3) float [m]
     iterations : of the conjugate gradients; 0 where the system was factorised
     residual : |K u - f| over |f| on the free degrees of freedom, with f the load and the pull of the prescribed ones

@@ -254,8 +254,6 @@ _SLOW = 0.05
 class _Separation:
     """Compliances of a mesh under one contact.
 
-    Attributes
-    ----------
     local : s - c [m/N];  structural : c, of a body held as it is [m/N]
     spread : largest less smallest difference of the fields over the depths [m/N]: what the mesh leaves open
     """

@@ -179,8 +179,6 @@ class ElasticRing(SteppedRing):
     def _tangent(self) -> np.ndarray:
         """(5, 5) stiffness of the ring's motions, the shaft's left out: inverse of its compliance, all motions let free.
 
-        Notes
-        -----
         Of solutions u_k with errors e_k under forces f_k: f_i u_k + f_k u_i - u_i A u_k = f_i A^-1 f_k - e_i A e_k.
         """
         system = self.bodies.system

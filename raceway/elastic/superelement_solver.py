@@ -30,8 +30,6 @@ class _Beyond(Exception):
 class _Pressing:
     """Contacts during one step.
 
-    Parameters
-    ----------
     contact : NodalContact;  face : Interface
     u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated; v None at rest
     rate : by which velocities change with displacements [1/s];  dt : step [s]
@@ -92,8 +90,6 @@ class _Pressing:
 def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def]
     """Add B^T D B of points to a matrix (3 k, 3 k).
 
-    Parameters
-    ----------
     places : (n, 8) nodes in the matrix;  weights : (n, 8) by which a point moves with them
     blocks : (n, 3, 3) D
     """
@@ -112,8 +108,6 @@ def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def
 class _BallTangent:
     """Tangent of the contacts of one ball with both rings.
 
-    Attributes
-    ----------
     ball, rings : (a,), (b,) numbers of the nodes that points in contact lie on
     matrix : (3 (a + b), 3 (a + b)) of both, those of the ball first [N/m]
     """
@@ -143,13 +137,9 @@ TIGHT = 1e-12
 class _Linearised:
     """x = driver - flexibility (T x) + carried q, with the tangents T of the contacts.
 
-    Parameters
-    ----------
     face : Interface
     tangents : of each ball;  frame : (m, m) matrix of the frame;  unknown : (m,) bool, motions that are not held
 
-    Notes
-    -----
     The balls are eliminated one by one; what is left are the rings' nodes in contact and the frame. Small systems are
     factored. Large ones are solved by GMRES, preconditioned with what each ball's contacts are without the other balls':
     what couples them, the rings' stiffness from ball to ball and the frame, is smooth and has few modes.
@@ -170,8 +160,6 @@ class _Linearised:
     def forces(self, driver: Motions, tolerance: float = TIGHT) -> tuple[Motions, np.ndarray]:
         """T x, of which ``frame`` is what it is on the frame, and motions (m,) of the frame.
 
-        Parameters
-        ----------
         driver : ``nodes`` and ``balls`` are motions, ``frame`` is a force (m,) on the frame
         """
         face = self._face
@@ -265,8 +253,6 @@ class _Linearised:
 class _Ball:
     """A ball between the rings, x_b = b - X x_r of its nodes and mean motions: X ``follows``, b ``alone``.
 
-    Attributes
-    ----------
     stiffness : of the rings' nodes through the ball;  across : force on them of the ball's nodes
     """
 

@@ -20,8 +20,6 @@ _CROSSED, _STEPS = 2000, 3
 def _walk(where, points, quads, neighbours, facet, weights, outside):  # type: ignore[no-untyped-def]
     """From a facet near each point over edges to the one that the point projects onto.
 
-    Parameters
-    ----------
     where : (n, 3);  points : (m, 3);  quads, neighbours : (k, 4), the facet across the edge from corner a to a + 1, or -1
     facet : (n,) in: a facet to start from; out: the one found
     weights : (n, 4) out;  outside : (n,) out: how far beyond the surface's rim, in facet half widths; 0 inside

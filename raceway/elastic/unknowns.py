@@ -104,8 +104,6 @@ def _among(entries: np.ndarray, sorted_ones: np.ndarray) -> tuple[np.ndarray, np
 def _sums(rows, begin, u, out):  # type: ignore[no-untyped-def]
     """out (k,) = rows (k, n) times u[begin : begin + n], entry after entry: the digits of a sparse product.
 
-    Notes
-    -----
     Four rows at a time, which do not wait for each other's sums; where fewer are left, the last one is computed again.
     """
     last = rows.shape[0] - 1

@@ -46,8 +46,6 @@ _POINTS, _WEIGHTS = (
 class _Beam:
     """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n).
 
-    Attributes
-    ----------
     stiffness, mass, rotary : K, M_t, M_r; a disc's are added to the last two
     polar : G / 1, the gyroscopic matrix over lambda Omega
     """
@@ -102,14 +100,10 @@ def _beam(
 ) -> _Beam:
     """A round shaft of one diameter.
 
-    Parameters
-    ----------
     nodes : (n,) ascending [m]
     shear : False gives an Euler-Bernoulli beam
     stiff : (n - 1,) diameters that bend, where something stiffens the shaft [m]; its mass is not added
 
-    Notes
-    -----
     Shear coefficient of a solid round section: 6 (1 + nu) / (7 + 6 nu) (Cowper 1966).
     """
     area, inertia = pi / 4.0 * diameter**2, pi / 64.0 * diameter**4

@@ -170,8 +170,6 @@ def _synthetic_record(
 ) -> Record:  # fmt: skip
     """Response to a harmonic force, in shares of its 1x amplitude.
 
-    Parameters
-    ----------
     turns : length of the window, whole or not
     sense : +1 forward, -1 backward, 0 along ``direction`` [rad]
     mean, drift, harmonics, noise : a constant, a ramp over the window, 2x and 3x lines, white noise, of the displacement

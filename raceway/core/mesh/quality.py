@@ -27,8 +27,6 @@ DEGENERATE = 1e-6
 class _Quality:
     """Quality of each cell.
 
-    Attributes
-    ----------
     scaled_jacobian : (m,) smallest determinant of the unit edge vectors at the corners: 1 for a cuboid, <= 0 is inverted
     aspect : (m,) longest edge / shortest edge
     skew : (m,) largest |cosine| between the cell's principal axes: 0 for a cuboid

@@ -23,14 +23,10 @@ from raceway.storage.tables import Tables
 class _Outline:
     """Lines (k, 2) of x and radius [m], x strictly increasing.
 
-    Attributes
-    ----------
     left, right : race side, from the left side face to the groove, and from the groove to the right side face
     seat : seat side, from face to face
     edges : angles of the groove's left and right edge [rad], from its bottom towards +x
 
-    Notes
-    -----
     The section is what lies between two lines over x: the seat's side (bore of the inner ring, outer cylinder of the outer
     one) and the race's side, out of which the groove's circle is cut. Chamfers, steps that lean, unequal shoulders and
     hollow sides are all such lines; an undercut is not, and is refused.
@@ -79,16 +75,10 @@ def _polygon_outline(
 ) -> _Outline:
     """The outline that a polygon of the whole section, groove not yet cut, stands for.
 
-    Parameters
-    ----------
     key : the scene's key, for messages
     polygon : [x, radius] of the corners in their order around the section [m]
     groove, centre_x, centre_r : radius of the groove and its centre
-
-    Raises
-    ------
-    MeshError
-        What is no section, or cannot be filled with quadrilaterals between two lines.
+    MeshError: what is no section, or cannot be filled with quadrilaterals between two lines.
     """
     points = np.asarray(polygon, dtype=float)
     if len(points) < 4:
@@ -475,8 +465,6 @@ def _facets(
 ) -> dict[str, np.ndarray]:
     """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x.
 
-    Parameters
-    ----------
     nodes : along the axis, across the wall and around;  ends : cells of the two lands beside the groove
     arc : (i,) places along the groove;  band : part of them that may touch
     """

@@ -34,8 +34,6 @@ _STEP = 1e-5
 class _Turned:
     """Tangential resultants of a ball's gyroscopic moment.
 
-    Attributes
-    ----------
     force : (4,) on the ball, inner and outer contact, each axial and radial [N]
     stiffness : (4, 4) minus its derivative by both places of the ball, D_inner and D_outer [N/m]
     couple : on the section of the inner ring [N m];  couple_by_place : (4,) [N]

@@ -57,7 +57,7 @@ class Friction:
 
     Parameters
     ----------
-    patch : with the compliances along the groove (``Race.shear``, ``Ball.shear``)
+    patch : with the compliances along the groove (``_Race.shear``, ``_Ball.shear``)
     coefficient : of friction
     """
 

@@ -84,8 +84,6 @@ def _race_divisions(centre_radius: float, groove: float, sense: float, angle: fl
 class _Race:
     """A race's surface points and its compliance, seen from any ball.
 
-    Attributes
-    ----------
     sense : -1 inner, 1 outer
     groove, centre_radius : radius of the groove, and of the circle of its centres [m]
     angle : (m,) contact angles of the rows [rad], increasing
@@ -128,8 +126,6 @@ class _Race:
 class _Ball:
     """The ball's surface points and its compliance, about its centre of mass.
 
-    Attributes
-    ----------
     radius : float [m]
     latitude : (columns,) of the points along the rolling direction [rad], symmetric about 0
     compliance : (rows, columns, columns) displacement of a column by a force on another one, so many rows apart, both

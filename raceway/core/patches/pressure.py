@@ -25,13 +25,9 @@ _BORDER = 0.08
 class _Factor:
     """Solves C x = r over a set of points, C the compliance of ball and race together.
 
-    Parameters
-    ----------
     patch : where the points are
     extra : compliance of the law at every point, on the diagonal [m/N]
 
-    Notes
-    -----
     Sets of neighbouring iterations differ in a few points.  With the factor of a set B, the solution on another set A comes
     by bordering: points that joined are unknowns of their own, points that left get a multiplier that keeps them at zero;
     both together make a small dense system (the Schur complement of the factor).  Beyond ``_BORDER`` of the set it is
@@ -151,8 +147,6 @@ class PointLaw:
 class _LawState:
     """Points that carry something.
 
-    Attributes
-    ----------
     nodes, load : (n,) [N];  gap : (n,) left open by the law: its penetration [m]
     lower : factor of C + 1/D;  viscous : (n,) the law's rate derivative over D [s]
     """
@@ -172,17 +166,9 @@ class _LawState:
 def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: _Factor) -> _LawState:
     """Pressures at gaps (rows * columns,) that change at rates of the same shape.
 
-    Parameters
-    ----------
     start : (rows * columns,) penetrations w of a similar state, zeros when there is none; overwritten by those found
+    ConvergenceError: Newton stalls.
 
-    Raises
-    ------
-    ConvergenceError
-        Newton stalls.
-
-    Notes
-    -----
     With D = -A dp/dw the loads change by t with (1/D + C) t = w - g - C f over the points with D > 0: symmetric and positive
     definite for every law that grows with the approach. All gaps then become w = g + C (f + t). The step is halved where the
     residual grew.
@@ -238,18 +224,10 @@ _ROUNDING = 1e-10
 def _active_set(gap: np.ndarray, start: np.ndarray, factor: _Factor) -> tuple[np.ndarray, np.ndarray, int]:
     """Points in contact (n,), ascending, their loads (n,) [N], and the number of iterations.
 
-    Parameters
-    ----------
     gap : (rows * columns,) without elastic displacement [m]
     start : points that were in contact in a similar state, or none
+    ConvergenceError: the sets repeat themselves.
 
-    Raises
-    ------
-    ConvergenceError
-        The sets repeat themselves.
-
-    Notes
-    -----
     Points that pull leave the set, points that penetrate join it, all at once; near the solution the sets of successive
     iterations are the same.  Entries of C are positive between points of a patch: only points with g < 0 can touch.
     """

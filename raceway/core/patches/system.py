@@ -33,8 +33,6 @@ _LOST, _VELOCITIES, _LAST, _BEFORE, _GRID, _SLIP = range(6)
 class _History:
     """One state's memory.
 
-    Attributes
-    ----------
     lost : (2 Z,) energy that friction has taken [J]
     velocities : 0 to 2, how many are known;  last, before : (Z, 2) velocities of the balls [m/s]
     grid : number of the patches on which the slips lie;  slip : (2 Z, points) [m], beyond the slip of the contact as a
@@ -120,8 +118,6 @@ _WIDER = 12
 class _Row:
     """The balls' solver of one system and where it was last.
 
-    Attributes
-    ----------
     balls : Balls
     force : (2 Z, 2) contact forces on the balls [N]
     last : the state of the last solution, with the places (Z, 2) of groove centres and balls there [m]
@@ -138,8 +134,6 @@ class _Row:
     ) -> tuple[np.ndarray, LinearisedBalls]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
 
-        Notes
-        -----
         Near the last solution its linearisation tells places and forces better than any guess.
         """
         force = self.force
@@ -244,8 +238,6 @@ class Pool:
 class _Grooves:
     """The inner grooves at every ball.
 
-    Attributes
-    ----------
     centre, velocity : (Z, 2) of the groove centres [m, m/s];  jacobian : (2 Z, 5) derivatives of ``centre`` by q
     turning : (Z, 5) turn of the ring's section by q
     """

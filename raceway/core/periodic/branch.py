@@ -377,8 +377,6 @@ Test = Callable[[Point], float]
 class _Special:
     """A special point.
 
-    Attributes
-    ----------
     kind : FOLD, BRANCH, DOUBLING or PAIR;  length : of the step to it from the point before
     angle : of the critical pair in a span [rad]; the second frequency over the span's; None for others
     """

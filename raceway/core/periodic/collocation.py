@@ -46,8 +46,6 @@ _TRIED = (0.0, 0.19, 0.5, 0.81, 1.0)
 class _Rule:
     """Numbers of the rule with s stages.
 
-    Attributes
-    ----------
     points : (s,) in (0, 1)
     velocity, position : (s, s) first and second integrals of the Lagrange polynomials up to each point
     packed : (2 s + 3, s) velocity, position, the same up to the end of the interval and points one below the other, for kernels
@@ -56,8 +54,6 @@ class _Rule:
         themselves in columns 0 to e - 1
     legendre : (s, s) Legendre coefficients of values at the points
 
-    Notes
-    -----
     On an interval of length h the acceleration is the polynomial through its values A_j at the Gauss points c_j; v(u) = v0 +
     h sum_j a_j(u) A_j, q(u) = q0 + u h v0 + h^2 sum_j aa_j(u) A_j with a_j, aa_j the first and second integral of the
     Lagrange polynomial l_j, u from 0 to 1. For s points the error at the ends of intervals is of order 2 s where the motion

@@ -28,8 +28,6 @@ _SAMPLES = 32
 def _response(problem: Problem, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Orders k (m,) of the force and the linear response's complex lines (m, 5): Re(x e^{j k theta}).
 
-    Parameters
-    ----------
     tangent : (5, 5) stiffness of the contacts at the equilibrium
     """
     system, w, free = problem.system, problem.speed, problem.free
@@ -159,14 +157,10 @@ MOST_NONLINEAR = 0.1
 class _Neighbour:
     """A solved motion, to be followed.
 
-    Attributes
-    ----------
     problem : that it solves
     excess : motion less its linear response about the equilibrium; balls and rates as they are
     share : largest derivative of the excess over that of the motion
 
-    Notes
-    -----
     The linear response of the new problem about its own equilibrium, plus the nonlinear part of its neighbour's motion, is
     where Newton's iteration begins. Where that part is large, several motions may exist under one force, and a neighbour
     could lead to another one than the search from rest: it is left alone then, and so is what it led to when that is far
@@ -180,8 +174,6 @@ class _Neighbour:
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path | None:
         """First guess for Newton's iteration on a mesh; None where this motion is none of the problem's unknowns.
 
-        Parameters
-        ----------
         q : (5,) static equilibrium of ``problem``;  tangent : (5, 5) of its contacts
         """
         if not self._alike(problem):
@@ -261,8 +253,6 @@ _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 class _ForceBranch:
     """Points of a branch over the share of the force.
 
-    Attributes
-    ----------
     largest : share of the force;  reaches : the whole force
     folds : whether it turns back anywhere
     crossings : neighbouring points on either side of the whole force or its opposite, in the order of the branch
@@ -290,10 +280,7 @@ class _ForceBranch:
 def _force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> _ForceBranch:
     """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
 
-    Raises
-    ------
-    ConvergenceError
-        It has no first point.
+    ConvergenceError: it has no first point.
     """
     return _ForceBranch.of(_force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
 
@@ -309,14 +296,8 @@ def _force_continuation(
 ) -> Iterator[Point]:
     """Points from the resting ring on until the force's share leaves ``least`` to ``most``, or to where the branch is lost.
 
-    Parameters
-    ----------
     small_points : points in a row of next to no force that end it, too: there it has become a free vibration
-
-    Raises
-    ------
-    ConvergenceError
-        There is no first point.
+    ConvergenceError: there is no first point.
     """
     _, lines = _response(problem, tangent)
     length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
@@ -377,8 +358,6 @@ def _by_homotopy(
 ) -> tuple[Refined, str] | None:
     """The first motion that leads here from another speed or load, and from where; None where none does.
 
-    Parameters
-    ----------
     q : (5,) static equilibrium;  tangent : (5, 5) of its contacts
     lost : no motion is known here, so that nearby branches are worth following through their folds
     """
@@ -406,8 +385,6 @@ def _from_undamped(
 ) -> Iterator[Refined]:
     """Motions that the branch from rest leads to without damping, each continued to the damped ring; none of an undamped one.
 
-    Notes
-    -----
     Without damping branches of motions cross, where the ring's motion may lead or lag alike; the least damping parts them
     there, and what lay beyond the crossing is no longer on the branch that begins at rest, though it still exists.
     """
@@ -440,10 +417,7 @@ def _continued_to(
 ) -> Refined:
     """From the motion about an equilibrium at a ratio to that at 1; ``through`` folds, too.
 
-    Raises
-    ------
-    ConvergenceError
-        None leads there.
+    ConvergenceError: none leads there.
     """
     far, sense = at(ratio), float(np.sign(1.0 - ratio))
     try:

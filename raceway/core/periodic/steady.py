@@ -203,8 +203,6 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 class _StartingOrbit:
     """The motion that a transient starts on.
 
-    Attributes
-    ----------
     orbit : periodic motion at equidistant times
     orbits : every motion that was found, as ``raceway.core.periodic.steady`` tells them; empty where nothing could be said
     warnings : what a user should know

@@ -24,13 +24,9 @@ if TYPE_CHECKING:
 class _Sector:
     """One sector of a body of N equal ones: element matrices and masses.
 
-    Attributes
-    ----------
     even, cosine, sine : (M, 12, 12) parts A, B, S of the quadrilaterals' matrices, component by component of their four nodes [N/m]
     mass : (N,) lumped masses of the nodes of one meridian [kg]
 
-    Notes
-    -----
     With u_k = u exp(i n k a), a = 2 pi / N, the stiffness of a ring of equal sectors becomes
     K(n) = D + U exp(i n a) + U^T exp(-i n a) in nodal components r, theta, x; D couples nodes of one meridian, U those of
     neighbouring ones.  The sector is its own mirror image, so that K(n) is real once u_theta is counted in units of i:
@@ -124,8 +120,6 @@ def _elimination_order(matrix: csr_matrix) -> np.ndarray:
 def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
     """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
 
-    Notes
-    -----
     With K = L D L^T the last block of L D L^T is the condensed stiffness, and its inverse that block of K^-1.  SuperLU may
     renumber along the elimination tree, which changes no entry of the factors.
     """
@@ -474,8 +468,6 @@ class Revolution:
     ) -> np.ndarray:
         """Compliance of a free body's harmonic 0 or 1: loads balanced by inertia, no rigid motion of the masses.
 
-        Notes
-        -----
         With R the rigid motions, M the masses, P = I - R (R^T M R)^-1 R^T M, it is P K^+ P^T.  As many springs as there
         are rigid motions hold the body without carrying any of a balanced load, so that K + springs may stand for K.
         """
@@ -565,13 +557,9 @@ _DIGITS = 9
 class _FreeBall:
     """Compliance of a floating ball between points near its equator.
 
-    Attributes
-    ----------
     latitudes : (n,) of the surface nodes [rad], towards the rolling direction
     dimensionless : (o, len(components) n, len(components) n) u E R / F, components one after the other
 
-    Notes
-    -----
     A displacement u of a ball of radius R and Young's modulus E under a force F is c F / (E R), where c belongs to radius 1
     and modulus 1. Rigid motions stand apart: c gives displacements relative to the mean motion of the ball's masses ("ball
     centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.

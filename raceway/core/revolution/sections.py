@@ -74,13 +74,8 @@ def dofs(nodes: np.ndarray, components: tuple[int, ...] = (0, 2)) -> np.ndarray:
 def _mapped(top: np.ndarray, bottom: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A block of quadrilaterals between two lines.
 
-    Parameters
-    ----------
     top, bottom : (m, 2) ends of the lines into the body [m];  depth : (k,) from 0 to 1
-
-    Returns
-    -------
-    points : (m k, 2), line after line, each from top to bottom
+    Returns points : (m k, 2), line after line, each from top to bottom
     quads : ((m - 1) (k - 1), 4)
     """
     lines, rows = len(top), len(depth)

@@ -164,8 +164,6 @@ class Design:
 def _shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
     """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
-    Notes
-    -----
     A uniform shaft between two bearings whose rings tilt by the same angle in opposite senses, which is how a force at
     mid-span bends it: moment over angle 2 E I / L.
     """
@@ -244,10 +242,7 @@ def _thinned(values: tuple[float, ...]) -> tuple[float, ...]:
 def _ascending(option: str, text: str) -> tuple[float, ...]:
     """Ascending positive numbers, at least three: two points have no curvature.
 
-    Raises
-    ------
-    SceneError
-        Naming the option.
+    SceneError: naming the option.
     """
     try:
         axis = parse_axis(f"{option}={text}")

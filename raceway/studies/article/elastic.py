@@ -95,8 +95,6 @@ _DIFFERENCES = (
 class _Run:
     """One run of the study.
 
-    Attributes
-    ----------
     bodies : of ``BODIES``;  axial, radial : load [N]
     excitation : (direction, amplitude law) of a motion; None at rest
     """
@@ -126,8 +124,6 @@ class _Run:
 class _Design:
     """All runs of one scene.
 
-    Attributes
-    ----------
     tables : of the scene;  friction : Coulomb coefficient of the motions;  turns : of a motion, of ``STEPS`` steps each
     """
 
@@ -216,14 +212,9 @@ def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS
 def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, folder: Path | None = None) -> Tables:
     """Run a scene.
 
-    Parameters
-    ----------
     tell : called as ``tell(what, done, total)`` between steps; an exception that is no fault of the run passes through
     folder : where the section through the most loaded contact is drawn; None: nowhere
-
-    Returns
-    -------
-    row : ``status`` "completed", "failed" (numbers) or "refused" (the scene, or this machine), ``reason``, ``cost``; of a completed
+    Returns row : ``status`` "completed", "failed" (numbers) or "refused" (the scene, or this machine), ``reason``, ``cost``; of a completed
         run ``balls``, ``displacement``, ``kyy_n_per_m``, ``subsurface``, ``mesh``, ``identification``, ``stability``, ``error``,
         ``warnings`` as in result.json, and ``pictures``, names of files in ``folder``
     """
@@ -292,9 +283,7 @@ def _section(result: Result, folder: Path) -> Tables:
 def _from_hertz(row: ReadTables) -> Tables:
     """Nodal peak pressures over Hertz's at the same ball load, less 1.
 
-    Returns
-    -------
-    table : for each race ``ball``, ``load_n`` and ``peak_pressure_pa`` of its most loaded ball with ``most_loaded``, its
+    Returns table : for each race ``ball``, ``load_n`` and ``peak_pressure_pa`` of its most loaded ball with ``most_loaded``, its
         deviation, and ``largest``, the deviation of largest size over all loaded balls; None of rigid bodies, which have no points
     """
     return {race: _pressures(row["balls"], race) for race in RACES}

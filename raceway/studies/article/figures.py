@@ -119,8 +119,6 @@ def _panel(
 ) -> Panel:  # fmt: skip
     """Lines over one axis.
 
-    Parameters
-    ----------
     labels : title, x and y;  words : what is seen;  more : draws what is no line
     """
 

@@ -119,8 +119,6 @@ def hardening(rows: list[Tables]) -> np.ndarray:
 def _turning_point(ratio: np.ndarray) -> float | None:
     """Tilt stiffness above which k falls with speed instead of rising [N m/rad]; None where it does not turn.
 
-    Notes
-    -----
     Straight lines over the logarithm of the stiffness; the first crossing.
     """
     x = np.log(np.array(STIFFNESSES))
@@ -237,8 +235,6 @@ def _curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     Where the steady motion is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside
     that motion, or from rest.
 
-    Parameters
-    ----------
     points : tables of scenes
     """
     return [_row(tables, registry) for tables in points]

@@ -34,19 +34,10 @@ _LENGTHS = {
 def _catalogue(pattern: str = "*") -> tuple[Preset, ...]:
     """Bearings of the catalogue, which ``preset`` of a scene's [bearing] takes by name.
 
-    Parameters
-    ----------
     pattern : as in a shell (``"70*C"``), or a part of the name; in any case
-
-    Returns
-    -------
-    tuple of Preset
+    Returns tuple of Preset
         Each with ``name``, ``title``, ``table`` (the [bearing] table), ``facts`` (value, source, scatter) and ``stiffness_error``
-
-    Raises
-    ------
-    SceneError
-        None has such a name; the nearest five.
+    SceneError: none has such a name; the nearest five.
 
     Examples
     --------

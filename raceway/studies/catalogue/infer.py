@@ -87,10 +87,7 @@ def infer(
 def _number(name: str, unit: str, value: Quantity) -> float:
     """A number in the unit, from text with any of its dimension.
 
-    Raises
-    ------
-    SceneError
-        No number, or another dimension.
+    SceneError: no number, or another dimension.
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise SceneError.at(name, None, f"must be a number [{unit}] or text with a unit, not {type(value).__name__}")
@@ -222,15 +219,9 @@ def _line(answer: Inferred) -> dict[str, str]:
 def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> InferredTable:
     """All sizes of a table.
 
-    Parameters
-    ----------
     table : a CSV file, or "nsk" or "gmn" for those of the package
     maker, conformity : as in ``infer_printed``; a table of the package names its maker
-
-    Raises
-    ------
-    SceneError
-        A table that cannot be read, or of which no size can be inferred.
+    SceneError: a table that cannot be read, or of which no size can be inferred.
     """
     packaged = table.lower() in _TABLES and not Path(table).exists()
     read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))

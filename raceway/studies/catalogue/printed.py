@@ -174,10 +174,7 @@ def read_table(path: Path) -> Table:
 def _parse_table(text: str, name: str) -> Table:
     """One ``Printed`` a line of a CSV text; lines that start with # are remarks.
 
-    Raises
-    ------
-    SceneError
-        As ``read_table``.
+    SceneError: as ``read_table``.
     """
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     rows = list(csv.reader(line for _, line in lines))

@@ -378,8 +378,6 @@ def judged(
 def _combination(free: Sequence[Free], direction: np.ndarray, moves: float, sizes: np.ndarray) -> Combination:
     """A singular vector as changes of numbers, the largest one by a tenth of its size and up.
 
-    Parameters
-    ----------
     moves : standard errors by which the vector itself moves the data
     """
     part = 0.1 / direction[np.argmax(np.abs(direction))]

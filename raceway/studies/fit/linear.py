@@ -129,8 +129,6 @@ def _word(part: str) -> str:
 class _Linear:
     """Weighted residuals of the spectra, ``raceway.studies.fit.estimate.Residuals``: free numbers, then the parts of T.
 
-    Attributes
-    ----------
     mass : where it is not free [kg];  noise : variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
     tones : frequencies of hum [rad/s];  remarks : on residuals and force
     excited : (n,) frequencies whose force stands out of the noise; the others, where Z stays ``before`` (n, d, d), determine noise and leakage alone

@@ -188,8 +188,6 @@ def sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[
 class _Balanced:
     """Shaft and bearing in balance, compared with the measured response.
 
-    Attributes
-    ----------
     state : of the bearing;  computed, measured : response at the sensor [m], its size alone without pulses
     errors : standard errors along the measured response and across it [m]
     """
@@ -213,8 +211,6 @@ class _Slope:
 class _RigResiduals:
     """Weighted residuals of the 1x response: ``raceway.studies.fit.estimate.Residuals``.
 
-    Attributes
-    ----------
     component : of the record;  run_out : the run-out, or the 1x component of a slow roll
     last : at the last numbers;  slopes : by the free numbers there
     """

@@ -135,8 +135,6 @@ def _smooth_angle(times: np.ndarray) -> PPoly:
 def _angle_error(time: np.ndarray, pulses: _Pulses, spline: PPoly) -> float:
     """Error of the angle of all pulses together, half-width at 95 % [rad].
 
-    Notes
-    -----
     Pulses scatter about the smooth angle, by noise and by samples that miss them: so does their mean, by Student's distribution.
     What all of them share is apart from that.  A flank that is steeper than the interval of samples determines a pulse to half an
     interval; one that takes n samples to about 1 / n^2 of that.  It averages out where pulses fall anywhere between samples;
@@ -187,8 +185,6 @@ def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
 class _Pulses:
     """Times at which a keyphasor's voltage rises through the middle of its range.
 
-    Attributes
-    ----------
     times : (n,) [s]
     jump : mean rise from one sample to the next on the flank, over the range, at most 1
     middle_error : standard error of all times together, because noise hides where the middle of the range is [s]
@@ -202,17 +198,9 @@ class _Pulses:
 def _pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:
     """Pulses of a voltage.
 
-    Parameters
-    ----------
     time : (n,) [s];  key : (n,) voltage, any unit
+    RacewayError: the voltage never changes.
 
-    Raises
-    ------
-    RacewayError
-        The voltage never changes.
-
-    Notes
-    -----
     Each pulse is where the least-squares line through the samples of its flank crosses the middle.  The first sample above it
     would be early by noise, and so would the extremes of the samples be off as the range: the plateaus are those of the mean turn.
     """
@@ -251,8 +239,6 @@ def _crossings(time: np.ndarray, level: np.ndarray, noise: float) -> tuple[np.nd
 def _plateaus(time: np.ndarray, key: np.ndarray, times: np.ndarray) -> tuple[float, float, float, float]:
     """Lowest and highest voltage of the mean turn, standard error of the middle between them, and the noise of a sample.
 
-    Parameters
-    ----------
     times : first estimate of those of the pulses [s]
     """
     inside = (time >= times[0]) & (time < times[-1])

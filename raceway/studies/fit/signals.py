@@ -242,8 +242,6 @@ def recording_of(signals: Signals) -> Recording:
 def _clipping(name: str, signal: np.ndarray) -> str:
     """Fault of a signal that stays at the end of its range: cut off there, its 1x component is that of another motion.
 
-    Notes
-    -----
     A sine of amplitude A in steps of q stays arccos(1 - q / A) / pi of its time within the last step at each end.  A signal
     without noise that keeps step with its samples has few values, each as often as another.
     """

@@ -212,12 +212,8 @@ def stated_run_out(
 def _without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalance_angle: float) -> RunOut:
     """The run-out in a slow roll: its 1x component less the response to the unbalance at that speed.
 
-    Parameters
-    ----------
     shaft : the rotor at the slow roll's speed;  unbalance_angle : of the unbalance from the mark [rad]
 
-    Notes
-    -----
     The bearing's stiffness at rest is good enough: the response is a thousandth of that at the speed.
     """
     load = np.linalg.solve(bearing.compliance - shaft.ring[:, 1:], shaft.ring[:, 0] * shaft.unbalance_force)
@@ -231,8 +227,6 @@ def _without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalan
 class _Response:
     """The 1x response at the sensor against the unbalance: of a record, less its run-out.
 
-    Attributes
-    ----------
     run_out : that was subtracted
     deflection, fourier : at the sensor [m], by least squares and by a Fourier transform of full turns; without pulses their sizes
     """

@@ -42,8 +42,6 @@ _HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?
 class _Measurements:
     """Measurements, one per row.
 
-    Attributes
-    ----------
     source : file;  keys : path -> numbers (n,), in the unit of the key
     values : quantity -> numbers (n,), SI;  errors : quantity -> standard errors (n,), SI, of those whose errors are stated
     """
@@ -194,8 +192,6 @@ def _refuse_contradictions(measured: _Measurements) -> None:
 class _TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway.studies.fit.estimate.Residuals``.
 
-    Attributes
-    ----------
     scenes : of the rows
     """
 

@@ -49,8 +49,6 @@ _OnProgress = Callable[[str, int, int], None]
 class _Point:
     """One speed under one axial load.
 
-    Attributes
-    ----------
     state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
     signals, slow : the records;  identified : what is identified from them
     readings : by the article's procedure, on the same signals

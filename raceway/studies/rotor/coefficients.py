@@ -165,8 +165,6 @@ def _undirected(selection: Selection, array: np.ndarray) -> np.ndarray:
 def _without_noise(damping: np.ndarray, resolved: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
     """Damping (..., 2, 2) with what is not resolved replaced, and what was done.
 
-    Notes
-    -----
     Noise of either sign would be read as damping, and a negative one as instability.  A point whose cyy or czz is not resolved has
     no cross terms either: they alone would make the matrix indefinite.
     """

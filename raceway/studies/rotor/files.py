@@ -60,16 +60,10 @@ _WIDTH = 72
 def _nastran_text(table: Coefficients, head: Sequence[str], number: int, node: int) -> str:
     """Bulk data of Nastran.
 
-    Parameters
-    ----------
     head : sentences for the first lines
     number : of the property, and of the element; its tables have the next twelve
     node : grid point on the shaft that is joined to ground; 0: the element is a comment to complete
-
-    Raises
-    ------
-    RacewayError
-        A table over speed and frequency, which PBUSHT has no place for; a number that a field does not hold.
+    RacewayError: a table over speed and frequency, which PBUSHT has no place for; a number that a field does not hold.
     """
     if not 0 < number <= _LARGEST_PROPERTY:
         raise RacewayError(f"number {number}: Nastran numbers its properties from 1 to {_LARGEST_PROPERTY}")
@@ -187,15 +181,9 @@ def _large_field(value: object) -> str:
 def _ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     """Commands of Ansys.
 
-    Parameters
-    ----------
     head : sentences for the first lines
     number : of the element type and of the set of real constants, and in the names of the tables
-
-    Raises
-    ------
-    RacewayError
-        A table over the frequency, which COMBI214 does not depend on; a number out of range.
+    RacewayError: a table over the frequency, which COMBI214 does not depend on; a number out of range.
     """
     if not 0 < number <= _LARGEST_TYPE:
         raise RacewayError(f"number {number}: give an element type of Ansys from 1 to {_LARGEST_TYPE}")

@@ -222,14 +222,10 @@ def _is_preset(bearing: SceneSource) -> bool:
 def _secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Real symmetric (n, n) K with K u = f, nearest to the tangent.
 
-    Parameters
-    ----------
     tangent : (n, n) [N/m, N, N m/rad]
     motion, load : (n,) complex amplitudes u, f of one harmonic
     unit : (n,) length of a unit of each coordinate [1 for m, an arm in m for rad], which makes changes comparable
 
-    Notes
-    -----
     With U = [Re u, Im u], R = [Re f, Im f] - K_t U and the pseudoinverse U+ the symmetric D of least Frobenius norm with D U = R is
 
         D = R U+ + (R U+)' - (U+)' U'R U+

@@ -137,12 +137,8 @@ def _smoothing(table: Coefficients) -> Mapping[str, float]:
 def _smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values by ROSS 2 at the points of a table: a cubic smoothing spline with scipy's default bound.
 
-    Parameters
-    ----------
     axis, values : (n,), n at least 4
 
-    Notes
-    -----
     ``UnivariateSpline`` without ``s`` allows squared deviations of n in all, in the unit of the values: 1 N/m a point for a
     stiffness of 1e8 N/m, and 1 N s/m a point for a damping of perhaps less than that.
     """

@@ -74,8 +74,6 @@ def _rotating(selection: Selection) -> Matrices:
 def _directions(selection: Selection) -> Matrices:
     """Receptances along 0, 90 and 45 deg, inverted as a matrix.
 
-    Notes
-    -----
     Along a unit vector n the receptance is h = n' H n: h(0) = Hyy, h(90) = Hzz, h(45) = (Hyy + Hzz + Hyz + Hzy) / 2.  The
     matrix is taken as symmetric.  |Hzy| is known from the orbit under the force along y, too: forward^2 + backward^2 =
     (|x_y|^2 + |x_z|^2) / 2; so the part that gyroscopic moments of the ring make antisymmetric on free tilts,
@@ -149,8 +147,6 @@ def _across(data: Dataset, angles: list[float], h: dict[Hashable, np.ndarray]) -
 def _tangent(selection: Selection) -> Matrices:
     """The radial part of the equilibrium's tangent, motions that the scene leaves free condensed out.
 
-    Notes
-    -----
     With x = T r of the retained motions r, and those that follow them without force, K becomes T' K T and, to first order in the
     frequency, C becomes T' C T.
     """

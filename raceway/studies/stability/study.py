@@ -65,8 +65,6 @@ class Case:
 class _Row:
     """One line of the report.
 
-    Attributes
-    ----------
     setting : integrator, law, step, what else was varied
     quantity : what ``predicted`` and ``observed`` are, with the unit
     expected : the expectation in words, its bound in it

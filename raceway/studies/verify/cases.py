@@ -216,12 +216,8 @@ def _worst_measured(method: Integrator, impact: _Impact, steps: int) -> tuple[fl
 def _measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
     """Peak force [N] and contact time [s] of one impact at ``steps`` steps a contact.
 
-    Parameters
-    ----------
     phase : where within a step the first touch falls, in [0, 1)
 
-    Notes
-    -----
     The peak is the largest sample, not interpolated.  Times of touch and release are interpolated linearly: the mass
     flies freely before the touch, and near the release its acceleration vanishes.
     """

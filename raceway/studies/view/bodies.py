@@ -56,8 +56,6 @@ def joined(parts: list[Surface]) -> Surface:
 def _revolved(line: np.ndarray, azimuths: np.ndarray) -> Surface:
     """The surface that a closed line (k, 2) of x and radius sweeps, the body to the left of it.
 
-    Parameters
-    ----------
     line : first and last point differ; corners are kept sharp
     azimuths : (n,) [rad], from +y towards +z
     """
@@ -115,8 +113,6 @@ def _contact_patch(
 ) -> Surface:
     """A contact ellipse on a ball, with Hertz's pressure.
 
-    Parameters
-    ----------
     centre, towards, along : (3,) the ball's centre [mm], unit vectors to the contact and in the rolling direction
     half : semi-axes across and in the rolling direction [mm];  peak : its largest pressure
     """

@@ -92,8 +92,6 @@ def _outside(cells: np.ndarray) -> np.ndarray:
 class _Meshes(Answer):
     """Meshes of the bodies of a scene.
 
-    Attributes
-    ----------
     content : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
     meshes : by name of the body;  form : what writes them;  drawn : whether ``save`` also writes mesh.png
     """
@@ -111,10 +109,7 @@ class _Meshes(Answer):
     def save(self, folder: str | Path, pictures: bool = True) -> list[Path]:
         """Write a file for each ring, one for all balls, and the picture.
 
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written, or pyvista is missing.
+        RacewayError: a folder that cannot be written, or pyvista is missing.
         """
         folder, files = Path(folder), self.content["files"]
         files.clear()

@@ -38,8 +38,6 @@ def _ball_labels(
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
 
-    Parameters
-    ----------
     top : the load whose arrow is longest [N]
     project : points (n, 3) [mm] -> (n, 2) [pixels]
     """

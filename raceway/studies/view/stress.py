@@ -40,8 +40,6 @@ _SHOWN = 0.95
 class _Fields:
     """Fields of all bodies in one mesh, at the static equilibrium.
 
-    Attributes
-    ----------
     points : (n, 3) float, undeformed nodes [m];  cells : (m, 8) int
     body : (m,) int, 0 the inner ring, 1 the outer ring, 2 + k ball k
     displacement : (n, 3) float [m], rigid motions of rings and balls included
@@ -58,8 +56,6 @@ class _Fields:
     def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> _Fields:
         """Of a result with elastic bodies: of all elements, or of those near some places.
 
-        Parameters
-        ----------
         near : number of a body -> places (k, 3) [m] and the distance within which an element has a node [m]
         """
         # ``traits.every_node``, by which the caller chooses, is true of these bodies alone.

@@ -154,10 +154,7 @@ def _at_rest(result: Result) -> State:
 def _at_peak(result: Result) -> tuple[State, float]:
     """The moment of the last turn when a ball carries most on either race, and how far the turn is by then [deg].
 
-    Raises
-    ------
-    SceneError
-        A result without motion.
+    SceneError: a result without motion.
     """
     if result.simulation is None:
         message = "nothing moves in this scene: give it the table [excitation], and an identifier that looks at motion"
@@ -195,10 +192,7 @@ class _Image:
 def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, dict[str, bytes]]:
     """What is shown of a result, and the files by name: pictures, on request the HTML page, fields of elastic bodies.
 
-    Raises
-    ------
-    RacewayError
-        A package that is missing.
+    RacewayError: a package that is missing.
     """
     bearing = Bearing.of(result)
     moments = {"bearing.png": (_at_rest(result), "at rest")}
