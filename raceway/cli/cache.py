@@ -16,7 +16,7 @@ from raceway.storage.tables import ReadTables
 _SHOWN = 10
 
 
-def cache_screen(found: ReadTables) -> RenderableType:
+def _cache_screen(found: ReadTables) -> RenderableType:
     rows = [("Compiled kernels", "", f"in {found['root']}")]
     for folder in found["folders"]:
         size = f"{folder['bytes'] / 2**20:.1f} MiB"
@@ -75,5 +75,5 @@ def cache(clear: bool, as_json: bool) -> int:
         "cleared": clear,
     }
 
-    show(content, as_json, None, lambda: cache_screen(content))
+    show(content, as_json, None, lambda: _cache_screen(content))
     return 0

@@ -125,7 +125,7 @@ class Interrupts:
         if looking and (_told or _unwinding()):
             self._later(_LOOK_S, self._look, number)
             return
-        if drops_exceptions(frame):
+        if _drops_exceptions(frame):
             self._later(_AGAIN_S, self._look if looking else _thread.interrupt_main, number)
             return
         self._later(_LOOK_S, self._look, number)
@@ -203,7 +203,7 @@ def _end_quietly(code: int) -> NoReturn:
     os._exit(code)
 
 
-def drops_exceptions(frame: FrameType | None) -> bool:
+def _drops_exceptions(frame: FrameType | None) -> bool:
     """Whether an exception that is raised in this frame would be forgotten."""
     while frame is not None:
         code = frame.f_code

@@ -17,7 +17,7 @@ from raceway.cli.commands import ALIASES, DEVELOPERS, SECTIONS, Later
 from raceway.cli.console import Commands
 
 
-class CommandsByName(Commands):
+class _CommandsByName(Commands):
     """Commands of a table; only the one that is asked for is imported, none for ``--help``."""
 
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = SECTIONS
@@ -49,13 +49,13 @@ class CommandsByName(Commands):
                 formatter.write_dl([(about.name, about.summary) for about in commands])
 
 
-class DeveloperCommands(CommandsByName):
+class _DeveloperCommands(_CommandsByName):
     """``raceway dev``."""
 
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = {"Commands": DEVELOPERS}
 
 
-@click.group(cls=DeveloperCommands, short_help="Plug-ins: templates, conformance, laws, schema, caches.")
+@click.group(cls=_DeveloperCommands, short_help="Plug-ins: templates, conformance, laws, schema, caches.")
 def dev() -> None:
     """For those who write plug-ins: templates, conformance, contact laws on one contact, caches, schema.
 
@@ -65,7 +65,7 @@ def dev() -> None:
     """
 
 
-@click.group(cls=CommandsByName, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(cls=_CommandsByName, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="raceway")
 @click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")
 def main() -> None:

@@ -41,12 +41,12 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
       raceway dev plugins --plugin my_law.py
     """
     registry = registry_with(plugins)
-    rows = plugin_rows(registry.all())
+    rows = _plugin_rows(registry.all())
     broken = faults(registry)
     if as_json:
         print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
         return 2 if broken else 0
-    show(rows, False, None, lambda: plugins_screen(rows))
+    show(rows, False, None, lambda: _plugins_screen(rows))
     if broken:
         raise RacewayError("\n  ".join(broken))
     return 0
@@ -85,7 +85,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
 
     with show_progress(waiting=f"checking {name}"):
         conformity = check_named(name, registry_with(plugins))
-    show(conformity.to_dict(), as_json, None, lambda: conformity_screen(conformity))
+    show(conformity.to_dict(), as_json, None, lambda: _conformity_screen(conformity))
     return 0 if conformity.conforms else 1
 
 
@@ -107,11 +107,11 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
 
     folder = write(kind, name, out, default_registry())
     files = sorted(str(path) for path in folder.rglob("*") if path.is_file())
-    show({"folder": str(folder), "files": files}, as_json, None, lambda: new_plugin_screen(folder, files))
+    show({"folder": str(folder), "files": files}, as_json, None, lambda: _new_plugin_screen(folder, files))
     return 0
 
 
-def plugin_rows(entries: Iterable[Entry]) -> list[Tables]:
+def _plugin_rows(entries: Iterable[Entry]) -> list[Tables]:
     """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
     from raceway.scene.schema import key_schema, keys
 
@@ -135,7 +135,7 @@ def plugin_rows(entries: Iterable[Entry]) -> list[Tables]:
     return rows
 
 
-def plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
+def _plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
     parts: list[RenderableType] = []
     for kind in dict.fromkeys(row["kind"] for row in rows):
         parts.append(Text(plural(kind), style="bold"))
@@ -154,7 +154,7 @@ def plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
     return Group(*parts)
 
 
-def conformity_screen(found: Conformity) -> RenderableType:
+def _conformity_screen(found: Conformity) -> RenderableType:
     """One line a check, with the duty and what was found."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
@@ -169,6 +169,6 @@ def conformity_screen(found: Conformity) -> RenderableType:
     return Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2)))
 
 
-def new_plugin_screen(folder: Path, files: Sequence[str]) -> RenderableType:
+def _new_plugin_screen(folder: Path, files: Sequence[str]) -> RenderableType:
     steps = f"pip install -e {folder} && python -m pytest {folder}"
     return Group(*written([str(folder), *files]), Text(f"next: {steps}", no_wrap=True, overflow="ignore"))

@@ -51,7 +51,7 @@ _OF_Z = (
 LEAST_CHANGE = 1e-3
 
 
-def answer_rows(result: ReadTables) -> list[Row]:
+def _answer_rows(result: ReadTables) -> list[Row]:
     """The first section."""
     found = result["identification"]
     if found is None:
@@ -64,21 +64,21 @@ def answer_rows(result: ReadTables) -> list[Row]:
         # The error of Z: larger than the same share of K where m w^2 cancels K.
         K.fact(result, f"{K.words}, m = {MASS.of(result):.4g} kg"),
         *model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
-        *damping_rows(result),
+        *_damping_rows(result),
         Z.fact(result, "dynamic stiffness, force over displacement"),
         ("orbit, semi-axes", axes, f"1x motion{', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
 
 
-def only_resolved(rows: Sequence[Row], error: ReadTables) -> list[Row]:
+def _only_resolved(rows: Sequence[Row], error: ReadTables) -> list[Row]:
     """The rows without the numbers that a part of the error of Z is as large as, or larger."""
     parts = error.get("unresolved")
     why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
     return [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
 
 
-def damping_rows(result: ReadTables) -> list[Row]:
+def _damping_rows(result: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
     band, origin = result["identification"]["band"], result["identification"]["damping_origin"]
     if band is None:
@@ -127,7 +127,7 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
     result : content of result.json;  files : what was written
     """
     rows = [
-        *answer_rows(result),
+        *_answer_rows(result),
         *equilibrium_rows(result),
         *film_rows(result),
         *ball_pass_rows(result["ball_pass"]),
@@ -135,7 +135,7 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
         *_tolerances(result),
         *error_rows(result),
     ]
-    rows = only_resolved(rows, result["error"])
+    rows = _only_resolved(rows, result["error"])
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]

@@ -85,7 +85,7 @@ class SweepOptions(NamedTuple):
 @click.option("--resume", is_flag=True, help="Go on with a store: compute what is not finished.")
 @click.option("--retry-failed", is_flag=True, help="With a store that is there: failed points again, too.")
 @click.option("--csv", "as_csv", is_flag=True, help="Write STORE/results.csv, too.")
-@click.option("--plot", "value", metavar="NAME", help="Draw this quantity, e.g. equivalent_stiffness, p0 or stiffness:y,y.")
+@click.option("--plot", "value", metavar="NAME", help="Draw this quantity, e.g. K, p0 or stiffness:y,y.")
 @click.option("--x", metavar="KEY", help="Of the picture, axis to the right [the speed, or the longest one].")
 @click.option("--y", metavar="KEY", help="Second axis; in curves what the colours stand for.")
 @at_option
@@ -107,7 +107,7 @@ def sweep(options: SweepOptions) -> int:
 
     \b
     Example:
-      raceway sweep examples/b7206.toml --plot equivalent_stiffness \\
+      raceway sweep examples/b7206.toml --plot K \\
           --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200
       raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200
       raceway sweep examples/steady_orbit.toml --list points.csv \\

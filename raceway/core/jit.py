@@ -287,7 +287,7 @@ class _KernelOfRecords(Kernel):
         return self._entry(*arguments)
 
 
-class Address(numba.types.WrapperAddressProtocol):
+class _Address(numba.types.WrapperAddressProtocol):
     """A kernel of one signature, its machine code looked up once; can be called from Python too.
 
     Notes
@@ -312,8 +312,8 @@ class Address(numba.types.WrapperAddressProtocol):
         return self._kernel(*arguments)
 
 
-@typeof_impl.register(Address)
-def _type_of(address: Address, _context: object) -> numba.types.FunctionType:
+@typeof_impl.register(_Address)
+def _type_of(address: _Address, _context: object) -> numba.types.FunctionType:
     """The type that the address was made for; numba would make an equal one anew in every call."""
     return address.pointer
 
@@ -321,12 +321,12 @@ def _type_of(address: Address, _context: object) -> numba.types.FunctionType:
 @lru_cache(maxsize=64)
 def address_of(kernel: Kernel, pointer: numba.types.FunctionType) -> Kernel:
     """A kernel as an address, of which there is one and which stands for it."""
-    return kernel if isinstance(kernel, Address) else cast(Kernel, Address(kernel, pointer))
+    return kernel if isinstance(kernel, _Address) else cast(Kernel, _Address(kernel, pointer))
 
 
 def plain(kernel: Kernel) -> Kernel:
     """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
-    return kernel._kernel if isinstance(kernel, Address) else kernel
+    return kernel._kernel if isinstance(kernel, _Address) else kernel
 
 
 def _refuse_strided(values: tuple[Any, ...], name: str) -> None:

@@ -249,7 +249,7 @@ _ITERATIONS = 30
 
 
 @attrs.frozen(eq=False)
-class Calibration:
+class _Calibration:
     """Of contacts on one race.
 
     Attributes
@@ -275,7 +275,7 @@ class Calibration:
 
 def calibrated(
     body: RingBody, ball: Solid, ellipses: tuple[Ellipse, Ellipse], load: float, radius: float, balls: int, angle: float
-) -> Calibration | None:
+) -> _Calibration | None:
     """Of contacts on a ring, at the free contact angle and some way up the groove; None where points tell nothing.
 
     Parameters
@@ -319,7 +319,7 @@ def calibrated(
     return calibration if calibration.uncertainty <= _TELLS * float(ellipse.approach(load)) / load else None
 
 
-def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
+def _limit(values: np.ndarray, angle: float, load: float) -> _Calibration:
     """Of values (angles, 2, loads) of the coarser and the finer patch."""
     ratio, logs = (POINTS[1] / POINTS[0]) ** 2, np.log(LOADS)
     limit = (ratio * values[:, 1] - values[:, 0]) / (ratio - 1.0)
@@ -328,7 +328,7 @@ def _limit(values: np.ndarray, angle: float, load: float) -> Calibration:
     scatter = (limit - secant[:, None] - trend * logs).std(axis=1) / np.sqrt(len(LOADS))
     remainder = np.abs(limit - values[:, 1]).mean(axis=1) + scatter
     angles = np.array([angle, angle + _FURTHER])[: len(limit)]
-    return Calibration(angles, secant + trend, float(remainder.max()), abs(trend), load)
+    return _Calibration(angles, secant + trend, float(remainder.max()), abs(trend), load)
 
 
 @attrs.frozen
@@ -414,7 +414,7 @@ class ElasticBodies:
     outer: RingCompliance
     ball_direct: float
     ball_opposite: float
-    calibrations: tuple[Calibration | None, Calibration | None] = (None, None)
+    calibrations: tuple[_Calibration | None, _Calibration | None] = (None, None)
 
     def direct(self, race: int, angles: np.ndarray) -> np.ndarray:
         """Compliance of ring and ball together at contact angles [rad], in m/N; race: 0 inner, 1 outer.

@@ -34,6 +34,7 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
+from raceway.out.quantities import C, K
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
@@ -400,7 +401,7 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
         series.append((fit.speed, Fft1x().identify([record], run.equilibrium, model).dynamic_stiffness))
     misfits = []
     for w, z in series:
-        fitted = complex(fit.equivalent_stiffness - fit.mass_used * w**2, w * fit.equivalent_damping)
+        fitted = complex(K.of(fit) - fit.mass_used * w**2, w * C.of(fit))
         scale = min(abs(z), abs(fitted)) if abs(w / fit.speed - 1.0) <= _SAME_SPEED else abs(z)
         misfits.append((abs(z - fitted) / scale, w * 30.0 / pi))
     return max(misfits)

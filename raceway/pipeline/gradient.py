@@ -52,7 +52,7 @@ _COVERAGE, _POINTS = 0.95, 4001
 
 
 @attrs.frozen(eq=False)
-class MotionGradient:
+class _MotionGradient:
     """Derivatives of the 1x line of the steady orbit by the number at one key.
 
     Attributes
@@ -126,7 +126,7 @@ class SteadyOrbit:
         """(4,) Re Z, C and K [N/m, N s/m, N/m], amplitude [m]."""
         return _line(self.solved, self.model.mass_used)
 
-    def gradient(self, statics: StaticGradient) -> MotionGradient:
+    def gradient(self, statics: StaticGradient) -> _MotionGradient:
         """By the key of a static gradient, with whose displacement coordinates that are held move.
 
         Raises
@@ -144,7 +144,7 @@ class SteadyOrbit:
             raise NoDerivative(f"the neighbouring orbits have no balance: {why}") from None
         omega = self.solved.problem.speed
         imag = damping * omega + self.line[1] * speed
-        return MotionGradient(complex(real, imag), float(stiffness), float(damping), float(amplitude))
+        return _MotionGradient(complex(real, imag), float(stiffness), float(damping), float(amplitude))
 
     def _differentiated(self, direction: Direction, step: float, displacement: np.ndarray) -> np.ndarray:
         """(5,) derivatives of ``line`` and of the speed."""
@@ -238,7 +238,7 @@ class Gradient:
     """Derivatives by one key: of the equilibrium, and of the steady orbit where the scene has an excitation."""
 
     statics: StaticGradient
-    motion: MotionGradient | None
+    motion: _MotionGradient | None
 
     @property
     def nothing(self) -> bool:

@@ -293,10 +293,10 @@ def _secant(
     if "speeds" in identifier.needs:
         return None, "not estimated: it is fitted over several speeds"
     if "record" not in identifier.needs:
-        k = identification.equivalent_stiffness
+        k = K.of(identification)
 
         def of_equilibrium(variant: Model, state: Equilibrium) -> float:
-            return float((identifier.identify([], state, variant).equivalent_stiffness - k) / abs(k))
+            return float((K.of(identifier.identify([], state, variant)) - k) / abs(k))
 
         return of_equilibrium, f"identifier '{model.problem.identifier.kind}' at each equilibrium"
     turn = None if simulation is None or period is None else last_turn(simulation.whole, period)

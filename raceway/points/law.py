@@ -119,7 +119,7 @@ class Contact:
 
 
 @attrs.frozen(eq=False)
-class Cycle:
+class _Cycle:
     """One period of the approach.
 
     Attributes
@@ -177,7 +177,7 @@ class LawCurves(Answer):
     damping: np.ndarray
     hertz_force: np.ndarray
     hertz_stiffness: np.ndarray
-    cycle: Cycle
+    cycle: _Cycle
     rows: tuple[Tables, ...]
 
     def to_dict(self) -> Tables:
@@ -334,7 +334,7 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))
 
 
-def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
+def cycle(contact: Contact, amplitude: float, frequency: float) -> _Cycle:
     """A contact moved about its equilibrium with an amplitude [m] and a frequency [Hz]."""
     w = 2.0 * np.pi * frequency
     phase = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES
@@ -348,7 +348,7 @@ def cycle(contact: Contact, amplitude: float, frequency: float) -> Cycle:
             step = attrs.evolve(step, dt=1.0 / (frequency * SAMPLES), memory=memory)
     in_phase, ahead = 2.0 * float(np.mean(force * np.cos(phase))), -2.0 * float(np.mean(force * np.sin(phase)))
     ahead = ahead if abs(ahead) > _ROUNDING * float(np.max(force)) else 0.0
-    return Cycle(
+    return _Cycle(
         frequency, amplitude, approach, rate, force, in_phase / amplitude, ahead / (w * amplitude), np.pi * ahead * amplitude,
         ahead / in_phase if in_phase > 0.0 else None, bool((force <= 0.0).any()),
     )  # fmt: skip

@@ -17,7 +17,7 @@ from raceway import __version__
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.out.picture import COLOURS, MARKERS, dress, new_figure
-from raceway.out.quantities import AXIAL_DISPLACEMENT, STIFFNESS, Z_REAL, K, entry_unit, read_in
+from raceway.out.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
 from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
@@ -556,8 +556,12 @@ def layout(
     return Layout(data, name, kind, x, y, panels, selection.title, remark)
 
 
+#: Symbol -> name.
+_NAMES = {number.symbol: number.name for number in COLUMNS.values()}
+
+
 def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
-    """A variable by its name, with the labels of its other dimensions chosen.
+    """A variable by its name or symbol, with the labels of its other dimensions chosen.
 
     Raises
     ------
@@ -567,12 +571,13 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
     if text is None:
         text = next((name for name in _DEFAULTS if name.partition(":")[0] in dataset), None)
         if text is None:
-            raise RacewayError(f"choose what to draw with --value: {', '.join(names(dataset))}")
+            raise RacewayError(f"choose what to draw with --plot: {', '.join(names(dataset))}")
+    text = _NAMES.get(text, text)
     name, _, labels = text.partition(":")
     if name not in dataset or dataset[name].dtype.kind not in "fiu":
         variables = names(dataset)
         raise SceneError.at(
-            "--value", text, f"is not a quantity of this sweep{nearest(name, variables)}; there are {', '.join(variables)}"
+            "--plot", text, f"is not a quantity of this sweep{nearest(name, variables)}; there are {', '.join(variables)}"
         )
     data = dataset[name]
     dimensions = [str(dim) for dim in data.dims if "." not in str(dim) and dim != LIST]
@@ -581,12 +586,12 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
         choices = [[str(label) for label in data[dim].values] for dim in dimensions]
         example = ",".join(options[min(1, len(options) - 1)] for options in choices)
         message = f"takes {len(dimensions)} labels after a colon{f', for instance {name}:{example}' if dimensions else ''}; {len(entry)} given"
-        raise SceneError.at("--value", text, message)
+        raise SceneError.at("--plot", text, message)
     for dim, label in zip(dimensions, entry, strict=True):
         coordinates = [str(coordinate) for coordinate in data[dim].values]
         if label not in coordinates:
             why = f"has no '{label}'{nearest(label, coordinates)}; there are {', '.join(coordinates)}"
-            raise SceneError.at("--value", text, why)
+            raise SceneError.at("--plot", text, why)
         data = data.isel({dim: coordinates.index(label)})
     data = data.copy()  # its attributes change
     if dimensions:

@@ -439,14 +439,18 @@ def _measured(
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    measured = []
+    measured, references = list[Tables](), dict[str, Reference]()
+
+    def tell(label: str) -> None:
+        report(label, len(measured) + len(references), total)
+
     for setting in design.settings:
-        report(_words_of(setting.values), len(measured), total)
+        tell(_words_of(setting.values))
         measured.append(_row(setting, repeats, registry, rows))
-    references = {design.base: Reference({}, {}, "no setting could be run")}
-    for finished, (physics, group) in enumerate(groups.items(), start=len(measured)):
-        runner = Runner(registry, rows, limit_s, lambda label, finished=finished: report(label, finished, total))
+    runner = Runner(registry, rows, limit_s, tell)
+    for physics, group in groups.items():
         references[physics] = find_reference(group, runner, reference)
+    references = {design.base: Reference({}, {}, "no setting could be run")} | references
     return Precision(
         design.title, tuple(measured), references, design.base, design.left_out, design.notes, rows.fault, bool(reference)
     )

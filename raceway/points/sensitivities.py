@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False)
-class Sensitivity:
+class _Sensitivity:
     """Of all quantities to one key.
 
     Attributes
@@ -96,7 +96,7 @@ class Sensitivities(Answer):
     title: str
     values: dict[str, float]
     definitions: dict[str, str]
-    rows: tuple[Sensitivity, ...]
+    rows: tuple[_Sensitivity, ...]
     without_effect: tuple[Key, ...]
     refused: tuple[tuple[Key, str], ...]
     run_s: float
@@ -105,7 +105,7 @@ class Sensitivities(Answer):
     warnings: tuple[str, ...] = ()
     tolerances: Tables | None = None
 
-    def __getitem__(self, path: str) -> Sensitivity:
+    def __getitem__(self, path: str) -> _Sensitivity:
         rows = {row.key.path: row for row in self.rows}
         return rows[member("path", path, rows)]
 
@@ -224,7 +224,7 @@ def sensitivities_of(
             continue
         slopes = {name: slope for name, slope in derivatives(model, equilibrium, gradient).items() if name in now}
         shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
-        rows.append(Sensitivity(gradient, slopes, shares))
+        rows.append(_Sensitivity(gradient, slopes, shares))
     first = next(iter(now))
     rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))
     took = working_processor_time() - begun
@@ -237,7 +237,7 @@ def sensitivities_of(
     )
 
 
-def _table(row: Sensitivity) -> Tables:
+def _table(row: _Sensitivity) -> Tables:
     statics, motion = row.gradient.statics, row.gradient.motion
     half = len(statics.contact_force) // 2
     table: Tables = {

@@ -90,7 +90,7 @@ def current_folder() -> Path:
 
 
 @attrs.frozen
-class KernelFolder:
+class _KernelFolder:
     """One folder of compiled kernels: its name, how many there are, bytes, whether this version reads it."""
 
     name: str
@@ -99,7 +99,7 @@ class KernelFolder:
     current: bool
 
 
-def kernel_folders() -> list[KernelFolder]:
+def kernel_folders() -> list[_KernelFolder]:
     """All of them, the current one first.
 
     Raises
@@ -115,7 +115,7 @@ def kernel_folders() -> list[KernelFolder]:
             # numba writes one index (.nbi) for each function and one data file (.nbc) for each of its signatures.
             kernels = sum(f.suffix == ".nbc" for f in files)
             size = sum(f.stat().st_size for f in files)
-            folders.append(KernelFolder(folder.name, kernels, size, folder.name == source_key()))
+            folders.append(_KernelFolder(folder.name, kernels, size, folder.name == source_key()))
     return sorted(folders, key=lambda f: (not f.current, f.name))
 
 

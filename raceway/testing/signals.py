@@ -14,6 +14,7 @@ import numpy as np
 
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import Identification
+from raceway.out.quantities import C, K
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 
@@ -311,8 +312,8 @@ class IdentifierSuite(Suite):
             # K and C are asked for to the same share of |Z|: the phase is what a record resolves.
             for word, off in (
                 ("Z", answer.dynamic_stiffness - Z),
-                ("K = Re Z + m w^2", answer.equivalent_stiffness - STIFFNESS),
-                ("w C = Im Z", (answer.equivalent_damping - DAMPING) * w),
+                ("K = Re Z + m w^2", K.of(answer) - STIFFNESS),
+                ("w C = Im Z", (C.of(answer) - DAMPING) * w),
             ):
                 part = abs(off) / abs(Z)
                 require(

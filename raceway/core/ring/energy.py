@@ -12,14 +12,14 @@ from raceway.core.ring.system import System
 
 
 @attrs.frozen(eq=False)
-class FrictionEnergy:
+class _FrictionEnergy:
     """Energies (n,) [J] of all contacts at each sample: stored by sticking, and lost since the first sample."""
 
     stored: np.ndarray
     lost: np.ndarray
 
 
-def friction_energy(system: System, record: Record) -> FrictionEnergy:
+def friction_energy(system: System, record: Record) -> _FrictionEnergy:
     """Energies of friction along a record; zeros where the system has none.
 
     Notes
@@ -30,12 +30,12 @@ def friction_energy(system: System, record: Record) -> FrictionEnergy:
     """
     n = len(record.time)
     if system.conservative or system.scalars[layout.STICK] == 0.0:
-        return FrictionEnergy(np.zeros(n), np.zeros(n))
+        return _FrictionEnergy(np.zeros(n), np.zeros(n))
     slip = record.ball[:, :, 2:4]
     force = system.scalars[layout.STICK] * (_place(system, record) - slip)
     lost = np.zeros(n)
     lost[1:] = np.cumsum((force[1:] * np.diff(slip, axis=0)).sum(axis=(1, 2)))
-    return FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[layout.STICK], lost)
+    return _FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[layout.STICK], lost)
 
 
 def _place(system: System, record: Record) -> np.ndarray:
@@ -68,7 +68,7 @@ def _place(system: System, record: Record) -> np.ndarray:
 
 
 @attrs.frozen(eq=False)
-class EnergyBalance:
+class _EnergyBalance:
     """Energies (n,) [J] along a record and their drift.
 
     Attributes
@@ -83,7 +83,7 @@ class EnergyBalance:
     drift: float
 
 
-def energy_balance(system: System, record: Record) -> EnergyBalance:
+def energy_balance(system: System, record: Record) -> _EnergyBalance:
     """Balance of kinetic and stored energy against the work of loads and excitation and the losses in dampers.
 
     Notes
@@ -119,7 +119,7 @@ def energy_balance(system: System, record: Record) -> EnergyBalance:
     losses = cumulative(lost, dt) + friction.lost
     total = kinetic + stored - work + losses
     size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
-    return EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
+    return _EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
 
 
 def _lost_in_contacts(system: System, record: Record, speed: np.ndarray) -> np.ndarray:

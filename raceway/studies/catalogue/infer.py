@@ -106,7 +106,7 @@ _TABLES = {"nsk": "NSK", "gmn": "GMN"}
 
 
 @attrs.frozen(eq=False, repr=False)
-class InferredTable(Answer):
+class _InferredTable(Answer):
     """Inferred sizes of a table, and what could not be inferred.
 
     Attributes
@@ -216,7 +216,7 @@ def _line(answer: Inferred) -> dict[str, str]:
     return line
 
 
-def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> InferredTable:
+def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> _InferredTable:
     """All sizes of a table.
 
     table : a CSV file, or "nsk" or "gmn" for those of the package
@@ -237,7 +237,7 @@ def _infer_table(table: str, maker: str | None = None, conformity: float | None 
             answers.append((size.title, str(error)))
     if len(faults) == len(sizes):
         raise SceneError([mistake for error in faults for mistake in error.mistakes][:5])
-    return InferredTable(table, maker, len(sizes), sum(size.internals is not None for size in sizes), answers)
+    return _InferredTable(table, maker, len(sizes), sum(size.internals is not None for size in sizes), answers)
 
 
 def infer_texts(
@@ -249,7 +249,7 @@ def infer_texts(
     pairs: Iterable[str] = (),
     maker: str | None = None,
     conformity: float | None = None,
-) -> Inferred | InferredTable:
+) -> Inferred | _InferredTable:
     """Infer ball count, ball diameter, pitch diameter and conformity, each with its scatter and reason.
 
     ISO 281 and ISO 76 say how ratings follow from balls; all angles of a size are met together, with a whole number of balls of a
