@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, run, scene_from_dict
+from raceway.planning.resolve import resolve
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
-from raceway.scene.growth import grooves
 from raceway.studies.catalogue.printed import printed_by
 
 POUND = 4.4482216152605
@@ -185,7 +185,7 @@ def test_a_material_sets_the_thermal_expansion_unless_the_scene_does():
     def grown(**balls):
         tables = {"preset": "7014C", "balls": balls}
         scene = scene_from_dict({"bearing": tables, "mounting": {"ball_temperature": 40.0}})
-        return scene.bearing.balls.thermal_expansion, grooves(scene).inner
+        return scene.bearing.balls.thermal_expansion, resolve(scene).running.grooves[0].inner
 
     (steel, by_steel), (nitride, by_nitride) = grown(material="100Cr6"), grown(material="Si3N4")
     assert (steel, nitride) == (12.5e-6, 3.2e-6)

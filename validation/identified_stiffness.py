@@ -39,7 +39,7 @@ LIMIT = (2.0 * np.pi / 360.0) ** 2 / 6.0
 def reference(axial: float, tilt: str, speed_rpm: float, inertia: bool) -> tuple[float, float]:
     """K [N/m] and the largest Floquet multiplier of the periodic motion; B7206C typed in here once more."""
     w, force = speed_rpm * np.pi / 30.0, rig_force(speed_rpm)
-    translation, tilting, polar = ring_inertia(scene_from_dict(rotating(axial, tilt, speed_rpm, inertia, "newmark")))
+    translation, tilting, polar = ring_inertia(scene_from_dict(rotating(axial, tilt, speed_rpm, inertia, "newmark")).bearing)
     translation += 2.0
     mass = np.diag([translation] * 3 + [tilting] * 2)
     ring = Ring(

@@ -99,7 +99,7 @@ def independent(tilt: str, keep: int) -> np.ndarray:
     """(n, 2) the same motion without damping and with weightless balls, by DOP853 on the reference's equations."""
     model = bearing("newmark", tilt, False, 0.0, 360)
     start, w = solve_equilibrium(model).displacement, 12000.0 * np.pi / 30.0
-    _, _, polar = ring_inertia(model.scene)
+    _, _, polar = ring_inertia(model.problem.bearing)
     ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin=polar * w)
     times = np.linspace(0.0, TURNS * 2.0 * np.pi / w, TURNS * keep + 1)
     system = model.system

@@ -51,7 +51,7 @@ def by_integration(result: Result, damping: float = 0.0) -> tuple[complex, float
     w = 2.0 * np.pi / model.excitation.period_s
     ring = Damped(
         9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, spin_speed=w if model.scene.kinematics.ball_inertia else 0.0,
-        damping=damping, spin=ring_inertia(model.scene)[2] * w,
+        damping=damping, spin=ring_inertia(model.problem.bearing)[2] * w,
     )  # fmt: skip
     force = (rotating if model.excitation.sense else swinging)(model.excitation.amplitude_n, w)
     times = np.linspace(0.0, 2.0 * np.pi / w, 181)

@@ -16,7 +16,7 @@ from raceway.framework.duties import force_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.scene.growth import speed_growth
+from raceway.scene.growth import RunningBearing
 from raceway.storage.tables import Tables
 
 
@@ -72,16 +72,25 @@ def make_basis(problem: Problem) -> Basis:
     axial, ball_load = problem.axial_approach
     azimuths = np.concatenate(azimuth)
     return Basis(
-        geometries[0], geometries, modulus, inner, outer, azimuths, row, axial, max(ball_load, 1.0), growth_of(problem, row)
+        geometries[0],
+        geometries,
+        modulus,
+        inner,
+        outer,
+        azimuths,
+        row,
+        axial,
+        max(ball_load, 1.0),
+        growth_of(problem.running, row),
     )
 
 
-def growth_of(problem: Problem, row: np.ndarray) -> Growth:
+def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:
     """Of the grooves; ``row`` (Z,) is each ball's."""
-    rows = np.array([[*attrs.astuple(grown), 0.0] for grown in problem.grooves])
+    rows = np.array([[*attrs.astuple(grown), 0.0] for grown in running.grooves])
     # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
     common = rows[0].copy()
-    if problem.bearing.equal_rows:
+    if running.bearing.equal_rows:
         common[0] = rows[:, 0].mean()
     return Growth(common, (rows - common)[row])
 
@@ -147,7 +156,7 @@ def changing_speed(problem: Problem) -> ChangingSpeed | None:
     """What follows the speed of an excitation that changes it; None where the spin speed is steady."""
     if not problem.spin_changes:
         return None
-    return ChangingSpeed(problem.excitation.phase, problem.spin_speed, speed_growth(problem.scene), gyroscopic(problem))
+    return ChangingSpeed(problem.excitation.phase, problem.spin_speed, problem.running.speed_growth(), gyroscopic(problem))
 
 
 def gyroscopic(problem: Problem) -> np.ndarray:

@@ -14,7 +14,7 @@ from raceway.errors import ConvergenceError
 from raceway.framework.duties import is_foundation, renews
 from raceway.framework.estimate import Estimate
 from raceway.planning.resolve import Problem
-from raceway.scene.growth import groove_depth, load_at_edge
+from raceway.scene.growth import groove_depth, groove_edge, load_at_edge
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -66,8 +66,7 @@ def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: 
 
 def groove_edges(problem: Problem, basis: Basis) -> np.ndarray:
     """(Z,) angle from the groove's bottom to its edge, seen from the ball's centre, of every ball's row [rad]."""
-    rows = [np.arccos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter)) for bearing in problem.bearing.of_rows]
-    return np.asarray(np.array(rows)[basis.row])
+    return np.array([groove_edge(bearing) for bearing in problem.bearing.of_rows])[basis.row]
 
 
 def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

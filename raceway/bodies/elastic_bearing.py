@@ -25,7 +25,6 @@ from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.scene.growth import radial_growth
 
 #: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
 _ENOUGH = 5.0
@@ -126,7 +125,7 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
         seat_outer=problem.supports.outer_seat,
         contact_damping=contact.dashpot,
         ball_force=float(rigid.table[0, CENTRIFUGAL]),
-        growth=radial_growth(problem.scene),
+        growth=problem.running.radial_growth(b.of_rows[0]),
         friction=contact.friction,
         stick=_stick(problem, basis),
     )

@@ -245,7 +245,7 @@ def build_model(scene: Scene, plan: ScenePlan) -> Model:
     >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
     2.06
     """
-    problem = resolve(scene)
+    problem = plan.problem if plan.problem.scene is scene else resolve(scene)
     bearing = scene.body_kind.build(problem, plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(

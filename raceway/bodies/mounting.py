@@ -207,10 +207,10 @@ def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
 
 def _mounted(model: Model) -> Ring:
     """The bearing with its fits, at standstill and at the temperature of assembly."""
-    problem, growth = model.problem, model.basis.growth
-    still = attrs.evolve(problem.kinematics, spin_speed_rpm=0.0, radial_expansion=0.0, ring_growth=False, ball_growth=False)
-    cold = attrs.evolve(problem.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
-    fits = growth_of(problem.changed(kinematics=still, mounting=cold), model.basis.row)
+    running, growth = model.problem.running, model.basis.growth
+    still = attrs.evolve(running.kinematics, radial_expansion=0.0, ring_growth=False, ball_growth=False)
+    cold = attrs.evolve(running.mounting, inner_temperature=0.0, outer_temperature=0.0, ball_temperature=0.0)
+    fits = growth_of(attrs.evolve(running, kinematics=still, mounting=cold, spin_speed=0.0), model.basis.row)
     return model.system.standing(Growth(growth.common - fits.common, growth.by_ball - fits.by_ball))
 
 

@@ -19,11 +19,11 @@ class Rule(Generic[S]):
 
     Attributes
     ----------
-    keys : one or several, such as "contact.kind";  when : whether the rule speaks
+    keys : one or several, such as "contact.kind", or what finds the one at fault;  when : whether the rule speaks
     words : the reason, and the remedy where there is one; or what makes them of the tables
     """
 
-    keys: str | tuple[str, ...]
+    keys: str | tuple[str, ...] | Callable[[S], str]
     when: Callable[[S], Any]
     words: str | Callable[[S], str]
 
@@ -33,7 +33,8 @@ def speaking(rules: Iterable[Rule[S]], tables: S) -> Iterator[tuple[str, str]]:
     for rule in rules:
         if rule.when(tables):
             words = rule.words if isinstance(rule.words, str) else rule.words(tables)
-            yield from ((key, words) for key in ([rule.keys] if isinstance(rule.keys, str) else rule.keys))
+            keys = rule.keys(tables) if callable(rule.keys) else rule.keys
+            yield from ((key, words) for key in ([keys] if isinstance(keys, str) else keys))
 
 
 def mistakes(rules: Iterable[Rule[S]], tables: S) -> list[Mistake]:
@@ -48,4 +49,5 @@ def _value(tables: object, key: str) -> object:
     holders = (part, getattr(part, "method", None))  # an option of a plug-in stands beside the core's keys
     if name == "kind":
         return getattr(part, "kind", None) or getattr(part, "name", None)
-    return next((getattr(holder, name) for holder in holders if hasattr(holder, name)), None)
+    value = next((getattr(holder, name) for holder in holders if hasattr(holder, name)), None)
+    return None if attrs.has(type(value)) else value

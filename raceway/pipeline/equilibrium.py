@@ -111,7 +111,7 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
     bearing, warnings = model.problem.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
-        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), model.problem.free_angles[k]
+        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), model.problem.running.free_angle(k)
         if least == np.inf:
             warnings.append(f"{name} lifts off: none of its balls touches the inner race")
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:

@@ -250,7 +250,8 @@ def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> flo
     if "gyroscopic" in keys:
         bound += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
     if "ring_growth" in keys:
-        grown = model.problem.changed(kinematics=attrs.evolve(model.problem.kinematics, ring_growth=True))
+        running = model.problem.running
+        grown = attrs.evolve(running, kinematics=attrs.evolve(running.kinematics, ring_growth=True))
         more, now = growth_of(grown, model.basis.row), model.basis.growth
         radial = np.abs(more.common[1] + more.by_ball[:, 1] - now.common[1] - now.by_ball[:, 1]).max()
         bound += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
@@ -261,7 +262,7 @@ def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Eq
     """The model and its equilibrium under other ``[kinematics]``, without building its bodies again."""
     ring = compiled(model.system)
     assert ring is not None, "refused above"
-    growth, kernel = growth_of(problem, model.basis.row), ring.kernel
+    growth, kernel = growth_of(problem.running, model.basis.row), ring.kernel
     scalars, table = ring.scalars.copy(), ring.table.copy()
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
     table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.by_ball - model.basis.growth.by_ball

@@ -29,7 +29,7 @@ class ScenePlan(Shown):
 
     Attributes
     ----------
-    title : of the scene
+    problem : that it was made of
     kept, left_out : each with ``part`` and ``why``
     balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic : whether the balls have these loads
@@ -51,7 +51,7 @@ class ScenePlan(Shown):
     (0, None)
     """
 
-    title: str
+    problem: Problem = attrs.field(eq=False)
     kept: tuple[Part, ...]
     left_out: tuple[Part, ...]
     balls: str
@@ -94,7 +94,7 @@ class ScenePlan(Shown):
             ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
             ("kept", "", ", ".join(part.part for part in self.kept)),
         ]
-        return self.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
+        return self.problem.scene.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
 
 
 @door
@@ -134,7 +134,7 @@ def _plan(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
     free = (0 if problem.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return ScenePlan(
-        title=problem.scene.title,
+        problem=problem,
         kept=tuple(parts.kept),
         left_out=tuple(parts.left_out),
         balls=balls.kind,

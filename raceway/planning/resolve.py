@@ -12,7 +12,7 @@ from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import changes_speed, duration_s, ramp_turns, steady_form
 from raceway.scene.bearing import Bearing
-from raceway.scene.growth import Grooves, free_angle, grooves, ring_inertia
+from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Contact, Identifying, Integration, Kinematics, Load, Mounting, Rotor, Supports
 
@@ -82,19 +82,14 @@ class Problem:
     @cached_property
     def inertia(self) -> Inertia:
         """Of the inner rings and the rotor's share."""
-        mass, transverse, polar = ring_inertia(self.scene)
+        mass, transverse, polar = ring_inertia(self.bearing)
         rotor = self.rotor
         return Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar)
 
     @cached_property
-    def grooves(self) -> tuple[Grooves, ...]:
-        """Growth of the grooves of the running, warm rows."""
-        return tuple(grooves(self.scene, row) for row in range(len(self.bearing.rows)))
-
-    @cached_property
-    def free_angles(self) -> tuple[float, ...]:
-        """Free contact angles of the running, warm rows [rad]."""
-        return tuple(free_angle(b, grown) for b, grown in zip(self.bearing.of_rows, self.grooves, strict=True))
+    def running(self) -> RunningBearing:
+        """The bearing on its seats, warm, at its speed."""
+        return RunningBearing(self.bearing, self.mounting, self.kinematics, self.spin_speed)
 
     @cached_property
     def axial_approach(self) -> tuple[float, float]:

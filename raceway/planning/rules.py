@@ -11,9 +11,9 @@ import attrs
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.duties import has_phase, renews, speed_rpm
-from raceway.framework.rules import Rule, mistakes
+from raceway.framework.rules import Rule, mistakes, speaking
 from raceway.planning.resolve import Problem, recorded_per_turn
-from raceway.scene.growth import growth_faults, loose_rings
+from raceway.scene.growth import GROWTH, LOOSE
 
 
 def _slow_key(p: Problem) -> str:
@@ -108,6 +108,12 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     Rule("kinematics.ring_growth", lambda p: p.kinematics.ring_growth and p.bearing.bore is None, "needs the bearing's `bore`"),
     Rule(
+        "mounting.shaft_material.density",
+        lambda p: p.kinematics.ring_growth and p.mounting.shaft_material
+        and not p.scene.says("mounting.shaft_material.density"),
+        "is required by kinematics.ring_growth: the shaft grows with the speed, too",
+    ),
+    Rule(
         "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.kinematics.ball_inertia,
         "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true",
     ),
@@ -125,6 +131,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
         "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm",
     ),
 )  # fmt: skip
+
 
 _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
@@ -205,12 +212,13 @@ _MOTION: tuple[Rule[Problem], ...] = (
 
 def refuse_what_cannot_run(problem: Problem) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
+    try:
+        growth = mistakes(GROWTH, problem.running)
+    except SceneError as error:  # a body that lacks its thermal expansion
+        growth = error.mistakes
     faults = [
-        *problem.scene.body_kind.faults(),
-        *mistakes(_CONTACTS, problem),
-        *growth_faults(problem.scene),
-        *mistakes(_MOTION, problem),
-    ]
+        *problem.scene.body_kind.faults(), *mistakes(_CONTACTS, problem), *growth, *mistakes(_MOTION, problem),
+    ]  # fmt: skip
     if faults:
         raise SceneError(faults)
 
@@ -265,7 +273,7 @@ _TABLES = ("bearing", "rotor", "contact", "kinematics", "mesh", "supports", "mou
 
 def implausible(problem: Problem) -> tuple[str, ...]:
     """A sentence for each value that is likely to be in another unit, and for each ring that is loose."""
-    warnings = loose_rings(problem.scene)
+    warnings = [words for _, words in speaking(LOOSE, problem.running)]
     for table in _TABLES:
         for path, unit, value in _numbers(getattr(problem, table), table):
             most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))

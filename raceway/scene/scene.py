@@ -151,8 +151,12 @@ class Scene(Shown):
 
     def says(self, key: str) -> bool:
         """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
-        table, _, name = key.partition(".")
-        return name in self.source.get(table, {})
+        part: object = self.source
+        for name in key.split("."):
+            if not isinstance(part, dict) or name not in part:
+                return False
+            part = part[name]
+        return True
 
     @property
     def time_constant(self) -> float:

@@ -9,8 +9,13 @@ from scipy.integrate import solve_bvp
 
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import REST_RADIAL
-from raceway.scene.growth import radial_growth, shoulder_height
+from raceway.planning.resolve import resolve
+from raceway.scene.growth import groove_depth
 from validation.reference.rotating_ring import growth_by_elements
+
+
+def radial_growth(scene):
+    return resolve(scene).running.radial_growth(scene.bearing)
 
 
 @pytest.mark.parametrize("change", [{}, {"bore": 33e-3}, {"width": 14e-3}], ids=["B7206C", "thin wall", "narrow"])
@@ -27,7 +32,7 @@ def test_growth_of_a_turning_disc(tables):
     b, w = scene.bearing, scene.spin_speed
     young, nu, rho = b.rings.young, b.rings.poisson, b.rings.density
     inner = b.bore / 2.0
-    outer = (b.pitch_diameter - b.ball_diameter) / 2.0 + shoulder_height(scene)
+    outer = (b.pitch_diameter - b.ball_diameter) / 2.0 + groove_depth(b)
     scale = rho * w**2 * outer**3 / young
 
     def slope(s, y):

@@ -190,7 +190,7 @@ def test_what_spins_stiffens_forward_whirl_and_softens_backward_whirl(whirl, pol
     # A hollow cylinder of the bore and a land at 0.2 D, without its groove: 0.5 m (r_i^2 + r_a^2), 10 % more than the ring.
     bore, land = 15e-3, 0.5 * (46e-3 - 9.525e-3) + 0.2 * 9.525e-3
     cylinder = 0.5 * 7810.0 * np.pi * 16e-3 * (land**4 - bore**4)
-    ring = ring_inertia(result.model.scene)[2]
+    ring = ring_inertia(result.model.scene.bearing)[2]
     assert 0.8 * cylinder < ring < cylinder
     expected = linear(result.equilibrium.stiffness, result.model, polar + ring, 1.0 if whirl == "forward" else -1.0)
     # 0.1 N of 400 N: what is not linear in the force is of second order, 1e-6, and amplified by the moments' cancelling.

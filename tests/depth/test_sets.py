@@ -107,7 +107,7 @@ def test_rows_that_were_ground_for_preloads_of_their_own():
 
 def test_inner_rings_of_a_set_tilt_about_its_middle():
     """Huygens and Steiner: each ring's own moment of inertia, and its mass on the arm of its place."""
-    (mass, tilt, polar), two = (ring_inertia(scene(word, None)) for word in ("single", "DB"))
+    (mass, tilt, polar), two = (ring_inertia(scene(word, None).bearing) for word in ("single", "DB"))
     assert two == pytest.approx((2.0 * mass, 2.0 * (tilt + mass * (0.5 * DISTANCE) ** 2), 2.0 * polar), rel=1e-12)
 
 

@@ -49,7 +49,7 @@ def linear(result, spin_rpm, whirl_rpm):
     free = 3 if model.scene.supports.tilt == "locked" else 5
     rates = np.zeros((5, 5))
     rates[:3, :3] = model.scene.rotor.damping * np.eye(3)
-    rates[3, 4] = (model.scene.rotor.polar_inertia + ring_inertia(model.scene)[2]) * spin_rpm * np.pi / 30.0
+    rates[3, 4] = (model.scene.rotor.polar_inertia + ring_inertia(model.scene.bearing)[2]) * spin_rpm * np.pi / 30.0
     rates[4, 3] = -rates[3, 4]
     dynamic = result.equilibrium.stiffness - w**2 * model.system.mass + 1j * w * rates
     force = np.array([0.0, 1.0, -1j, 0.0, 0.0])[:free]

@@ -9,7 +9,8 @@ import pytest
 
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.scene.growth import ball_growth, grooves, inner_fit, outer_fit, running_interference, warm_interference
+from raceway.planning.resolve import resolve
+from raceway.scene.growth import ball_growth
 from raceway.scene.unused import unused
 from raceway.testing import run, solve_equilibrium
 from validation.fits import ALUMINIUM, fits_by_hand
@@ -63,7 +64,7 @@ def test_rows_grow_apart_by_the_planes_of_their_groove_centres():
     (side, place), b = one.bearing.rows[0], one.bearing
     between = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter * np.sin(b.contact_angle)
     inner, outer = (1.0 + STEEL * 30.0) * place, place - side * between
-    assert grooves(one).axial == pytest.approx(side * (inner - outer) - between, rel=1e-9)
+    assert resolve(one).running.grooves[0].axial == pytest.approx(side * (inner - outer) - between, rel=1e-9)
 
 
 def test_one_temperature_changes_next_to_nothing():
@@ -106,15 +107,15 @@ def test_a_held_displacement_and_condensed_bodies_warm_up_alike():
 def test_fits_against_two_annuli(hole, seats):
     """Of one material or two, cold or warm: only the tight part of a warm fit presses."""
     one = scene("single", None, shaft_interference=10e-6, shaft_bore=hole, housing_interference=26e-6, **seats)
-    b = one.bearing
+    running, b = resolve(one).running, one.bearing
     # 1e-9: by hand a solid shaft has a hole of 1 nm, and a housing ends at 1 km.
-    assert (inner_fit(one, b), outer_fit(one, b)) == pytest.approx(fits_by_hand(one), rel=1e-9)
+    assert (running.inner_fit(b), running.outer_fit(b)) == pytest.approx(fits_by_hand(one), rel=1e-9)
 
 
 def test_a_warm_housing_of_aluminium_lets_the_ring_go_and_a_cold_one_grips_it():
     def fits(**mounting):
-        one = scene("single", None, housing_material="AlMgSi", **mounting)
-        return outer_fit(one, one.bearing), warm_interference(one, one.bearing, "housing")
+        one = resolve(scene("single", None, housing_material="AlMgSi", **mounting)).running
+        return one.outer_fit(one.bearing), one.interference_at_standstill(one.bearing, "housing")
 
     # 62 mm, 20 K, 10.5e-6 1/K: 13 um, more than the fit has.
     assert fits(housing_interference=10e-6, outer_temperature=20.0) == (0.0, pytest.approx(10e-6 - 62e-3 * 20.0 * 10.5e-6))
@@ -136,7 +137,7 @@ def test_a_shaft_of_another_material_loosens_otherwise_at_speed():
     def lost(**material):
         mounting = {"shaft_interference": 50e-6, **({"shaft_material": material} if material else {})}
         one = scene("single", None, kinematics={"ring_growth": True, "spin_speed_rpm": 20000.0}, **mounting)
-        return 50e-6 - running_interference(one, one.bearing)
+        return 50e-6 - resolve(one).running.interference(one.bearing)
 
     steel, light = lost(), lost(young=212e9, density=1e-6)
     a, w = 15e-3, 20000.0 * np.pi / 30.0
@@ -185,7 +186,7 @@ def test_cold_bodies_of_any_modulus_need_no_expansion():
 def test_a_fit_is_a_radial_expansion():
     """Inner raceways out, outer ones in: a set cannot tell them apart."""
     one = scene(shaft_interference=4e-6, housing_interference=2e-6)
-    growth = inner_fit(one, one.bearing) - outer_fit(one, one.bearing)
+    growth = resolve(one).running.inner_fit(one.bearing) - resolve(one).running.outer_fit(one.bearing)
     assert growth > 2e-6
     (_, fitted), (_, given) = settled(one), settled(scene(kinematics={"radial_expansion": growth}))
     np.testing.assert_allclose(fitted.stiffness, given.stiffness, rtol=1e-10)
@@ -212,7 +213,7 @@ def test_speed_loosens_a_fit():
         return float(np.linalg.solve(matrix, right)[at])
 
     lost = 2.0 * (bore_growth(0.5 * b.bore, outside, 0) - bore_growth(1e-5, 0.5 * b.bore, -1))
-    assert running_interference(one, b) == pytest.approx(20e-6 - lost, rel=1e-3)
+    assert resolve(one).running.interference(b) == pytest.approx(20e-6 - lost, rel=1e-3)
 
 
 @pytest.mark.parametrize("fit", [20e-6, 2e-6, 0.3e-6])

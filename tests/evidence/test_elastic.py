@@ -291,7 +291,7 @@ def test_inertia_of_the_inner_ring(claim):
     place, volume = ring.points[ring.cells].mean(axis=1), ring.cell_volumes()
     solid = scene.bearing.rings.density * float(volume @ (0.5 * (place[:, 1] ** 2 + place[:, 2] ** 2) + place[:, 0] ** 2))
     quantity, source = "transverse inertia of the inner ring: relative error", "0.5 mm hexahedra: chords, cells as points"
-    claim(quantity, abs(ring_inertia(scene)[1] / solid - 1.0), at_most=0.005, **OWN, source=source)
+    claim(quantity, abs(ring_inertia(scene.bearing)[1] / solid - 1.0), at_most=0.005, **OWN, source=source)
 
 
 def test_kernels(claim):

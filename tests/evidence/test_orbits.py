@@ -128,7 +128,7 @@ def farthest(floquet, wanted) -> float:
 def monodromy(tables, result):
     model = model_of(tables)
     system, w, damping = model.system, 12000.0 * np.pi / 30.0, tables["contact"]["damping"]
-    _, _, polar = ring_inertia(model.scene)
+    _, _, polar = ring_inertia(model.scene.bearing)
     ring = Ring(9.525e-3, 46e-3, 12, np.radians(15.0), 0.522, 0.522, damping=damping, spin=polar * w)
     force = (swinging if tables["excitation"]["kind"] == "unidirectional" else turning)(rig_force(12000.0), w)
     record = result.simulation.record

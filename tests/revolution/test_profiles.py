@@ -101,8 +101,8 @@ def test_a_polygon_gives_the_ring_to_all_meshers():
         refuse_bad_cells(meshes[word], word)
         # Chamfers' corners on the seat are met by lines of the mesh, the groove by chords.
         assert meshes[word].volume() == pytest.approx(ring_shape(given.bearing, inner).volume, rel=4e-3)
-    plain = ring_inertia(scene())
-    mass, inertia, _ = ring_inertia(given)
+    plain = ring_inertia(scene().bearing)
+    mass, inertia, _ = ring_inertia(given.bearing)
     assert mass == pytest.approx(7810.0 * ring_shape(given.bearing, True).volume, rel=1e-12)
     assert 0.9 * plain[1] < inertia < plain[1]  # chamfers only
 
@@ -142,7 +142,7 @@ def test_polygons_that_are_no_ring_are_refused_with_the_key(polygon, word):
 
 def test_the_inner_rings_inertia_is_that_of_its_exact_section():
     """The hollow cylinder less its groove, without a mesh: the same integrals as of the shape that is meshed."""
-    found, shape = ring_inertia(scene()), ring_shape(scene().bearing, True)
+    found, shape = ring_inertia(scene().bearing), ring_shape(scene().bearing, True)
     assert found == pytest.approx([7810.0 * moment for moment in shape.moments], rel=1e-9)
     # A mesh of hexahedra agrees to its chords and to the cells' own inertia.
     mesh = Structured(element_size=0.5e-3, nodes_per_semi_axis=2).mesh(scene().bearing)["inner_ring"]

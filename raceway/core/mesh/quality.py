@@ -139,9 +139,9 @@ def _cosine(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 #: Bytes a cell that a mesh keeps: points, cells, sets (92 to 104 measured, more where sets are many).
-BYTES_KEPT = 110
+_BYTES_KEPT = 110
 #: Bytes a cell beside them while a structured mesh is made and judged (80 to 103 measured, 1.1 and 0.5 million cells).
-BYTES_BESIDE = 120
+_BYTES_BESIDE = 120
 #: Above this a mesh is refused [bytes].
 MEMORY_LIMIT = 4 * 2**30
 
@@ -163,7 +163,7 @@ class Prediction:
     def of(cls, bodies: Mapping[str, float], beside_bytes: float | None = None) -> Prediction:
         """The prediction for bodies of so many cells; by default with what a structured mesh needs beside."""
         if beside_bytes is None:
-            beside_bytes = BYTES_BESIDE * sum(bodies.values())
+            beside_bytes = _BYTES_BESIDE * sum(bodies.values())
         return cls({name: int(cells) for name, cells in bodies.items()}, int(beside_bytes))
 
     @property
@@ -179,7 +179,7 @@ class Prediction:
 
 def body_bytes(cells: int) -> int:
     """Bytes that a mesh of so many cells keeps."""
-    return BYTES_KEPT * cells
+    return _BYTES_KEPT * cells
 
 
 def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: str) -> None:
@@ -214,7 +214,7 @@ def refuse_coarse(size: float, wall: float, where: str) -> None:
 
 
 #: Sets of facets that meshers name after contacts.
-PATCHES = ("inner_patch", "outer_patch", "band")
+_PATCHES = ("inner_patch", "outer_patch", "band")
 
 
 def summary(meshes: Mapping[str, HexMesh]) -> Tables:
@@ -269,7 +269,7 @@ def _body(mesh: HexMesh) -> Tables:
         length = _edges(mesh, mesh.cells[first : first + BLOCK])
         least, largest, total = min(least, length.min()), max(largest, length.max()), total + length.sum()
     sizes = {"min": float(least), "mean": float(total / (12 * len(mesh.cells))), "max": float(largest)}
-    patches = [_patch(mesh, name) for name in PATCHES if len(mesh.facet_sets.get(name, ()))]
+    patches = [_patch(mesh, name) for name in _PATCHES if len(mesh.facet_sets.get(name, ()))]
     return {
         "elements": len(mesh.cells),
         "nodes": len(mesh.points),
