@@ -31,13 +31,22 @@ _LENGTHS = {
 
 
 @door
-def _catalogue(pattern: str = "*") -> tuple[Preset, ...]:
+def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
     """Bearings of the catalogue, which ``preset`` of a scene's [bearing] takes by name.
 
+    Parameters
+    ----------
     pattern : as in a shell (``"70*C"``), or a part of the name; in any case
-    Returns tuple of Preset
+
+    Returns
+    -------
+    tuple of Preset
         Each with ``name``, ``title``, ``table`` (the [bearing] table), ``facts`` (value, source, scatter) and ``stiffness_error``
-    SceneError: none has such a name; the nearest five.
+
+    Raises
+    ------
+    SceneError
+        None has such a name; the nearest five.
 
     Examples
     --------
@@ -82,7 +91,7 @@ def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bo
     """
     if materials:
         return _materials()
-    presets = _catalogue(pattern)
+    presets = catalogue(pattern)
     if picture is not None and Path(picture).suffix.lower() != ".png":
         raise SceneError.at("picture", str(picture), "the file must end in .png")
     if len(presets) == 1:
