@@ -16,7 +16,8 @@ from typing import Any
 
 from benchmarks.children import in_child
 from raceway.errors import RacewayError
-from raceway.points.store import POINTS, SCHEMA, open_store
+from raceway.points.dataset import open_store
+from raceway.points.store import POINTS, SCHEMA
 from validation import harm
 from validation.sweeps import SCENE, rows_of
 
@@ -32,7 +33,7 @@ def words(store: Path, loads: str = _LOADS[0]) -> list[str]:
 
 
 def _sql(*statements: str) -> harm.Harm:
-    """Harm by statements, in which N and M are numbers of two points and the other store is attached."""
+    """Harm by statements, in which N and M are keys of two points and the other store is attached."""
 
     def done(path: Path, other: Path, chance: random.Random) -> None:
         n, m = chance.sample(range(_POINTS), 2)
@@ -52,7 +53,7 @@ def _left_journal(path: Path, other: Path, chance: random.Random) -> None:
     )
 
 
-_BOTH = "state, reason, key, content, warnings, cost, digest"
+_BOTH = "state, reason, content, cost, digest"
 HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
     "cut": harm.cut,
     "one bit": harm.flipped,
@@ -65,14 +66,14 @@ HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
     "another program's file": harm.no_such_file,
     "another file's journal": _left_journal,
     "two rows swapped": _sql(
-        "UPDATE points SET number = -1 WHERE number = {N}",
-        "UPDATE points SET number = {N} WHERE number = {M}",
-        "UPDATE points SET number = {M} WHERE number = -1",
+        "UPDATE points SET key = -1 WHERE key = {N}",
+        "UPDATE points SET key = {N} WHERE key = {M}",
+        "UPDATE points SET key = {M} WHERE key = -1",
     ),
     "row of another store": _sql(
-        f"UPDATE points SET ({_BOTH}) = (SELECT {_BOTH} FROM foreign_store.points WHERE number = {{N}}) WHERE number = {{N}}"
+        f"UPDATE points SET ({_BOTH}) = (SELECT {_BOTH} FROM foreign_store.points WHERE key = {{N}}) WHERE key = {{N}}"
     ),
-    "digit of a value": _sql("UPDATE points SET content = replace(content, '{digit}', '9') WHERE number = {N}"),
+    "digit of a value": _sql("UPDATE points SET content = replace(content, '{digit}', '9') WHERE key = {N}"),
     "scene of another store": _sql(
         "UPDATE facts SET value = (SELECT value FROM foreign_store.facts WHERE name = 'design') WHERE name = 'design'"
     ),

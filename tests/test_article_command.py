@@ -62,7 +62,7 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
     assert content["cost"]["reused"] >= len(done)
     assert content == json.loads((tmp_path / "article.json").read_text(encoding="utf-8"))
     assert {path.name for path in tmp_path.iterdir()} == {
-        "article.json", "article-rows.jsonl", "curves.csv", "verdicts.csv", "quasi-static.csv", "static.csv", "rig.csv",
+        "article.json", "points.sqlite", ".lock", "curves.csv", "verdicts.csv", "quasi-static.csv", "static.csv", "rig.csv",
         "tilt-stiffness.csv", "friction.csv",
     }  # fmt: skip
     with (tmp_path / "curves.csv").open(encoding="utf-8") as file:

@@ -72,8 +72,7 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
     found = invoke(*words)
     assert found.exit_code == 130
     assert found.stderr.count("goes on from there") == 1
-    kept = tmp_path / "article-rows.jsonl"
-    assert len(kept.read_text(encoding="utf-8").split()) > 0
+    assert (tmp_path / "points.sqlite").is_file()
     monkeypatch.setattr(elastic, "_row_of", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0, found.output
@@ -81,7 +80,7 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
     assert content["cost"]["reused"] == 4 and content["failed"] == 0
     assert content == json.loads((tmp_path / "article-elastic.json").read_text(encoding="utf-8"))
     assert {path.name for path in tmp_path.iterdir()} == {
-        "article-elastic.json", "article-elastic.csv", "article-rows.jsonl"
+        "article-elastic.json", "article-elastic.csv", "points.sqlite", ".lock"
     }  # fmt: skip
     with (tmp_path / "article-elastic.csv").open(encoding="utf-8") as file:
         table = csv.DictReader(file)

@@ -171,10 +171,10 @@ def test_the_command_goes_on_with_what_is_kept(tmp_path):
     words = ["band", str(file), "--out", str(tmp_path), "--samples", "8", "--processes", "0"]
     first = invoke(*words)
     assert first.exit_code == 0, first.output
-    kept = (tmp_path / "band-rows.jsonl").read_text()
+    kept = (tmp_path / "points.sqlite").read_bytes()
     told = (tmp_path / "band.json").read_text()
     assert invoke(*words).exit_code == 0
-    assert (tmp_path / "band-rows.jsonl").read_text() == kept and (tmp_path / "band.json").read_text() == told
+    assert (tmp_path / "points.sqlite").read_bytes() == kept and (tmp_path / "band.json").read_text() == told
 
 
 def test_a_nominal_answer_outside_its_band_and_rough_indices_are_told():

@@ -13,7 +13,7 @@ from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
 from raceway.out.answer import Interrupted
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes, points
-from raceway.points.compare import compare_points, tables_at
+from raceway.points.compare import compare, tables_at
 from raceway.points.effects import Row, percent
 from raceway.testing import default_registry, run
 
@@ -85,7 +85,7 @@ def test_bad_axes_name_the_axis_and_the_rule(vary, word):
 def test_mistakes_in_the_scene_are_found_before_anything_runs(vary, word, monkeypatch):
     monkeypatch.setattr(study, "run", lambda *_: pytest.fail("it ran"))
     with pytest.raises(SceneError, match=word):
-        compare_points(SCENE, [vary])
+        compare(SCENE, [vary])
 
 
 def test_swapping_a_kind_leaves_out_what_the_other_does_not_know():
@@ -101,17 +101,17 @@ def test_swapping_a_kind_leaves_out_what_the_other_does_not_know():
     assert kept["excitation"]["whirl"] == "backward"
     typo = {**SCENE, "excitation": {**SCENE["excitation"], "wirl": "backward"}}
     with pytest.raises(SceneError, match="wirl"):
-        compare_points(typo, ["excitation.kind=unidirectional,bidirectional"])
+        compare(typo, ["excitation.kind=unidirectional,bidirectional"])
 
 
 def test_an_axis_that_one_kind_does_not_know_is_refused():
     with pytest.raises(SceneError, match=r"excitation\.whirl"):
-        compare_points(SCENE, ["excitation.whirl=forward,backward", "excitation.kind=unidirectional,bidirectional"])
+        compare(SCENE, ["excitation.whirl=forward,backward", "excitation.kind=unidirectional,bidirectional"])
 
 
 @pytest.fixture(scope="module")
 def small() -> Comparison:
-    return compare_points(SCENE, ["excitation.kind=unidirectional,bidirectional", "supports.tilt=locked,free"])
+    return compare(SCENE, ["excitation.kind=unidirectional,bidirectional", "supports.tilt=locked,free"])
 
 
 def test_rows_are_plain_runs_in_order_and_only_the_axes_differ(small):
@@ -159,12 +159,12 @@ def test_json_table_and_picture(small, tmp_path):
 def test_damping_is_a_column_and_is_not_told_where_it_is_not_resolved():
     """c = tau k: C grows with tau at the same K; a dry bearing has none, and a band has two ends."""
     tables = {**SCENE, "integrator": {"turns": 12, "steps_per_turn": 120}}
-    found = compare_points(tables, ["contact.time_constant=1e-5,2e-5"])
+    found = compare(tables, ["contact.time_constant=1e-5,2e-5"])
     one, two = (row.damping for row in found.rows)
     assert two / one == pytest.approx(2.0, rel=1e-3)
     assert [row["C N s/m"] for row in found.table()] == [f"{value:.4g}" for value in (one, two)]
     assert found.to_xarray().equivalent_damping.values == pytest.approx([one, two], rel=1e-12)
-    dry, band = compare_points(tables, ["contact.damping=0,band"]).rows
+    dry, band = compare(tables, ["contact.damping=0,band"]).rows
     assert dry.damping is None and dry.damping_words == "not resolved"
     assert dry.result["identification"]["equivalent_damping"] is not None
     # Both ends in proportion to the time constants, 0.25e-5 and 2.5e-5 s.
@@ -178,7 +178,7 @@ def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):
         return run(scene, registry)
 
     monkeypatch.setattr(study, "run", failing)
-    found = compare_points(SCENE, ["supports.tilt=locked,free", "excitation.speed_rpm=12000,13000"])
+    found = compare(SCENE, ["supports.tilt=locked,free", "excitation.speed_rpm=12000,13000"])
     assert found.rows[3].result == {"status": "failed", "reason": "no luck"}
     assert len(found.rows) == 4 and found.held == {"excitation.speed_rpm": 12000}
     assert [e["term"] for e in found.effects] == [("supports.tilt",)] * 2
@@ -189,7 +189,7 @@ def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):
 
 def test_a_refused_combination_is_kept_with_its_reason():
     # 16 balls of 9.525 mm do not fit the pitch circle of 46 mm, 16 balls of 8 mm do.
-    found = compare_points(SCENE, ["bearing.ball_count=12,16", "bearing.ball_diameter=9.525e-3,8e-3"])
+    found = compare(SCENE, ["bearing.ball_count=12,16", "bearing.ball_diameter=9.525e-3,8e-3"])
     assert [row.result.get("status") for row in found.rows] == [None, None, "refused", None]
     assert "do not fit" in found.rows[2].result["reason"]
     assert found.held == {"bearing.ball_diameter": 8e-3}
@@ -201,14 +201,14 @@ def test_interruption_keeps_the_finished_rows():
             raise KeyboardInterrupt
 
     with pytest.raises(Interrupted) as caught:
-        compare_points(SCENE, ["excitation.speed_rpm=12000:13000:3"], on_progress=stop)
+        compare(SCENE, ["excitation.speed_rpm=12000:13000:3"], progress=stop)
     partial = caught.value.partial
     assert len(partial.rows) == 2 and partial.table() and partial.words
 
 
 def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     static = {name: table for name, table in SCENE.items() if name != "excitation"}
-    found = compare_points(static, ["load.axial=400,800,1200", "contact.kind=hertz,penalty"])
+    found = compare(static, ["load.axial=400,800,1200", "contact.kind=hertz,penalty"])
     first, last = (row.result["equilibrium"] for row in (found.rows[0], found.rows[4]))
     by_load = next(e for e in found.effects if e["quantity"] == "kxx" and e["term"] == ("load.axial",))
     hertz = math.log(last["stiffness"][0][0] / first["stiffness"][0][0])
@@ -220,12 +220,12 @@ def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     (path,) = found.picture(tmp_path)
     assert path.read_bytes()[:4] == b"\x89PNG" and found.plot("x").get_ylabel().startswith("x")
     # Pulled off, x is negative: it has no effects, and is compared all the same.
-    pulled = compare_points({**static, "load": {"axial": 1e-3, "radial": [200.0, 0.0]}}, ["load.radial=[200, 0],[400, 0]"])
+    pulled = compare({**static, "load": {"axial": 1e-3, "radial": [200.0, 0.0]}}, ["load.radial=[200, 0],[400, 0]"])
     assert {e["quantity"] for e in pulled.effects} == {"kxx", "kyy"} and (pulled.to_xarray().x.values < 0.0).all()
 
 
 def test_one_value_has_no_effects():
-    one = compare_points(SCENE, ["load.axial=400"])
+    one = compare(SCENE, ["load.axial=400"])
     assert one.effects == [] and any("one value" in word for word in one.words)
 
 
@@ -399,18 +399,18 @@ def test_the_error_of_k_is_that_of_z_over_its_own_size():
 
 
 def test_finished_runs_are_kept_and_used_again(tmp_path, monkeypatch):
-    vary, store = ["excitation.speed_rpm=12000:13000:3"], tmp_path / "compare-rows.jsonl"
-    whole = compare_points(SCENE, vary)
+    vary, store = ["excitation.speed_rpm=12000:13000:3"], tmp_path
+    whole = compare(SCENE, vary)
 
     def stop(_what, done, _total):
         if done == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        compare_points(SCENE, vary, on_progress=stop, store=store)
+        compare(SCENE, vary, progress=stop, kept=store)
     real, ran = study.run, []
     monkeypatch.setattr(study, "run", lambda scene, registry: ran.append(1) or real(scene, registry))
-    found = compare_points(SCENE, vary, store=store)
+    found = compare(SCENE, vary, kept=store)
     assert len(ran) == 1
 
     def numbers(comparison):

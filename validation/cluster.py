@@ -15,7 +15,7 @@ from typing import Any
 
 from raceway.points import engine as work
 from raceway.points.axes import grid
-from raceway.points.store import Store
+from raceway.points.dataset import SweepStore
 from raceway.points.sweep import Sweep, prepare
 from raceway.testing import b7206c
 from validation.command_line import install
@@ -131,6 +131,6 @@ def prepared(path: Path) -> Sweep:
     return prepare(SCENE, grid([f"excitation.speed_rpm=6000:15000:{POINTS}"]), path)
 
 
-def rows(store: Store) -> list[tuple[Any, str, Any]]:
+def rows(store: SweepStore) -> list[tuple[Any, str, Any]]:
     """What a sweep is for; no costs, no names of processes."""
     return [(row["point"], row["status"], row["values"]) for row in store.rows()]

@@ -20,7 +20,7 @@ from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.plugins.processes import Serial
 from raceway.points.axes import grid, tables_at
-from raceway.points.store import open_store
+from raceway.points.dataset import open_store
 from raceway.points.sweep import fill_store as study
 from raceway.points.sweep import prepare
 from raceway.scene.changes import with_value

@@ -1,7 +1,7 @@
 """A command from a public function: arguments, options and help come from its signature and its docstring.
 
 A front takes plain values and returns an ``Answer``, which is saved, shown and drawn the same way for all.  Names of arguments have one meaning:
-``scene`` is a file that --set changes, ``kept`` the file of finished rows in the folder of --out, ``progress`` a bar, ``plugins`` files,
+``scene`` is a file that --set changes, ``kept`` the folder of --out for finished rows, ``progress`` a bar, ``plugins`` files,
 ``pictures`` the folder of what is drawn while it is computed.
 """
 
@@ -210,11 +210,11 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         writable(folder)
         pictures = pictures and has_matplotlib()
     tell_faults(registry)
-    rows = None if folder is None or "kept" not in known else folder / f"{about.name}-rows.jsonl"
-    shared = {"plugins": plugins, "kept": rows, "registry": registry, "pictures": folder if pictures else None}
+    kept = folder if "kept" in known else None
+    shared = {"plugins": plugins, "kept": kept, "registry": registry, "pictures": folder if pictures else None}
     arguments |= {name: value for name, value in shared.items() if name in known}
     stopped = None
-    with keeping(rows):
+    with keeping(kept):
         with show_progress() as progress:
             if "progress" in known:
                 arguments["progress"] = progress

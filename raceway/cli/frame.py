@@ -114,12 +114,12 @@ def show(content: Any, as_json: bool, failed: RacewayError | None, screen: Calla
 
 
 @contextmanager
-def keeping(file: Path | None) -> Iterator[None]:
+def keeping(folder: Path | None) -> Iterator[None]:
     """Say where a study goes on that is stopped meanwhile, if anything was finished."""
     try:
         yield
     except KeyboardInterrupt:
-        if file is not None and file.is_file():
+        if folder is not None and (file := folder / "points.sqlite").is_file():
             warn(f"what is finished is in {file}; the same command goes on from there", label="")
         raise
 

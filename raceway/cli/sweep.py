@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from raceway.points.axes import Design
+    from raceway.points.dataset import SweepStore
     from raceway.points.plot import Layout, Selection
-    from raceway.points.store import Store
     from raceway.storage.tables import Tables
 
 
@@ -113,7 +113,8 @@ def sweep(options: SweepOptions) -> int:
       raceway sweep examples/steady_orbit.toml --list points.csv \\
           --executor joblib --workers 4
     """
-    from raceway.points.store import exists, open_store
+    from raceway.points.dataset import open_store
+    from raceway.points.store import exists
     from raceway.points.sweep import executor_of, fill_store, prepared_sweep
 
     drawn = options.value is not None or exists(options.scene)
@@ -148,7 +149,7 @@ def sweep(options: SweepOptions) -> int:
         return _show(store, options, None)
 
 
-def _show(store: Store, options: SweepOptions, stopped: BaseException | None) -> int:
+def _show(store: SweepStore, options: SweepOptions, stopped: BaseException | None) -> int:
     """Write the data set and the picture, then the tables or JSON; then what stopped the sweep."""
     from raceway.points.dataset import TABLE, write_csv, write_netcdf
     from raceway.points.sweep import all_failed
@@ -168,7 +169,7 @@ def _show(store: Store, options: SweepOptions, stopped: BaseException | None) ->
     content = {
         "title": store.title,
         "store": str(store.path),
-        "axes": [axis.to_dict() for axis in store.axes],
+        "axes": [axis.to_dict() for axis in store.design.axes],
         "states": states,
         "rows": [_row(row) for row in store.rows()] if options.as_json else [],
     }
@@ -279,7 +280,7 @@ def sweep_screen(content: ReadTables, rows: Iterable[ReadTables], files: Sequenc
         if row["status"] == "failed" and len(reasons) < _MOST_REASONS:
             reasons.append(f"{point_words(row['point'])}: {row['reason'].splitlines()[0]}")
     states, total = content["states"], content["states"]["total"]
-    counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "running", "waiting") if states[name])
+    counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "waiting") if states[name])
     parts: list[RenderableType] = [Words(content["title"], "bold"), rows_table(shown)]
     if total > len(shown):
         parts.append(Words(f"and {total - len(shown)} more points in {content['store']}", "dim"))

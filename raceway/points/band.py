@@ -25,7 +25,7 @@ from raceway.pipeline.gradient import Gradients, definitions, described, values
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Item, local, work_through
 from raceway.points.sensitivities import Sensitivities, sensitivities
-from raceway.points.store import RowStore, row_key
+from raceway.points.store import row_key, written
 from raceway.scene.changes import with_number
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
@@ -347,7 +347,7 @@ def band(
         scene's table [tolerances]
     count : n, a power of 2: (d + 2) n samples for d tolerances;  seed : of the samples
     processes : that work at a time; 0: in this one
-    kept : file of finished samples, read and added to
+    kept : folder of finished samples, read and added to
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
     plugins : files of one-off plug-ins that the scene uses
 
@@ -382,8 +382,8 @@ def band(
     key = row_key(read, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
     chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
     items = [Item(f"{key} {k}", "samples", (read.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
-    store, files = RowStore(None if kept is None else Path(kept)), [Path(file) for file in plugins]
-    with telling(progress) as report:
+    files = [Path(file) for file in plugins]
+    with telling(progress) as report, written(kept) as store:
         chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
     rows = [row for chunk in chunk_rows for row in chunk["rows"]]
     return _summary(read.title, tuple(varied), nominal, words, rows, len(varied))
@@ -414,7 +414,7 @@ def uncertainty(
     keys : to differentiate by; none: every number of the scene
     samples : n, a power of 2: (d + 2) n samples for d tolerances; 0: derivatives alone
     seed : of the samples;  processes : that work on samples at a time; 0: in this one
-    kept : file of finished samples, read and added to
+    kept : folder of finished samples, read and added to
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
     plugins : files of one-off plug-ins that the scene uses
 

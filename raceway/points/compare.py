@@ -13,20 +13,19 @@ import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door, member
-from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.out.answer import Answer, Interrupted, Part
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K_ERROR, C, Quantity, Z, named
 from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
-from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
-from raceway.points.store import RowStore, row_key, tables_key
+from raceway.points.store import row_key, tables_key, written
 from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
@@ -221,56 +220,6 @@ def labelled(comparison: Findings) -> Dataset:
     return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": comparison.title})
 
 
-def compare_points(
-    scene_tables: ReadTables,
-    vary: Vary,
-    registry: Registry | None = None,
-    on_progress: OnProgress | None = None,
-    store: Path | None = None,
-) -> Comparison:
-    """Run a scene at every combination of the axes' values.
-
-    Parameters
-    ----------
-    scene_tables : plain tables of a TOML scene
-    vary : axes, ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values
-    on_progress : called as ``on_progress(what, done, total)`` after each run; an exception stops the study
-    store : file that finished runs are kept in and taken from
-
-    Raises
-    ------
-    SceneError
-        A mistake in an axis or in the scene; nothing has been run.
-    Interrupted
-        On Ctrl-C, with the finished rows; they are in ``store``, too.
-
-    Notes
-    -----
-    A point that is refused or that fails is kept with its reason, and the study goes on.
-    """
-    registry = registry or default_registry()
-    axes = axes_of(vary, scene_tables, registry)
-    notes: list[str] = []
-    title = refuse_mistakes(scene_tables, axes, registry)
-    row_store, places = RowStore(store), list(points(axes))
-    items = [_item(tables_at(scene_tables, point, registry, notes), registry) for point in places]
-    try:
-        work_through(_result, items, row_store, local(registry, 0), registry, on_progress=on_progress)
-    except KeyboardInterrupt as stop:
-        partial = _comparison(title, axes, places, items, row_store, notes)
-        raise Interrupted(partial if partial.rows else None) from stop
-    return _comparison(title, axes, places, items, row_store, notes)
-
-
-def _comparison(
-    title: str, axes: tuple[Axis, ...], places: list[Tables], items: list[Item], row_store: RowStore, notes: list[str]
-) -> Comparison:
-    """Of the points that are finished."""
-    finished = [(point, row_store.get(item.key)) for point, item in zip(places, items, strict=True)]
-    rows = tuple(Row(point, result) for point, result in finished if result is not None)
-    return Comparison(title, axes, rows, tuple(notes), row_store.fault)
-
-
 def _item(tables: ReadTables, registry: Registry) -> Item:
     try:
         key = row_key(scene_from_dict(tables, registry), registry, "compare")
@@ -286,8 +235,8 @@ def _result(tables: ReadTables, registry: Registry) -> Tables:
         return {"status": error.status, "reason": str(error)}
 
 
-#: Finished runs, and the answer, in the folder of the results.
-_ROWS, _CONTENT = "compare-rows.jsonl", "compare.json"
+#: The answer, in the folder of the results.
+_CONTENT = "compare.json"
 
 
 @door
@@ -307,7 +256,7 @@ def compare(
     scene : Scene, path, TOML text or dict of tables
     vary : key of the scene -> its values (list, array (n,), or the text "a,b,c" or "start:stop:count"); every combination is run
     out : folder in which finished runs are kept and reused, and compare.json is written; None: nothing is written
-    kept : file of the finished runs instead of that in ``out``
+    kept : folder of the finished runs instead of ``out``
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -322,6 +271,8 @@ def compare(
         A mistake in the scene or in a value; nothing has been run.
     RacewayError
         A folder that cannot be written.
+    Interrupted
+        On Ctrl-C, with the finished runs; they are in ``out``, too.
 
     Notes
     -----
@@ -340,14 +291,26 @@ def compare(
     >>> (1e-6 * found.to_xarray().equivalent_stiffness).round(0).values.tolist()  # K [N/um]
     [235.0, 31.0]
     """
-    registry = registry_with(plugins)
+    registry, notes = registry_with(plugins), list[str]()
     folder = None if out is None else writable(Path(out))
-    kept = folder / _ROWS if folder is not None and kept is None else kept
     tables = plain_tables(scene, registry=registry)
-    with telling(progress) as report:
-        comparison = compare_points(tables, vary, registry, report, None if kept is None else Path(kept))
-    if comparison.fault is not None:
-        warnings.warn(str(comparison.fault), stacklevel=3)
+    axes = axes_of(vary, tables, registry)
+    title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
+    items = [_item(tables_at(tables, point, registry, notes), registry) for point in places]
+
+    def comparison(results: Iterable[Tables]) -> Comparison:
+        rows = tuple(Row(point, result) for point, result in zip(places, results, strict=True) if result)
+        return Comparison(title, axes, rows, tuple(notes), store.fault)
+
+    with telling(progress) as report, written(kept or folder) as store:
+        try:
+            results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
+        except KeyboardInterrupt as stop:
+            partial = comparison(store.get(item.key).content for item in items)
+            raise Interrupted(partial if partial.rows else None) from stop
+        answer = comparison(results)
+    if answer.fault is not None:
+        warnings.warn(str(answer.fault), stacklevel=3)
     if folder is not None:
-        comparison.save(folder)
-    return comparison
+        answer.save(folder)
+    return answer

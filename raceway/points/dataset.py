@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 from warnings import warn
 
 import attrs
@@ -19,8 +19,8 @@ from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.axes import is_number
-from raceway.points.store import DAMAGED
+from raceway.points.axes import Design, is_number
+from raceway.points.store import DAMAGED, POINTS, Store, connected, told
 from raceway.points.survey import key_facts
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -29,12 +29,12 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from sqlite3 import Connection
 
     import h5netcdf
     import xarray
 
     from raceway.pipeline.result import Result
-    from raceway.points.axes import Design
 
 
 #: Coordinates of the ring, in the order of ``displacement`` and ``stiffness``.
@@ -65,19 +65,66 @@ _WORDS = np.dtype("O", metadata={"vlen": str})
 Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 
 
-class Rows(Protocol):
-    """A store as it is read."""
+class SweepStore(Store):
+    """The store of a sweep: a row for each point of its design; ``open_store`` reads one.
 
-    design: Design
-    facts: Tables
-    path: Path
+    Attributes
+    ----------
+    design : points, in the order of their numbers
+    facts : scene (all keys, at the first point), design, identity (versions and plug-ins), files, schema, created
+    """
+
+    def __init__(self, path: Path, connection: Connection) -> None:
+        super().__init__(path, connection)
+        if "design" not in self.facts:
+            raise RacewayError(f"`{path}` is no store of a sweep: it holds the rows of another command")
+        self.design = Design.from_dict(self.facts["design"])
 
     @property
-    def title(self) -> str: ...
+    def title(self) -> str:
+        return str(self.facts["scene"]["title"])
+
     @property
-    def scene(self) -> Tables: ...
-    def rows(self) -> Iterator[Tables]: ...
-    def to_xarray(self) -> xarray.Dataset: ...
+    def scene(self) -> Tables:
+        """Every key of the scene at the first point."""
+        return dict(self.facts["scene"])
+
+    def status(self) -> dict[str, int]:
+        """Number of points in each state, and ``total``."""
+        counts, total = self.counts(), self.design.size
+        return {**counts, "waiting": total - counts["done"] - counts["failed"], "total": total}
+
+    def rows(self) -> Iterator[Tables]:
+        """``{point, status, reason, values, warnings, cost}`` of every point, in the order of the design."""
+        for number in range(self.design.size):
+            row = self.get(number)
+            content = {"values": {}, "warnings": [], **row.content}
+            yield {
+                "point": self.design.point(number),
+                "status": row.state,
+                "reason": row.reason,
+                **content,
+                "cost": row.cost,
+            }
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The labelled results: a dimension for each axis of a grid, or ``point`` for a list."""
+        return dataset(self)
+
+
+def open_store(path: str | Path) -> SweepStore:
+    """The store of a sweep to read; the sweep may be writing to it.
+
+    Raises
+    ------
+    RacewayError
+        No such store there, or one of another schema.
+    """
+    folder = Path(path)
+    if not (folder / POINTS).is_file():
+        raise RacewayError(f"`{folder}` is no store of a sweep: it has no {POINTS}. `raceway sweep` makes one")
+    with told(folder):
+        return SweepStore(folder, connected(folder))
 
 
 @attrs.frozen
@@ -95,7 +142,7 @@ class _Table:
     attributes: dict[str, str | int]
 
 
-def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
+def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Dataset:
     """The data set of a store: states, and the variables that its scenes have.
 
     Raises
@@ -107,7 +154,7 @@ def dataset(store: Rows, registry: Registry | None = None) -> xarray.Dataset:
     return labelled_dataset(table.variables, table.coordinates, table.attributes)
 
 
-def _table_of(store: Rows, registry: Registry | None = None) -> _Table:
+def _table_of(store: SweepStore, registry: Registry | None = None) -> _Table:
     """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
     dims = design.keys if design.axes else ("point",)
@@ -137,7 +184,7 @@ def _table_of(store: Rows, registry: Registry | None = None) -> _Table:
     return _Table(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
-def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
+def _columns(store: SweepStore) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
     """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,); damaged rows."""
     size, damaged, columns = store.design.size, 0, dict[str, np.ndarray]()
     status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
@@ -153,7 +200,7 @@ def _columns(store: Rows) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray
     return {name: columns[name] for name in COLUMNS if name in columns}, status, warnings, damaged
 
 
-def _coordinates(store: Rows, registry: Registry) -> dict[str, Labelled]:
+def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
     design = store.design
     try:
         scene: Scene | None = scene_from_dict(store.scene, registry)
@@ -178,7 +225,7 @@ def axis_labels(values: Sequence[object]) -> np.ndarray:
     return np.array([value if isinstance(value, str) else json.dumps(value) for value in values], dtype=object)
 
 
-def write_netcdf(store: Rows) -> Path:
+def write_netcdf(store: SweepStore) -> Path:
     """``results.nc`` in the store, whole or not at all: what xarray writes of ``dataset(store)``, without it.
 
     Raises
@@ -217,7 +264,7 @@ def _put(
         variable.attrs["coordinates"] = coordinates
 
 
-def write_csv(store: Rows, path: Path) -> Path:
+def write_csv(store: SweepStore, path: Path) -> Path:
     """All points and their numbers as CSV, a line each.
 
     Raises
@@ -230,7 +277,7 @@ def write_csv(store: Rows, path: Path) -> Path:
     return path
 
 
-def _lines(store: Rows) -> Iterator[list[object]]:
+def _lines(store: SweepStore) -> Iterator[list[object]]:
     places = {name: list(product(DOF, repeat=len(quantity.dims))) for name, quantity in _ARRAYS.items()}
     heads = [f"{name}_{'_'.join(entry)}" for name in _ARRAYS for entry in places[name]]
     yield [*store.design.keys, "status", "reason", "warnings", *_NUMBERS, *heads]

@@ -26,7 +26,7 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Answer, Batch, Lost, Refused
 from raceway.framework.registry import Registry
 from raceway.out.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
-from raceway.points.store import RowStore, program_key, row_key
+from raceway.points.store import Row, Store, program_key, row_key
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
 
@@ -102,7 +102,7 @@ class Work:
     registry : in the process that the work was made in; others have one of their own
     """
 
-    function: Callable[[Any, Registry], Tables | list[Tables]]
+    function: Callable[[Any, Registry], Tables | list[Row]]
     plugins: tuple[str, ...] = ()
     required: Tables | None = None
     registry: Registry | None = None
@@ -123,7 +123,7 @@ class Work:
                 _FAULTS[mark] = str(why)
         return _FAULTS[mark]
 
-    def __call__(self, tasks: list[object]) -> list[Tables | list[Tables]] | Refused:
+    def __call__(self, tasks: list[object]) -> list[Tables | list[Row]] | Refused:
         with _ONE:
             fault = self.fault()
             if fault is not None:
@@ -166,7 +166,7 @@ class Item:
 def work_through(
     function: Callable[[Any, Registry], Tables],
     items: Sequence[Item],
-    store: RowStore,
+    store: Store,
     executor: Executor,
     registry: Registry,
     plugins: Sequence[Path] = (),
@@ -188,7 +188,8 @@ def work_through(
     RacewayError
         An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
-    rows = {index: row for index, item in enumerate(items) if (row := store.get(item.key)) is not None}
+    stored = [store.get(item.key) for item in items]
+    rows = {index: row.content for index, row in enumerate(stored) if row.state != "waiting"}
     reused = len(rows)
     work = Work(function, tuple(str(file.resolve()) for file in plugins), registry=registry)
     batches = ((index, [item.task]) for index, item in enumerate(items) if index not in rows)
@@ -199,10 +200,19 @@ def work_through(
                 rows[index] = _lost(item, answer, lost)
             else:
                 rows[index] = answer[0]
-                store.put(item.key, answer[0])
+                _put(store, Row(item.key, "done", "", answer[0], {}))
             if on_progress is not None:
                 on_progress(item.name, len(rows), len(items))
     return [rows[index] for index in range(len(items))], reused
+
+
+def _put(store: Store, row: Row) -> None:
+    """Store a row; on a disk that takes no more the study goes on without, and says so at its end."""
+    if store.fault is None:
+        try:
+            store.put([row])
+        except RacewayError as why:
+            store.fault = why
 
 
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
@@ -263,7 +273,7 @@ def quantities(result: Tables) -> dict[str, float]:
     return {name: value for name, quantity in _COMPARED.items() if (value := quantity.of(result)) is not None}
 
 
-def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: RowStore) -> tuple[Tables, bool]:
+def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: Store) -> tuple[Tables, bool]:
     """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
 
     In this process, with nothing beside it: times are what is asked for.

@@ -19,7 +19,7 @@ from raceway.framework.options import nearest
 from raceway.out.picture import COLOURS, MARKERS, dress, new_figure
 from raceway.out.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
-from raceway.points.store import open_store
+from raceway.points.dataset import open_store
 from raceway.scene.changes import parse_value
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables

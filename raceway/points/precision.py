@@ -37,7 +37,7 @@ from raceway.points.settings import (
     needs_motion,
     setting_at,
 )
-from raceway.points.store import RowStore
+from raceway.points.store import Store, written
 from raceway.scene.changes import parse_change
 from raceway.scene.inputs import SceneSource, plain_tables, tidy
 from raceway.storage.files import writable
@@ -431,7 +431,7 @@ _LIMIT_S = 30.0
 
 
 def _measured(
-    design: Design, reference: Tables, repeats: int, limit_s: float, rows: RowStore, registry: Registry, report: OnProgress
+    design: Design, reference: Tables, repeats: int, limit_s: float, store: Store, registry: Registry, report: OnProgress
 ) -> Precision:
     """Every setting run, then the reference of each physics."""
     groups: dict[str, list[Setting]] = {}
@@ -446,13 +446,13 @@ def _measured(
 
     for setting in design.settings:
         tell(_words_of(setting.values))
-        measured.append(_row(setting, repeats, registry, rows))
-    runner = Runner(registry, rows, limit_s, tell)
+        measured.append(_row(setting, repeats, registry, store))
+    runner = Runner(registry, store, limit_s, tell)
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, reference)
     references = {design.base: Reference({}, {}, "no setting could be run")} | references
     return Precision(
-        design.title, tuple(measured), references, design.base, design.left_out, design.notes, rows.fault, bool(reference)
+        design.title, tuple(measured), references, design.base, design.left_out, design.notes, store.fault, bool(reference)
     )
 
 
@@ -467,7 +467,7 @@ def _given(settings: tuple[Setting, ...], changes: Vary, registry: Registry) -> 
     return named
 
 
-def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) -> Tables:
+def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Tables:
     """One row: measured now, or taken from what an earlier study has kept."""
     head = {
         "family": setting.family,
@@ -490,10 +490,6 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: RowStore) ->
         head["expected_order"] = setting.scene.integrator.method.order
     row, reused = measured_once(setting.scene, repeats, repeats, registry, store)
     return {**head, **row, "reused": reused}
-
-
-#: Finished rows, in the folder of the results.
-_ROWS = "precision-rows.jsonl"
 
 
 @door
@@ -519,7 +515,7 @@ def precision(
     repeats : runs of each setting, of which the fastest counts
     limit_s : settings that are predicted to take longer are left out [s]
     out : folder in which finished rows are kept and reused, and precision.json and .md are written; None: nothing is written
-    kept : file of the finished rows instead of that in ``out``
+    kept : folder of the finished rows instead of ``out``
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -550,11 +546,10 @@ def precision(
     """
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))
-    kept = folder / _ROWS if folder is not None and kept is None else kept
     design = make_design(plain_tables(scene, registry=registry), vary or (), limit_s, registry)
     named = _given(design.settings, reference, registry)
-    with telling(progress) as report:
-        study = _measured(design, named, repeats, limit_s, RowStore(None if kept is None else Path(kept)), registry, report)
+    with telling(progress) as report, written(kept or folder) as store:
+        study = _measured(design, named, repeats, limit_s, store, registry, report)
     if study.fault is not None:
         warnings.warn(str(study.fault), stacklevel=3)
     if folder is not None:

@@ -26,7 +26,7 @@ from raceway.out.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.engine import measured_once
-from raceway.points.store import RowStore
+from raceway.points.store import Store
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
@@ -261,7 +261,7 @@ class Runner:
     """Runs reference settings, each once and kept like rows."""
 
     registry: Registry
-    store: RowStore
+    store: Store
     limit_s: float
     on_run: Callable[[str], None]
 

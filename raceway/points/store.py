@@ -1,7 +1,6 @@
-"""The store of a sweep: a folder with the states and values of all points, which survives whatever stops the sweep.
+"""The store of finished work: a folder with a row for each point of a sweep or case of a study, which survives whatever stops it.
 
-``points.sqlite`` is written by the one process that runs the sweep, a batch a transaction; ``results.nc`` and
-``results.csv`` are made from it.
+``points.sqlite`` is written by one process at a time, in transactions; others may read meanwhile.
 """
 
 from __future__ import annotations
@@ -9,75 +8,82 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import json
-import os
 import sqlite3
-import threading
-import time
+import sys
+import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import NamedTuple, Self
 
 import attrs
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
-from raceway.points.axes import Axis, Design
 from raceway.scene.scene import Scene
 from raceway.storage.kernel_cache import source_key
 from raceway.storage.tables import ReadTables, Tables
 
-if TYPE_CHECKING:
-    import xarray
-
-SCHEMA = 4
-STATES = ("waiting", "running", "done", "failed")
-#: A commit waits for the disk, twice: states of what is running are not worth more than a few of them a second.
-_MOMENT_S = 0.2
+SCHEMA = 5
+_STATES = ("waiting", "done", "failed")
 POINTS, _LOCK = "points.sqlite", ".lock"
-_CONTENT = "state, reason, key, content, warnings, cost"
-#: What a row that was damaged is read as: the point waits to be computed again.
+_COLUMNS = "key, state, reason, content, cost, digest"
+#: What a row that was damaged is read as: it waits to be computed again.
 DAMAGED = "its row in the store is damaged"
-_EMPTY: Tables = {
-    "status": "waiting", "reason": DAMAGED, "values": {}, "warnings": [], "key": "", "cost": {},
-}  # fmt: skip
+#: Numbers of points stay numbers, hashes of cases text.
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
-    "CREATE TABLE points (number INTEGER PRIMARY KEY, state TEXT NOT NULL, reason TEXT, key TEXT, content TEXT, "
-    "warnings TEXT, cost TEXT, digest TEXT)",
+    "CREATE TABLE points (key PRIMARY KEY NOT NULL, state TEXT NOT NULL, reason TEXT, content TEXT, cost TEXT, digest TEXT)",
     "CREATE INDEX points_by_state ON points (state)",
 )
+Key = int | str
+
+
+class Row(NamedTuple):
+    """What is stored of one point or case.
+
+    Attributes
+    ----------
+    key : number of a point, or hash of all that decides a case
+    reason : why it failed or waits
+    content, cost : plain values; empty where it waits
+    """
+
+    key: Key
+    state: str
+    reason: str
+    content: Tables
+    cost: Tables
 
 
 class Store:
-    """A sweep on disk; ``open_store`` reads one, ``written`` writes one.
+    """Rows by key on disk, or in memory; ``written`` makes it.
 
     Attributes
     ----------
     path : the folder
-    facts : scene (all keys, at the first point), design, identity (versions and plug-ins), files, options, schema, created
+    facts : what all rows depend on, schema, created
+    fault : why rows are no longer stored; a study goes on without
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path = path
+        self.fault: RacewayError | None = None
         self._connection = connection
-        self._lock = threading.RLock()
-        self._committed = -_MOMENT_S
-        with self._told():
-            records = connection.execute("SELECT name, value FROM facts").fetchall()
-        self.facts: Tables = _read_facts(path, dict(records))
+        with told(path):
+            records = dict(connection.execute("SELECT name, value FROM facts").fetchall())
+        self.facts: Tables = _read_facts(path, records)
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
             )
-        self._origin = facts_digest(dict(records))
-        if records and self.facts.pop("digest", None) != self._origin:
+        self._origin = facts_digest(records)
+        if self.facts.pop("digest", None) != self._origin:
             raise _damaged(path)
-        self.design = Design.from_dict(self.facts["design"])
 
-    def __enter__(self) -> Store:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -86,183 +92,102 @@ class Store:
     def close(self) -> None:
         self._connection.close()
 
-    @property
-    def title(self) -> str:
-        return str(self.facts["scene"]["title"])
-
-    @property
-    def scene(self) -> Tables:
-        """Every key of the scene at the first point."""
-        return dict(self.facts["scene"])
-
-    @property
-    def axes(self) -> tuple[Axis, ...]:
-        """Of a grid; empty for a list."""
-        return self.design.axes
-
-    def status(self) -> dict[str, int]:
-        """Number of points in each state, and ``total``."""
-        with self._told(), self._lock:
+    def counts(self) -> dict[str, int]:
+        """Number of rows in each state."""
+        with told(self.path):
             counts = dict(self._connection.execute("SELECT state, COUNT(*) FROM points GROUP BY state").fetchall())
-        return {**{state: counts.get(state, 0) for state in STATES}, "total": self.design.size}
+        return {state: counts.get(state, 0) for state in _STATES}
 
-    def rows(self) -> Iterator[Tables]:
-        """``{point, status, reason, values, warnings, key, cost}`` of every point, in the order of the design.
+    def get(self, key: Key) -> Row:
+        """The row of a key; one that is missing or damaged waits."""
+        with told(self.path):
+            record = self._connection.execute(f"SELECT {_COLUMNS} FROM points WHERE key = ?", (key,)).fetchone()
+        if record is None or not self._sound(*record):
+            return Row(key, "waiting", DAMAGED, {}, {})
+        _, state, reason, content, cost, _ = record
+        return Row(key, state, reason or "", json.loads(content or "{}"), json.loads(cost or "{}"))
 
-        One row a point, whatever the file says: readers put the values of the n-th row at the n-th point.
-        """
-        at = 0
-        for number, *columns, digest in self._lines():
-            if not at <= number < self.design.size:
-                continue
-            for missing in range(at, number):
-                yield self._row(missing, None)
-            yield self._row(number, columns if self._sound(number, columns[0], tuple(columns[1:]), digest) else None)
-            at = number + 1
-        for missing in range(at, self.design.size):
-            yield self._row(missing, None)
+    def keys(self, state: str) -> set[Key]:
+        """Keys of the rows in a state."""
+        with told(self.path):
+            return {key for (key,) in self._connection.execute("SELECT key FROM points WHERE state = ?", (state,))}
 
-    def _lines(self) -> Iterator[tuple[Any, ...]]:
-        query = f"SELECT number, {_CONTENT}, digest FROM points ORDER BY number"
-        with self._told(), self._lock:
-            cursor = self._connection.execute(query)
-        while True:
-            with self._told(), self._lock:
-                batch = cursor.fetchmany(256)
-            if not batch:
-                return
-            yield from batch
-
-    def _row(self, number: int, stored: list[Any] | None) -> Tables:
-        if stored is None:
-            return {**_EMPTY, "point": self.design.point(number)}
-        state, reason, key, content, warnings, cost = stored
-        return {
-            "point": self.design.point(number),
-            "status": state,
-            "reason": reason or "",
-            "values": json.loads(content) if content else {},
-            "warnings": json.loads(warnings) if warnings else [],
-            "key": key or "",
-            "cost": json.loads(cost) if cost else {},
-        }
-
-    def numbers(self, state: str) -> set[int]:
-        """Numbers of the points in a state."""
-        with self._told(), self._lock:
-            return {n for (n,) in self._connection.execute("SELECT number FROM points WHERE state = ?", (state,))}
-
-    def to_xarray(self) -> xarray.Dataset:
-        """The labelled results: a dimension for each axis of a grid, or ``point`` for a list."""
-        from raceway.points.dataset import dataset
-
-        return dataset(self)
-
-    def mark(self, numbers: Iterable[int], state: str) -> None:
-        """Put points into a state: at once, or with the next rows where the last transaction was a moment ago."""
-        with self._told(), self._lock:
-            self._connection.executemany("UPDATE points SET state = ? WHERE number = ?", [(state, n) for n in numbers])
-            if time.monotonic() - self._committed > _MOMENT_S:
-                self._commit()
-
-    def _commit(self) -> None:
-        self._connection.commit()
-        self._committed = time.monotonic()
-
-    def put(self, rows: Iterable[ReadTables]) -> None:
-        """Keep finished rows, all in one transaction.
+    def put(self, rows: Iterable[Row]) -> None:
+        """Store finished rows, all in one transaction.
 
         Raises
         ------
         RacewayError
-            A disk that takes no more; what was kept before stays readable.
+            A disk that takes no more; what was stored before stays readable.
         """
-        lines = []
-        for row in rows:
-            columns = (row["reason"], row["key"], *(_text(row[name]) for name in ("values", "warnings", "cost")))
-            lines.append((row["state"], *columns, self._digest(row["number"], row["state"], columns), row["number"]))
-        statement = "UPDATE points SET state = ?, reason = ?, key = ?, content = ?, warnings = ?, cost = ?, digest = ? WHERE number = ?"
-        with self._told(), self._lock:
-            try:
-                self._connection.executemany(statement, lines)
-                self._commit()
-            except sqlite3.Error:
-                self._connection.rollback()
-                raise
+        lines = list[tuple[object, ...]]()
+        for key, state, reason, content, cost in rows:
+            columns = (key, state, reason, _text(content), _text(cost))
+            lines.append((*columns, self._digest(*columns)))
+        self._write(f"INSERT OR REPLACE INTO points ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", lines)
 
-    def repair(self) -> set[int]:
-        """Let points wait whose rows are missing or are not what was written; their numbers.
+    def wait(self, keys: Iterable[Key]) -> None:
+        """Let these wait to be computed again."""
+        self._write("INSERT OR REPLACE INTO points (key, state) VALUES (?, 'waiting')", [(key,) for key in keys])
+
+    def _write(self, statement: str, lines: list[tuple[object, ...]]) -> None:
+        with told(self.path), self._connection:
+            self._connection.executemany(statement, lines)
+
+    def repair(self, keys: Collection[Key]) -> None:
+        """Let rows wait, with a warning, that are missing among ``keys`` or are not what was written.
 
         Raises
         ------
         RacewayError
             A file whose pages do not hang together: rows could be found by one way and not by another.
         """
-        with self._told(), self._lock:
+        with told(self.path):
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
                 raise _damaged(self.path, "its pages do not hang together")
-            records = self._connection.execute(f"SELECT number, {_CONTENT}, digest FROM points").fetchall()
             sound = {
-                number for number, state, *columns, digest in records if self._sound(number, state, tuple(columns), digest)
+                record[0]: self._sound(*record) for record in self._connection.execute(f"SELECT {_COLUMNS} FROM points")
             }
-            bad = set(range(self.design.size)) - sound
-            if bad or len(records) != self.design.size:
-                self._connection.execute("DELETE FROM points WHERE number < 0 OR number >= ?", (self.design.size,))
-                statement = "INSERT OR REPLACE INTO points (number, state) VALUES (?, 'waiting')"
-                self._connection.executemany(statement, [(number,) for number in sorted(bad)])
-                self._commit()
-        return bad
+        expected = set(keys or sound)
+        bad = {key for key in expected if not sound.get(key, False)}
+        if bad or expected != set(sound):
+            self._write("DELETE FROM points WHERE key = ?", [(key,) for key in set(sound) - expected])
+            self.wait(bad)
+            warnings.warn(f"{len(bad)} rows of the store are damaged: they are computed again", stacklevel=2)
 
-    def wait_again(self, states: Iterable[str]) -> None:
-        """Points in these states wait again: those that a killed sweep left running, or failed ones to be tried again."""
-        with self._told(), self._lock:
-            for state in states:
-                self._connection.execute("UPDATE points SET state = 'waiting', reason = NULL WHERE state = ?", (state,))
-            self._commit()
-
-    def _digest(self, number: int, state: str, columns: tuple[object, ...]) -> str:
+    def _digest(self, *columns: object) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
-        return hashlib.blake2b(repr((self._origin, number, state, *columns)).encode(), digest_size=16).hexdigest()
+        return hashlib.blake2b(repr((self._origin, *columns)).encode(), digest_size=16).hexdigest()
 
-    def _sound(self, number: int, state: object, columns: tuple[object, ...], digest: object) -> bool:
+    def _sound(self, key: object, state: object, *columns: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
-        if state in ("waiting", "running"):
-            return True
-        return state in STATES and bool(digest == self._digest(number, state, columns))
-
-    @contextmanager
-    def _told(self) -> Iterator[None]:
-        with told(self.path):
-            yield
+        return state == "waiting" or (state in _STATES and columns[-1] == self._digest(key, state, *columns[:-1]))
 
 
-def open_store(path: str | Path) -> Store:
-    """A store to read; a sweep may be writing to it.
-
-    Raises
-    ------
-    RacewayError
-        No store there, or one of another schema.
-    """
-    folder = Path(path)
-    file = folder / POINTS
-    if not file.is_file():
-        raise RacewayError(f"`{folder}` is no store of a sweep: it has no {POINTS}. `raceway sweep` makes one")
-    with told(folder):
-        return Store(
-            folder, sqlite3.connect(f"{file.resolve().as_uri()}?mode=rw", uri=True, timeout=30.0, check_same_thread=False)
-        )
+def connected(folder: Path) -> sqlite3.Connection:
+    """To the file of a store that is there."""
+    return sqlite3.connect(f"{(folder / POINTS).resolve().as_uri()}?mode=rw", uri=True, timeout=30.0)
 
 
 @contextmanager
-def written(folder: Path, facts: ReadTables | None) -> Iterator[Store]:
-    """A store to write, for one process at a time; made with ``facts`` where there is none yet.
+def written(path: str | Path | None, facts: ReadTables | None = None, keys: Collection[Key] = ()) -> Iterator[Store]:
+    """A store to write, for one process at a time; made where there is none yet.  None keeps the rows in memory.
+
+    Parameters
+    ----------
+    facts : what all rows depend on;  keys : of all rows that the store will have, where they are known
 
     Raises
     ------
     RacewayError
-        Another process is writing to it, or the disk takes nothing.
+        Another process is writing to it, it has the rows of another command, or the disk takes nothing.
     """
+    if path is None:
+        with closing(sqlite3.connect(":memory:")) as connection:
+            _make(connection, facts or {}, keys)
+            yield Store(Path(), connection)
+        return
+    folder = Path(path)
     with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
         guard = (folder / _LOCK).open("w")
@@ -271,18 +196,21 @@ def written(folder: Path, facts: ReadTables | None) -> Iterator[Store]:
             fcntl.flock(guard, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise RacewayError(
-                f"`{folder}` is being written by another sweep: wait for it, or choose another --out"
+                f"`{folder}` is being written by another process: wait for it, or choose another --out"
             ) from None
         new = not exists(folder)
         with told(folder):
-            connection = sqlite3.connect(folder / POINTS, timeout=30.0, check_same_thread=False)
+            connection = sqlite3.connect(folder / POINTS, timeout=30.0)
         try:
             with told(folder):
                 connection.execute("PRAGMA journal_mode = TRUNCATE")
                 connection.execute("PRAGMA synchronous = NORMAL")
-                if facts is not None and not _made(connection):
-                    _make(connection, facts)
+                if new:
+                    _make(connection, facts or {}, keys)
             store = Store(folder, connection)
+            if store.facts.keys() - {"schema", "created"} != (facts or {}).keys():
+                raise RacewayError(f"`{folder}` holds the rows of another command: choose another folder with --out")
+            store.repair(keys)
             yield store
         finally:
             _leave(folder, connection, new)
@@ -305,38 +233,27 @@ def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
 
 def exists(folder: Path) -> bool:
     """Whether a folder holds a store: one that was killed while it was made is none."""
-    file = folder / POINTS
-    if not file.is_file():
+    if not (folder / POINTS).is_file():
         return False
-    with told(folder):
-        connection = sqlite3.connect(f"{file.resolve().as_uri()}?mode=rw", uri=True, timeout=30.0)
-        try:
-            return _made(connection)
-        finally:
-            connection.close()
+    with told(folder), closing(connected(folder)) as connection:
+        return _made(connection)
 
 
 def _made(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT 1 FROM sqlite_master WHERE name = 'facts'").fetchone() is not None
 
 
-def _make(connection: sqlite3.Connection, facts: ReadTables) -> None:
-    """All in one transaction: a store is there with all its points, or not at all."""
-    size = Design.from_dict(facts["design"]).size
+def _make(connection: sqlite3.Connection, facts: ReadTables, keys: Iterable[Key]) -> None:
+    """All in one transaction: a store is there with all its rows, or not at all."""
     all_facts = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
     texts = {name: _text(value) for name, value in all_facts.items()}
     texts["digest"] = _text(facts_digest(texts))
-    connection.execute("BEGIN")
-    try:
+    with connection:
+        connection.execute("BEGIN")
         for table in _TABLES:
             connection.execute(table)
         connection.executemany("INSERT INTO facts VALUES (?, ?)", list(texts.items()))
-        waiting = ((number, "waiting") for number in range(size))
-        connection.executemany("INSERT INTO points (number, state) VALUES (?, ?)", waiting)
-    except BaseException:
-        connection.rollback()
-        raise
-    connection.commit()
+        connection.executemany("INSERT INTO points (key, state) VALUES (?, 'waiting')", ((key,) for key in keys))
 
 
 def facts_digest(texts: Mapping[str, str]) -> str:
@@ -368,74 +285,17 @@ def told(folder: Path) -> Iterator[None]:
     except (sqlite3.DatabaseError, UnicodeDecodeError) as why:
         if isinstance(why, sqlite3.OperationalError):
             raise RacewayError(
-                f"`{folder}` cannot be written or read: {why}. What is finished is kept: free some space, and go on with "
-                "--resume."
+                f"`{folder}` cannot be written or read: {why}. What is finished is kept: free some space, and run the "
+                "command again, a sweep with --resume."
             ) from None
-        raise RacewayError(f"`{folder / POINTS}` is not a store of a sweep ({why}): choose another folder.") from None
+        raise RacewayError(f"`{folder / POINTS}` is not a store ({why}): choose another folder.") from None
     except OSError as why:
         raise RacewayError(f"`{folder}`: {why.strerror or why}. Choose another folder with --out.") from None
 
 
-class RowStore:
-    """Rows by key; ``path`` None keeps them in memory only."""
-
-    def __init__(self, path: Path | None) -> None:
-        self.path = path
-        self.rows: dict[str, Tables] = {}
-        #: Why rows are no longer written; the study goes on without.
-        self.fault: RacewayError | None = None
-        if path is not None and os.path.isfile(path):
-            self._read(path)
-
-    def _read(self, path: Path) -> None:
-        try:
-            lines = path.read_bytes().splitlines()
-        except OSError as why:
-            raise RacewayError(
-                f"`{path}` cannot be read: {why.strerror or why}. Choose another folder with --out."
-            ) from None
-        for line in lines:
-            try:
-                entry = json.loads(line)
-                self.rows[entry["key"]] = entry["row"]
-            except (ValueError, KeyError, TypeError):
-                continue  # cut off by a full disk, or not ours: that row is run again
-
-    def get(self, key: str) -> Tables | None:
-        return self.rows.get(key)
-
-    def put(self, key: str, row: Tables) -> None:
-        """Keep a row; a disk that takes no more is remembered in ``fault``, and what it took of the row is removed."""
-        self.rows[key] = row
-        if self.path is None or self.fault is not None:
-            return
-        line = json.dumps({"key": key, "row": row}, allow_nan=False).encode() + b"\n"
-        try:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            with self.path.open("ab") as file:
-                end = file.tell()
-                try:
-                    # A line that a killed run left unfinished must not swallow this one.
-                    file.write(line if end == 0 else b"\n" + line)
-                    file.flush()
-                except OSError:
-                    file.truncate(end)
-                    raise
-        except OSError as why:
-            self.fault = RacewayError(
-                f"`{self.path}` takes no more rows: {why.strerror or why}. {len(self.rows) - 1} rows may be reused; free "
-                "some space and run the command again, or choose another folder with --out."
-            )
-
-
-def row_key(scene: Scene, registry: Registry, extra: object = None, program: str | None = None) -> str:
-    """Hash of all that decides the numbers of one scene's run; its title does not.
-
-    Parameters
-    ----------
-    program : instead of ``program_key(registry)``
-    """
-    return tables_key(scene.to_dict(), registry, extra, program, files_of(scene))
+def row_key(scene: Scene, registry: Registry, extra: object = None) -> str:
+    """Hash of all that decides the numbers of one scene's run; its title does not."""
+    return tables_key(scene.to_dict(), registry, extra, files=files_of(scene))
 
 
 def tables_key(
@@ -471,8 +331,6 @@ def _own_sources() -> str:
 @cache
 def _sources_of(name: str) -> str:
     """Hash of a plug-in's module, or of its whole package."""
-    import sys
-
     module = sys.modules.get(name)
     file = getattr(module, "__file__", None)
     if file is None:

@@ -6,7 +6,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Hashable, Iterable, Iterator, Mapping
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,9 +21,9 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.planning.cost import START_S
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Design, grid, in_units, listed_points, numbers_at, tables_at
-from raceway.points.dataset import dataset, values_of
+from raceway.points.dataset import SweepStore, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
-from raceway.points.store import Store, exists, open_store, row_key, written
+from raceway.points.store import Row, exists, written
 from raceway.points.survey import Survey, survey
 from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
@@ -44,17 +44,16 @@ class Chain:
 
     Attributes
     ----------
-    tables : of the scene;  program : hash of the sources that compute
+    tables : of the scene
 
     Notes
     -----
-    A row is ``{"number", "state": "done" | "failed", "reason", "key", "values", "warnings", "cost"}``.
+    A row's content is ``{"values", "warnings"}``.
     """
 
     tables: Tables
-    program: str
 
-    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Tables]:
+    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Row]:
         before: Result | None = None
         rows, parts = [], dict[Hashable, object]()
         for number, point in points:
@@ -64,35 +63,24 @@ class Chain:
 
     def _row(
         self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, object]
-    ) -> tuple[Tables, Result | None]:
+    ) -> tuple[Row, Result | None]:
         from raceway.pipeline.run import run
 
         wall, cpu = time.perf_counter(), time.process_time()
-        row = _unfinished_row(number, "")
+        state, reason, content, cost = "failed", "", Tables(), Tables()
         result = None
         try:
             scene = scene_from_dict(tables_at(self.tables, point, registry), registry, parts)
-            row["key"] = row_key(scene, registry, None, self.program)
             result = run(scene, registry, near=before)
-            row["values"] = values_of(result)
-            row["warnings"] = list(result.warnings)
-            row["state"] = "done"
-            row["cost"] = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
+            content = {"values": values_of(result), "warnings": list(result.warnings)}
+            cost = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
+            state = "done"
         except RacewayError as error:
-            row["reason"] = str(error)
+            reason = str(error)
         except Exception as error:  # a fault of the program or of a plug-in costs its point, not the sweep
-            row["reason"] = f"unexpected {type(error).__name__}: {error or 'no message'}"
-        row["cost"] |= {
-            "wall_s": time.perf_counter() - wall,
-            "cpu_s": time.process_time() - cpu,
-            "worker": worker(),
-        }
-        return row, result
-
-
-def _unfinished_row(number: int, reason: str) -> Tables:
-    """A row of a point that failed, or that has nothing yet."""
-    return {"number": number, "state": "failed", "reason": reason, "key": "", "values": {}, "warnings": [], "cost": {}}
+            reason = f"unexpected {type(error).__name__}: {error or 'no message'}"
+        cost |= {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu, "worker": worker()}
+        return Row(number, state, reason, content, cost), result
 
 
 #: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
@@ -173,7 +161,7 @@ def _chain_length(surveyed: Survey, design: Design) -> int:
 
 def fill_store(
     prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None
-) -> Store:
+) -> SweepStore:
     """Compute what is not finished; the store, open to be read.
 
     Parameters
@@ -190,41 +178,34 @@ def fill_store(
     """
     design = prepared.design
     required = prepared.facts["identity"]
-    work = Work(Chain(prepared.tables, required["program"]), prepared.plugins, required)
-    with written(prepared.store, prepared.facts) as store:
-        store.wait_again(["running", *(["failed"] if retry_failed else [])])
-        lost = store.repair()
-        if lost:
-            warnings.warn(f"{len(lost)} rows of the store are damaged: their points are computed again", stacklevel=2)
-        waiting = store.numbers("waiting")
+    work = Work(Chain(prepared.tables), prepared.plugins, required)
+    with written(prepared.store, prepared.facts, range(design.size)) as store:
+        if retry_failed:
+            store.wait(store.keys("failed"))
+        waiting = store.keys("waiting")
         finished, total = design.size - len(waiting), design.size
         chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
 
         def batches() -> Iterator[Batch]:
             for number, chain in enumerate(chains):
-                remaining = [n for n in chain if n in waiting]
-                store.mark(remaining, "running")
+                last = max(n for n in chain if n in waiting)
                 # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
-                yield number, [[(n, design.point(n)) for n in chain[: chain.index(remaining[-1]) + 1]]]
+                yield number, [[(n, design.point(n)) for n in chain[: chain.index(last) + 1]]]
 
-        try:
-            with closing(answers(executor, work, batches())) as results:
-                for number, answer in results:
-                    if isinstance(answer, Lost):
-                        rows = [_unfinished_row(n, answer.reason) for n in chains[number] if n in waiting]
-                    else:
-                        rows = [row for row in answer[0] if row["number"] in waiting]
-                    store.put(rows)
-                    finished += len(rows)
-                    if on_progress is not None:
-                        on_progress("points", finished, total)
-        finally:
-            with suppress(RacewayError):  # a full disk was reported already; the next sweep does it
-                store.wait_again(["running"])
+        with closing(answers(executor, work, batches())) as results:
+            for number, answer in results:
+                if isinstance(answer, Lost):
+                    rows = [Row(n, "failed", answer.reason, {}, {}) for n in chains[number] if n in waiting]
+                else:
+                    rows = [row for row in answer[0] if row.key in waiting]
+                store.put(rows)
+                finished += len(rows)
+                if on_progress is not None:
+                    on_progress("points", finished, total)
     return open_store(prepared.store)
 
 
-def _refuse_other(stored: Store, facts: ReadTables, store: Path) -> None:
+def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
     reasons = _changed(stored.scene, facts["scene"]) or _changed(stored.facts.get("tables", {}), facts.get("tables", {}))
     difference = "another scene"
@@ -398,7 +379,7 @@ def executor_of(name: str | Executor, options_given: ReadTables, registry: Regis
         raise PluginError(f"executor '{name}': {why}") from None
 
 
-def all_failed(store: Store) -> ConvergenceError | None:
+def all_failed(store: SweepStore) -> ConvergenceError | None:
     """A sweep without any result is none: the error, with the first point's reason."""
     states = store.status()
     if states["failed"] < states["total"]:

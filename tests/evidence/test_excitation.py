@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import sweep
-from raceway.points.compare import compare_points
+from raceway.points.compare import compare
 from raceway.scene.inputs import read_toml
 from raceway.studies.article.study import TRENDS
 
@@ -32,7 +32,7 @@ FACTORS = ["excitation.kind=unidirectional,bidirectional", "excitation.amplitude
     ],
 )
 def test_comparison(claim, words, scene, vary):
-    study = compare_points(read_toml(ROOT / "examples" / f"{scene}.toml"), vary)
+    study = compare(read_toml(ROOT / "examples" / f"{scene}.toml"), vary)
     content = study.to_dict()
     rows = content["rows"]
     failed = sum("identification" not in row["result"] for row in rows)

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from raceway.framework.registry import registry_with
-from raceway.points.store import RowStore
+from raceway.points.store import written
 from raceway.studies.stability.catalogue import catalogue
 from raceway.studies.stability.study import PROCESSES, measured, stability
 
 pytestmark = pytest.mark.night
 #: Finished cases are kept here and beside it, as the command keeps them.
-KEPT = Path("raceway-out") / "stability" / "stability-rows.jsonl"
+KEPT = Path("raceway-out") / "stability"
 FOREIGN = [Path(__file__).parents[1] / f"{name}.py" for name in ("cubic_law", "hunt_crossley")]
 #: Rows that are not as expected.
 KNOWN = {
@@ -123,7 +123,8 @@ def _energy(claim, rows):
 def test_a_third_partys_law(claim, law):
     registry = registry_with(FOREIGN)
     cases = [one for one in catalogue(registry) if one.setting.get("law") == law]
-    rows, _ = measured(cases, PROCESSES, registry, FOREIGN, RowStore(KEPT.with_name(f"{law}-rows.jsonl")))
+    with written(KEPT) as store:
+        rows, _ = measured(cases, PROCESSES, registry, store, FOREIGN)
     failed = [row for row in rows if row.verdict == "failed"]
     assert not failed, failed[:5]
     quantity = f"tests/{law}.py, {len(cases)} cases: rows that are not as expected"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, RacewayError, load_scene
+from raceway.points.store import written
 from raceway.scene.tables import Signals
 from raceway.studies.fit.identify import identify_recording
 from raceway.studies.fit.signals import recording_of, signals_of, write_recording
@@ -260,8 +261,8 @@ def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_pa
     monkeypatch.setattr(module, "run", counted)
     assert json.loads(invoke(*words).stdout) == whole
     assert moving == [False]  # the equilibrium under the load
-    lines = (tmp_path / "rig-rows.jsonl").read_text(encoding="utf-8").splitlines()
-    (tmp_path / "rig-rows.jsonl").write_text(lines[0] + "\n", encoding="utf-8")
+    with written(tmp_path) as store:
+        store.wait([max(store.keys("done"))])
     assert json.loads(invoke(*words).stdout) == whole
     assert sum(moving) > 20
 

@@ -28,7 +28,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import tables_at
 from raceway.points.engine import Clocks, Item, local, work_through
-from raceway.points.store import RowStore, row_key
+from raceway.points.store import row_key, written
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -486,13 +486,13 @@ class ElasticArticle(Answer):
 def elastic_article(
     design: _Design,
     folder: Path | None,
-    store: Path | None,
+    kept: Path | None,
     registry: Registry,
     plugins: Sequence[Path],
     on_progress: OnProgress,
     command: str,
 ) -> ElasticArticle:
-    """Compute every run but those that ``store`` holds, one after the other; what this machine refused is tried again.
+    """Compute every run but those in the folder ``kept``, one after the other; what this machine refused is tried again.
 
     Parameters
     ----------
@@ -502,25 +502,25 @@ def elastic_article(
     begun, cpu = time.monotonic(), time.process_time()
     runs = design.runs()
     scenes = [design.scene(run, registry) for run in runs]
-    finished = RowStore(store)
-    finished.rows = {key: row for key, row in finished.rows.items() if row.get("status") != "refused"}
     items = [Item(row_key(scene, registry, "article elastic"), run.name, k) for k, (run, scene) in enumerate(zip(runs, scenes, strict=True))]  # fmt: skip
-    waiting = [k for k, item in enumerate(items) if finished.get(item.key) is None]
-    seconds = _predicted([scenes[k] for k in waiting], registry)
-    kinds = {k: (runs[k].bodies, runs[k].phase) for k in waiting}
-    progress = RemainingTime(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
     # The run at rest with elastic bodies under the heaviest load: its most loaded contact is drawn.
     drawn = max(
         (k for k, run in enumerate(runs) if run.excitation is None and run.bodies == "elastic"), key=lambda k: runs[k].axial
     )
+    with written(kept) as store:
+        store.wait([item.key for item in items if store.get(item.key).content.get("status") == "refused"])
+        waiting = [k for k, item in enumerate(items) if store.get(item.key).state == "waiting"]
+        seconds = _predicted([scenes[k] for k in waiting], registry)
+        kinds = {k: (runs[k].bodies, runs[k].phase) for k in waiting}
+        progress = RemainingTime(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
 
-    def compute(k: int, registry: Registry) -> Tables:
-        progress.begin(k, f"{runs[k].bodies} {'at rest' if runs[k].excitation is None else 'in motion'}", runs[k].case)
-        return _row_of(scenes[k], registry, progress, folder if k == drawn else None)
+        def compute(k: int, registry: Registry) -> Tables:
+            progress.begin(k, f"{runs[k].bodies} {'at rest' if runs[k].excitation is None else 'in motion'}", runs[k].case)
+            return _row_of(scenes[k], registry, progress, folder if k == drawn else None)
 
-    rows, reused = work_through(compute, items, finished, local(registry, 0), registry, plugins)
+        rows, reused = work_through(compute, items, store, local(registry, 0), registry, plugins)
     spent = time.monotonic() - begun, time.process_time() - cpu
-    return ElasticArticle(scenes[0].title, design, rows, *spent, reused, finished.fault, command)
+    return ElasticArticle(scenes[0].title, design, rows, *spent, reused, store.fault, command)
 
 
 def _predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:

@@ -41,7 +41,7 @@ def article(
 
     SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
     friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
-    article.json and CSV tables. Finished curves are stored in DIR/article-rows.jsonl and reused.
+    article.json and CSV tables. Finished curves are stored in DIR/points.sqlite and reused.
 
     With --bodies elastic every node of rings and balls moves, on the article's mesh without SCENE: four load cases at rest and one
     operating point under both excitations, beside condensed and rigid bodies. It takes gigabytes, and writes article-elastic.html.
@@ -57,7 +57,7 @@ def article(
     friction : Coulomb coefficient of the runs with friction, 0: none; None: the scene's, or 0.03
     turns : of a motion of elastic bodies, 40 steps each; None: 2
     processes : that work at a time; 0: in this one; None: 2
-    kept : file that finished curves are stored in and taken from
+    kept : folder that finished curves are stored in and taken from
     pictures : folder for sections of elastic bodies, which are drawn while their arrays are there; None: none are
     progress : called as ``progress(what, done, total)``; an exception stops the study
     plugins : files of one-off plug-ins, which each process loads

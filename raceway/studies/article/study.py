@@ -27,7 +27,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
 from raceway.points.engine import Item, local, processor_time, without_mesh, work_through
-from raceway.points.store import RowStore, program_key, tables_key
+from raceway.points.store import program_key, tables_key, written
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import without_nan
@@ -467,13 +467,13 @@ class Article(Answer):
 def solve_curves(
     design: Design,
     processes: int,
-    store: Path | None,
+    kept: Path | None,
     registry: Registry,
     plugins: Sequence[Path],
     on_progress: OnProgress,
     command: str,
 ) -> Article:
-    """Compute everything but what ``store`` holds, where finished curves go; with all mistakes of the scenes refused first.
+    """Compute everything but the finished curves in the folder ``kept``; with all mistakes of the scenes refused first.
 
     Parameters
     ----------
@@ -484,12 +484,12 @@ def solve_curves(
     begun, cpu, own_cpu = time.monotonic(), processor_time(), time.process_time()
     for setting in design.settings():  # mistakes are refused before anything is run
         title = scene_from_dict(design.point(setting, design.loads[0], design.speeds[0], registry), registry).title
-    rows, program = RowStore(store), program_key(registry)
-    items = []
+    items, program = list[Item](), program_key(registry)
     for name, function, inputs in (tasks := _tasks(design, registry)):
         key = tables_key({"function": function.__qualname__, "inputs": inputs}, registry, program=program)
         items.append(Item(key, name, (name, function, inputs)))
-    finished, reused = work_through(_rows, items, rows, local(registry, processes), registry, plugins, on_progress)
+    with written(kept) as store:
+        finished, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
     static = next(results)
     compared = [_trend(case, next(results)) for case in TRENDS]
@@ -498,4 +498,4 @@ def solve_curves(
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
     spent = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu
     numbers = title, curves, tuple(rig), tuple(static), tuple(compared), scan
-    return Article(*numbers, *spent, len(tasks), reused, rows.fault, command)
+    return Article(*numbers, *spent, len(tasks), reused, store.fault, command)

@@ -18,7 +18,7 @@ from raceway.out.quantities import K_ERROR, C, K
 from raceway.out.table import rows_table
 from raceway.out.wrapping import Words
 from raceway.points.engine import Item, local, work_through
-from raceway.points.store import RowStore, row_key
+from raceway.points.store import row_key, written
 from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Rig
@@ -250,13 +250,13 @@ def rig(
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
     Writes rig.json, rig.html, figures and the signals, which `raceway fit` reads. Exit code 1 when a point has no motion.
-    Finished points are stored in DIR/rig-rows.jsonl and reused.
+    Finished points are stored in DIR/points.sqlite and reused.
 
     Parameters
     ----------
     scene : with a table [rig];  plugins : files of one-off plug-ins that it uses
     signals : write the signals as CSV (default)
-    kept : file that finished points are stored in and taken from
+    kept : folder that finished points are stored in and taken from
     progress : called as ``progress(what, done, total)`` after each point; an exception stops the study
 
     Raises
@@ -286,8 +286,8 @@ def rig(
     keys = [row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]) for k, point in grid]
     names = [f"{rpm:.0f} r/min, {axial:.0f} N" for _, (axial, rpm) in grid]
     items = [Item(*item) for item in zip(keys, names, grid, strict=True)]
-    finished = RowStore(kept)
-    rows, _ = work_through(compute, items, finished, local(registry, 0), registry, on_progress=progress)
+    with written(kept) as store:
+        rows, _ = work_through(compute, items, store, local(registry, 0), registry, on_progress=progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
     failed = list[Tables]()
@@ -297,7 +297,7 @@ def rig(
         elif k not in points:
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
     solved = [points[k] for k in sorted(points)]
-    return RigStudy(scene.title, scene, inputs, critical, solved, failed, finished.fault, signals)
+    return RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:

@@ -18,8 +18,8 @@ from raceway.framework.shown import Fact, Shown
 from raceway.out.picture import given_axes
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import numbers_at
+from raceway.points.dataset import open_store
 from raceway.points.plot import head, parse_at, select
-from raceway.points.store import open_store
 from raceway.scene.changes import parse_value
 from raceway.scene.inputs import tidy
 from raceway.storage.files import slug, write_whole

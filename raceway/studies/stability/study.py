@@ -23,7 +23,7 @@ from raceway.out.answer import Answer, Part
 from raceway.out.table import micro
 from raceway.out.wrapping import Words
 from raceway.points.engine import Item, local, processor_time, work_through
-from raceway.points.store import RowStore, program_key, tables_key
+from raceway.points.store import Store, program_key, tables_key, written
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 
@@ -270,7 +270,7 @@ def stability(
     """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
 
     Without --only or --all a set of quick cases is run. With SCENE, that scene is put through the cases that suit any scene.
-    Writes stability.json and stability.md. Finished cases are kept in DIR/stability-rows.jsonl and reused.
+    Writes stability.json and stability.md. Finished cases are kept in DIR/points.sqlite and reused.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ def stability(
     only : cases whose name holds these words, row by row
     every : all cases, not only those of a minute: some ten minutes
     processes : that work at a time; 0: in this one, without guard against a hang
-    kept : file that finished cases are stored in and taken from
+    kept : folder that finished cases are stored in and taken from
     plugins : one-off plug-in files, which each process loads
     progress : called as ``progress(what, done, total)`` after each case; an exception stops the study
 
@@ -298,15 +298,15 @@ def stability(
     if not selected:
         names = list(dict.fromkeys(case.name for case in cases))
         raise SceneError.at("only", only, f"no case is called so{nearest(only or '', names)}; cases: {'; '.join(names)}")
-    store = RowStore(kept)
-    rows, reused = measured(selected, processes, registry, plugins, store, progress)
+    with written(kept) as store:
+        rows, reused = measured(selected, processes, registry, store, plugins, progress)
     title = "Stiff and extreme cases" if scene is None else f"Stiff and extreme cases of {scene.get('title', 'the scene')}"
     seconds, left_out = (time.monotonic() - begun, processor_time() - cpu), len(cases) - len(selected)
     return Stability(title, tuple(rows), len(selected), left_out, reused, *seconds, processes, store.fault, only is not None)
 
 
 def measured(
-    cases: Sequence[Case], processes: int, registry: Registry, plugins: Sequence[Path] = (), store: RowStore | None = None,
+    cases: Sequence[Case], processes: int, registry: Registry, store: Store, plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None, patience: float = _PATIENCE_S,
 ) -> tuple[list[_Row], int]:  # fmt: skip
     """Rows of all cases, and how many cases were kept from before; none can stop the others by hanging or dying.
@@ -320,7 +320,7 @@ def measured(
     items = [Item(tables_key(attrs.asdict(case), registry, program=program), case.name, case) for case in cases]
     executor = local(registry, processes, **({"patience": patience} if processes else {}))
     answers, reused = work_through(
-        _answer, items, store or RowStore(None), executor, registry, plugins, on_progress,
+        _answer, items, store, executor, registry, plugins, on_progress,
         lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.task.setting).lost(reason))]},
     )  # fmt: skip
     return [_Row(**row) for answer in answers for row in answer["rows"]], reused
