@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
@@ -309,8 +308,6 @@ def compare(
             partial = comparison(store.get(item.key).content for item in items)
             raise Interrupted(partial if partial.rows else None) from stop
         answer = comparison(results)
-    if answer.fault is not None:
-        warnings.warn(str(answer.fault), stacklevel=3)
     if folder is not None:
         answer.save(folder)
     return answer

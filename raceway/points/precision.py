@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -550,8 +549,6 @@ def precision(
     named = _given(design.settings, reference, registry)
     with telling(progress) as report, written(kept or folder) as store:
         study = _measured(design, named, repeats, limit_s, store, registry, report)
-    if study.fault is not None:
-        warnings.warn(str(study.fault), stacklevel=3)
     if folder is not None:
         study.save(folder)
     return study

@@ -212,6 +212,8 @@ def written(path: str | Path | None, facts: ReadTables | None = None, keys: Coll
                 raise RacewayError(f"`{folder}` holds the rows of another command: choose another folder with --out")
             store.repair(keys)
             yield store
+            if store.fault is not None:
+                warnings.warn(str(store.fault), stacklevel=3)
         finally:
             _leave(folder, connection, new)
 
