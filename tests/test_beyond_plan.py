@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
-from raceway.cli.run import run as run_command
+from raceway.cli.main import main
 from raceway.pipeline.run import PATIENCE, Allowance
 from raceway.testing import run
 from tests.test_elastic_scene import QUICK
@@ -118,7 +118,7 @@ def test_short_plans_count_as_three_seconds(monkeypatch):
 
 
 def test_the_command_and_the_function_have_one_patience():
-    option = next(p for p in run_command.params if p.name == "patience")
+    option = next(p for p in main.get_command(None, "run").params if p.name == "patience")
     assert option.default == inspect.signature(run).parameters["patience"].default == PATIENCE
 
 

@@ -76,7 +76,7 @@ def test_a_door_stays_the_function_that_it_is():
 
 def test_results_take_folders_as_text(tmp_path):
     result = rw.run(SCENE)
-    assert result.save(str(tmp_path)) == tmp_path / "result.json"
+    assert result.save(str(tmp_path)) == [tmp_path / "result.json"]
     for wrong in (3, None, b"x", [tmp_path]):
         with pytest.raises(rw.SceneError, match="folder"):
             result.save(wrong)

@@ -85,10 +85,8 @@ def test_a_static_scene_balances_and_tells_what_it_found(static):
 def test_the_screen_names_all_peak_pressures_and_tells_how_good_the_balance_is(static):
     from rich.console import Console
 
-    from raceway.cli.run_screen import run_screen
-
     console = Console(width=200, record=True, file=io.StringIO())
-    console.print(run_screen(static[0].to_dict(), ()))
+    console.print(static[0].screen())
     text = console.export_text()
     ball = max(static[0].to_dict()["equilibrium"]["balls"], key=lambda one: one["load_inner_n"])
     for key, word in (("points_inner", "points"), ("nodal_inner", "nodal"), ("inner", "by Hertz")):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.cli.run_screen import model_rows
 from raceway.framework.estimate import Estimate
 from raceway.out.quantities import KYY, K
+from raceway.pipeline.run_screen import model_rows
 from raceway.points.dataset import values_of
 from validation.command_line import EXAMPLES
 

@@ -13,7 +13,6 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
-from raceway.cli.run_screen import run_screen
 from raceway.framework.options import nearest
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
@@ -252,7 +251,7 @@ def test_numbers_that_a_part_of_the_error_is_as_large_as_are_no_numbers():
     values = {name: value for name, value, _ in facts(soft)}
     assert values["equivalent stiffness K"] == values["|Z|"] == values["equivalent damping C"] == "not resolved"
     with redirect_stdout(StringIO()) as shown:
-        Console(width=160).print(run_screen(soft.to_dict(), []))
+        Console(width=160).print(soft.screen())
     for name in ("equivalent stiffness K", "|Z|", "Z real"):
         assert re.search(rf"{re.escape(name)} +not resolved +the error of Z \(contact\) is as large as Z", shown.getvalue())
     other = computed(contact={"kind": "penalty", "stiffness": 1e14})

@@ -12,14 +12,14 @@ from rich.console import Console
 
 import raceway as rw
 from raceway.bodies.model import tilts_follow
-from raceway.cli.run_parts import cost_rows, equilibrium_rows
 from raceway.framework.estimate import Estimate, short
 from raceway.out.table import rows_table
 from raceway.out.wrapping import Words
+from raceway.pipeline.run_parts import cost_rows, equilibrium_rows
 from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
-SCREENS = [*PACKAGE.glob("cli/run_parts.py"), *PACKAGE.rglob("*screen.py")]
+SCREENS = [*PACKAGE.glob("pipeline/run_parts.py"), *PACKAGE.rglob("*screen.py")]
 #: What ``raceway verify`` sorts its rows by, and does not show.
 SORTED_BY = {"verify": ["row['error'] / row['tolerance']"]}
 

@@ -9,7 +9,6 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, run
-from raceway.cli.run_screen import run_screen
 from raceway.core.periodic import search as direct
 from raceway.core.periodic import steady
 from raceway.core.ring.orbit import differentiation
@@ -57,7 +56,7 @@ def test_two_stable_motions_are_told(kind):
     assert min(one["multiplier"] for one in told if not one["stable"]) > 1.2
     assert any("2 steady motions" in text for text in result.warnings)
     with (console := Console(width=200, file=StringIO())).capture() as shown:
-        console.print(run_screen(result.to_dict(), []))
+        console.print(result.screen())
     words = shown.get()
     assert "Steady motions that were found" in words and "-7.548 + 7.854j" in words
 

@@ -12,7 +12,6 @@ from rich.console import Console
 
 from benchmarks.checks import Row, below, near
 from benchmarks.checks._scenes import Chance, Tables
-from raceway.cli.run_screen import run_screen
 from raceway.errors import RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
@@ -64,7 +63,7 @@ def rows() -> list[Row]:
 def _numbers(result: Result) -> list[str]:
     """Names of the rows of the screen that show a part of Z as a number."""
     with redirect_stdout(StringIO()) as text:
-        Console(width=200).print(run_screen(result.to_dict(), []))
+        Console(width=200).print(result.screen())
     lines = [line for line in text.getvalue().splitlines() if line.strip().startswith(_OF_Z)]
     return [line for line in lines if re.search(r"  -?\d", line) and "not resolved" not in line]
 

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
+from raceway.cli.failure import keep_state
 from raceway.cli.frame import (
     PATH,
     RESULTS,
@@ -28,12 +29,13 @@ from raceway.cli.frame import (
     load,
     out_option,
     plugin_files,
+    require_matplotlib,
     set_keys,
     show,
     show_progress,
     tell_faults,
 )
-from raceway.errors import RacewayError, SceneError
+from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
@@ -75,6 +77,7 @@ class Command(NamedTuple):
     folder : what follows the scene's title in the name of the default folder; None: nothing is written without --out
     named_by : argument with the file whose name stands for the title
     unchecked : the scene is not read before the front has changed it
+    pictures : whether they are drawn unless something else is said; None: there are none
 
     Examples
     --------
@@ -92,7 +95,7 @@ class Command(NamedTuple):
     folder: str | None = ""
     named_by: str = ""
     unchecked: bool = False
-    pictures: bool = True
+    pictures: bool | None = True
 
     def click(self) -> click.Command:
         """The command, with the module of its front imported."""
@@ -112,11 +115,12 @@ class Command(NamedTuple):
         command: Callable[..., Value] = common(call)
         if "plugins" in signature.parameters:
             command = plugin_files(command)
-        if self.pictures:
-            command = click.option("--pictures/--no-pictures", default=True, help="Draw the picture as PNG (default).")(
+        if self.pictures is not None:
+            names, words_of_it = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
+            command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{words_of_it}.")(
                 command
             )
-        if self.pictures or self.folder is not None:
+        if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
             command = out_option("nothing is written" if self.folder is None else default)(command)
@@ -208,6 +212,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     )
     if folder is not None:
         writable(folder)
+        if pictures and not about.pictures:
+            require_matplotlib("leave out --pictures")
         pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder if "kept" in known else None
@@ -222,6 +228,10 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 bound = signature.bind_partial()
                 bound.arguments.update(arguments)
                 answer: Answer = front(*bound.args, **bound.kwargs)
+            except (ConvergenceError, BeyondPlanError) as error:
+                if folder is not None and hasattr(scene := arguments.get("scene"), "title"):
+                    keep_state(error, scene, folder)
+                raise
             except SceneError as error:
                 raise _by_flags(about, error) or error from None
             except Interrupted as stop:

@@ -28,8 +28,22 @@ _VARY = Option(
 )
 
 ANSWERS = (
-    Later("run", "raceway.cli.run:run", "Compute one scene."),
-    Later("plan", "raceway.cli.run:plan", "Is a scene right, what would be built, and what not."),
+    Command(
+        "run",
+        "raceway.pipeline.front:run",
+        "Compute one scene.",
+        "raceway run examples/b7206.toml --pictures \\\n    --set excitation.speed_rpm=15000 --set supports.tilt=free",
+        {"reports": Option("report", "NAME"), "patience": Option(metavar="FACTOR")},
+        pictures=False,
+    ),
+    Command(
+        "plan",
+        "raceway.cli.plan:plan",
+        "Is a scene right, what would be built, and what not.",
+        "raceway plan examples/b7206.toml --set supports.tilt=free",
+        folder=None,
+        pictures=None,
+    ),
     Command(
         "compare",
         "raceway.points.compare:compare",
@@ -108,7 +122,7 @@ ANSWERS = (
         'raceway catalogue "70*C"\nraceway catalogue 7014C --picture 7014C.png',
         {"pattern": Option(positional=True), "picture": Option(metavar="FILE.png")},
         folder=None,
-        pictures=False,
+        pictures=None,
     ),
     Command(
         "catalogue --infer",
@@ -128,7 +142,7 @@ ANSWERS = (
             "conformity": Option(metavar="F"),
         },
         folder=None,
-        pictures=False,
+        pictures=None,
     ),
     Command(
         "view",
@@ -136,7 +150,7 @@ ANSWERS = (
         "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.",
         "raceway view examples/b7206.toml --html",
         {"page": Option("html")},
-        pictures=False,
+        pictures=None,
     ),
     Command(
         "view --mesh",
@@ -144,7 +158,7 @@ ANSWERS = (
         "Mesh the bodies of a scene: counts, quality, files.",
         "raceway view --mesh examples/b7206_article_mesh.toml --picture",
         {"form": Option("format", "NAME")},
-        pictures=False,
+        pictures=None,
     ),
     Command(
         "export",
@@ -170,7 +184,7 @@ ANSWERS = (
             "tag": Option(metavar="NAME"),
         },
         folder=None,
-        pictures=False,
+        pictures=None,
     ),
 )
 TRUST = (
@@ -197,7 +211,7 @@ TRUST = (
         {"only": Option(metavar="WORDS"), "every": Option("all")},
         folder="-stability",
         unchecked=True,
-        pictures=False,
+        pictures=None,
     ),
     Command(
         "verify",
@@ -206,7 +220,7 @@ TRUST = (
         "raceway verify --only harris-table-6.1 --all",
         {"only": Option(metavar="CASE"), "every": Option("all")},
         folder=None,
-        pictures=False,
+        pictures=None,
     ),
 )
 DEVELOPERS = (

@@ -41,17 +41,10 @@ def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Call
     return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
 
 
-out_folder = out_option(f"{RESULTS}/TITLE", "Folder of the results")
-
 plugin_files = click.option(
     "--plugin", "plugins", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py",
     help="A one-off plug-in file, not installed; repeat for more.",
 )  # fmt: skip
-
-
-def on_scene(command: F) -> F:
-    """SCENE and --set, of every command that reads a scene; ``load`` takes both."""
-    return click.argument("scene", type=PATH)(set_keys(command))
 
 
 def common(command: F) -> F:

@@ -6,9 +6,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import attrs
+
 from raceway.framework.doors import door
-from raceway.framework.registry import default_registry
+from raceway.framework.registry import default_registry, registry_with
 from raceway.out.progress import telling
+from raceway.pipeline.reports import chosen_reports
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import PATIENCE
 from raceway.pipeline.run import run as compute
@@ -24,20 +27,25 @@ def run(
     scene: SceneSource,
     *,
     progress: ShowProgress = None,
+    reports: Iterable[str] = (),
     patience: float = PATIENCE,
     plugins: Iterable[str | Path] = (),
     out: str | Path | None = None,
 ) -> Result:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 
+    Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).  Reports are plug-ins
+    (raceway dev plugins lists them); one that fails is named after the result is saved.
+
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)`` between chunks of steps; an exception
         stops the run
-    patience : times the planned time, of processor time, after which a run is stopped; ``inf``: never
+    reports : name of a report that is written, too
+    patience : times the planned time or memory after which a run is stopped; ``inf``: never
     plugins : files of one-off plug-ins that the scene uses
-    out : folder in which result.json is written; None: nothing is written
+    out : folder in which result.json and reports are written; None: nothing is written
 
     Returns
     -------
@@ -59,10 +67,10 @@ def run(
     >>> round(float(result.displacement[0]) * 1e6, 1)  # of the inner ring along the axis [um]
     29.9
     """
-    read = as_scene(scene, plugins=plugins)
+    read, chosen = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
     folder = None if out is None else writable(Path(out))
     with telling(progress) as report:
-        result = compute(read, default_registry(), report, patience=patience)
+        result = attrs.evolve(compute(read, default_registry(), report, patience=patience), reports=tuple(chosen))
     if folder is not None:
         result.save(folder)
     return result

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from contextlib import suppress
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -14,17 +16,19 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.framework.estimate import Note, short
-from raceway.framework.shown import Fact, Shown, in_micro, largest_facts, number, percents, tilt_words
+from raceway.framework.shown import Fact, in_micro, largest_facts, number, percents, tilt_words
+from raceway.out.answer import Answer, Part
 from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
+from raceway.pipeline.reports import Chosen, write_reports
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.labelled import labelled
-from raceway.plugins.pictures import plot
+from raceway.plugins.pictures import Pictures, plot
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
-from raceway.storage.files import without_nan, write_json
+from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -35,8 +39,8 @@ if TYPE_CHECKING:
 SCHEMA = 1
 
 
-@attrs.frozen(eq=False, repr=False)
-class Result(Shown):
+@attrs.frozen(eq=False, repr=False, slots=False)
+class Result(Answer):
     """One run.  ``to_dict`` gives result.json; the arrays stay on the object.
 
     Attributes
@@ -49,6 +53,7 @@ class Result(Shown):
     lines : spectral lines of the motion, empty where it was not recorded or its speed changes
     warnings : tuple of str, the weightiest first
     band : numbers [low, high] at both ends of the band of time constants, for ``contact.damping`` = "band"; all else is the low end's
+    reports : what ``save`` writes beside result.json
 
     Examples
     --------
@@ -57,6 +62,8 @@ class Result(Shown):
     >>> result.stiffness.shape, result.ball_loads.shape
     ((5, 5), (12,))
     """
+
+    stem: ClassVar[str] = "result"
 
     model: Model
     equilibrium: Equilibrium
@@ -70,6 +77,7 @@ class Result(Shown):
     warnings: tuple[str, ...]
     bodies: Tables | None = None
     band: Tables | None = None
+    reports: tuple[Chosen, ...] = ()
 
     @property
     def title(self) -> str:
@@ -331,15 +339,30 @@ class Result(Shown):
         turned = abs(z.imag) / abs(z) if z else 0.0
         return None if total is None else max(total - bodies, 0.0) + bodies * turned
 
-    def save(self, folder: Path) -> Path:
-        """Write result.json into a folder, whole or not at all.
+    def report(self) -> Iterable[Part]:
+        """The answer first, then what it rests on; what makes the numbers doubtful before them."""
+        from raceway.pipeline.run_screen import report
+
+        return report(self.to_dict())
+
+    def picture(self, folder: str | Path) -> list[Path]:
+        """Orbit, spectrum and ball loads, as far as there is data, a PNG each."""
+        return Pictures().write(self, Path(folder))
+
+    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+        """Write result.json, pictures where they are asked for, and the reports; remove what an earlier run that failed left there.
 
         Raises
         ------
         RacewayError
-            A folder that cannot be written.
+            A folder that cannot be written; a report that failed.
         """
-        return write_json(self.to_dict(), folder / "result.json")
+        folder = Path(folder)
+        paths = super().save(folder, pictures)
+        for name in ("failure.json", "last-good-state.npz"):
+            with suppress(OSError):
+                (folder / name).unlink(missing_ok=True)
+        return paths + write_reports(self.reports, self, folder)
 
 
 def _complex(z: complex) -> Tables:

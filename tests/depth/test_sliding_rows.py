@@ -8,8 +8,8 @@ import pytest
 
 import raceway as rw
 from raceway import ConvergenceError
-from raceway.cli.run_parts import _mounted
 from raceway.core.ring.kernels.layout import SHIFT
+from raceway.pipeline.run_parts import _mounted
 from raceway.studies.rotor.node_bearing import node_bearing
 from raceway.testing import b7206c
 from validation.reference.mounted import approach, axial, row

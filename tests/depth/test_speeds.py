@@ -9,7 +9,6 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
-from raceway.cli.run_screen import run_screen
 from raceway.core.record import Schedule
 from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
@@ -411,7 +410,7 @@ def test_every_window_of_a_run_up_states_its_error(tilt):
     assert any(f"(at {worst:.0f} r/min)" in text and "windows" in text for text in result.warnings)
     assert "of the last window alone" in result.error["how"]["total"]
     shown = Console(width=200, record=True, file=StringIO())
-    shown.print(run_screen(result.to_dict(), []))
+    shown.print(result.screen())
     assert f"at {worst:.6g} r/min; of {len(told)} windows" in shown.export_text()
 
 

@@ -83,7 +83,7 @@ def test_a_race_that_carries_nothing_is_absent(result):
 
 
 def test_the_screen_tells_shear_where_the_mesh_resolves_it_and_hertz_s_number_elsewhere(result):
-    from raceway.cli.run_parts import bodies_rows
+    from raceway.pipeline.run_parts import bodies_rows
 
     ball, ring = result.to_dict()["model"]["subsurface"][:2]
     fine, numbers = (

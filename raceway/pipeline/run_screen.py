@@ -4,22 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.console import Group, RenderableType
-
-from raceway.cli.run_parts import (
-    ball_pass_rows,
-    bodies_rows,
-    cost_rows,
-    equilibrium_rows,
-    error_rows,
-    film_rows,
-    loaded_balls,
-    orbit_rows,
-    stability_rows,
-    stiffness_rows,
-    tangent_rows,
-)
 from raceway.framework.shown import percents
+from raceway.out.answer import Part
 from raceway.out.damping import dry_damping_note
 from raceway.out.quantities import (
     KYY,
@@ -36,8 +22,21 @@ from raceway.out.quantities import (
     Quantity,
     Z,
 )
-from raceway.out.table import Row, micro, sections, tilt_words, written
+from raceway.out.table import Row, micro, sections, tilt_words
 from raceway.out.wrapping import Words
+from raceway.pipeline.run_parts import (
+    ball_pass_rows,
+    bodies_rows,
+    cost_rows,
+    equilibrium_rows,
+    error_rows,
+    film_rows,
+    loaded_balls,
+    orbit_rows,
+    stability_rows,
+    stiffness_rows,
+    tangent_rows,
+)
 from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
 
@@ -119,13 +118,8 @@ def _static(result: ReadTables) -> list[Row]:
 _LEFT_OUT_SHOWN = 3
 
 
-def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
-    """One run.
-
-    Parameters
-    ----------
-    result : content of result.json;  files : what was written
-    """
+def report(result: ReadTables) -> list[Part]:
+    """One run, from the content of result.json."""
     rows = [
         *_answer_rows(result),
         *equilibrium_rows(result),
@@ -140,15 +134,15 @@ def run_screen(result: ReadTables, files: Sequence[str]) -> RenderableType:
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]
     # What makes the numbers doubtful is read before them.
-    parts: list[RenderableType] = [Words(f"warning: {micro(text)}", "yellow") for text in result["warnings"]]
-    parts += [
+    parts: list[Part] = [Words(f"warning: {micro(text)}", "yellow") for text in result["warnings"]]
+    return [
+        *parts,
         Words(result["title"], "bold"),
         Words(_bearing(result), "dim"),
         sections(rows),
         Words(_left_out(result), "dim"),
         Words("notes in full: result.json", "dim"),
     ]
-    return Group(*parts, *written(files))
 
 
 def _tolerances(result: ReadTables) -> list[Row]:

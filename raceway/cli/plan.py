@@ -1,0 +1,87 @@
+"""``raceway plan``."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import ClassVar
+
+import attrs
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+
+from raceway.errors import SceneError
+from raceway.out.answer import Answer, Part
+from raceway.out.table import Row, grouped, number, sections
+from raceway.out.wrapping import Words
+from raceway.planning.plan import ScenePlan, check, make_plan
+from raceway.scene.scene import Scene
+from raceway.storage.tables import ReadTables, Tables
+
+
+@attrs.frozen(repr=False, slots=False)
+class _Planned(Answer):
+    """A plan with its title, and that nothing is wrong."""
+
+    stem: ClassVar[str] = "plan"
+    title: str
+    plan: ScenePlan
+
+    def to_dict(self) -> Tables:
+        return {"title": self.title, "errors": [], **self.plan.to_dict()}
+
+    def report(self) -> Iterator[Part]:
+        """Parts kept and left out, and the predictions."""
+        yield Words(self.title, "bold")
+        plan = self.plan.to_dict()
+        yield from (_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]))
+        step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
+        size = [
+            ("Size and cost, predicted", "", ""),
+            ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
+            ("time step", step, f"{plan['predicted_steps']} steps"),
+            _wall_time(plan),
+        ]
+        yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
+
+
+def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
+    """Validate a scene, and say what it needs, what is left out and why, and the predicted size, time step and cost.
+
+    Builds nothing. Every mistake is listed with its path, value, rule and the nearest valid choice.
+    """
+    checked = check(scene, plugins=plugins)
+    if checked.mistakes:
+        raise SceneError(checked.mistakes)
+    for text in checked.warnings:
+        warnings.warn(text, stacklevel=2)
+    return _Planned(scene.title, make_plan(scene))
+
+
+def _wall_time(plan: ReadTables) -> Row:
+    if plan["predicted_at_least"]:
+        return ("wall time", "not known", "before the mesh is read: how large it is")
+    return ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache")
+
+
+def _mesh_rows(mesh: ReadTables) -> list[Row]:
+    """Predicted cells and memory of all bodies and of each; balls in one line."""
+    rows: list[Row] = [
+        ("Mesh, predicted", "", ""),
+        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB at the peak while they are made"),
+    ]
+    for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
+        cells, size = bodies
+        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if name.startswith("balls (") else "")))
+    return rows
+
+
+def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=32)
+    table.add_column()
+    for item in items:
+        table.add_row(Words(item["part"]), Words(item["why"], "dim"))
+    return Group(Words(heading, "bold"), Padding(table, (0, 0, 0, 2)))
