@@ -3,6 +3,6 @@
 main       the group of all commands;  console: messages and exit codes;  frame: what commands share
 commands   their table;  command: one made from a public function
 interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only;  verbose: what -v reports
-run        run and plan, reports, files of a failed run;  run_screen, run_parts, plan_screen: tables of a run and a plan
+plan       raceway plan;  failure: files of a failed run
 sweep, study, cache, plugins, new_scene   commands that are more than a front: sweeps, studies, caches, plug-ins, a first scene
 """

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
-from raceway.cli.failure import keep_state
 from raceway.cli.frame import (
     PATH,
     RESULTS,
@@ -29,7 +28,6 @@ from raceway.cli.frame import (
     load,
     out_option,
     plugin_files,
-    require_matplotlib,
     set_keys,
     show,
     show_progress,
@@ -186,8 +184,10 @@ def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
+    from raceway.cli.failure import keep_state
     from raceway.framework.registry import registry_with
     from raceway.out.answer import Interrupted
+    from raceway.scene.scene import Scene
     from raceway.storage.files import slug, writable
 
     arguments = {name: value for name, value in values.items() if value != ()}
@@ -205,16 +205,12 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
     if about.named_by:
         title = Path(arguments[about.named_by]).stem + "".join(title.partition("\n")[1:])
-    folder = (
-        out
-        if out is not None or about.folder is None
-        else RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
-    )
+    folder = out
+    if out is None and about.folder is not None:
+        folder = RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
+    pictures = folder is not None and pictures and has_matplotlib(by_default=bool(about.pictures))
     if folder is not None:
         writable(folder)
-        if pictures and not about.pictures:
-            require_matplotlib("leave out --pictures")
-        pictures = pictures and has_matplotlib()
     tell_faults(registry)
     kept = folder if "kept" in known else None
     shared = {"plugins": plugins, "kept": kept, "registry": registry, "pictures": folder if pictures else None}
@@ -229,7 +225,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 bound.arguments.update(arguments)
                 answer: Answer = front(*bound.args, **bound.kwargs)
             except (ConvergenceError, BeyondPlanError) as error:
-                if folder is not None and hasattr(scene := arguments.get("scene"), "title"):
+                if folder is not None and isinstance(scene := arguments.get("scene"), Scene):
                     keep_state(error, scene, folder)
                 raise
             except SceneError as error:

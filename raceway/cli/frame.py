@@ -185,9 +185,11 @@ def has_netcdf() -> bool:
     return not missing
 
 
-def has_matplotlib() -> bool:
-    """Whether pictures can be drawn; says what is missing where they are no more than the default."""
+def has_matplotlib(by_default: bool) -> bool:
+    """Whether pictures can be drawn; says what is missing where they are no more than the default, else raises it."""
     there = find_spec("matplotlib") is not None
+    if not there and not by_default:
+        require_matplotlib("leave out --pictures")
     if not there:
         warn(f"no picture: it needs matplotlib, {extra('pictures')}")
     return there

@@ -11,15 +11,15 @@ import attrs
 from raceway.framework.doors import door
 from raceway.framework.registry import default_registry, registry_with
 from raceway.out.progress import telling
-from raceway.pipeline.reports import chosen_reports
-from raceway.pipeline.result import Result
-from raceway.pipeline.run import PATIENCE
-from raceway.pipeline.run import run as compute
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
     from raceway.out.progress import ShowProgress
+    from raceway.pipeline.result import Result
+
+#: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
+PATIENCE = 20.0
 
 
 @door
@@ -67,6 +67,9 @@ def run(
     >>> round(float(result.displacement[0]) * 1e6, 1)  # of the inner ring along the axis [um]
     29.9
     """
+    from raceway.pipeline.result import chosen_reports
+    from raceway.pipeline.run import run as compute
+
     read, chosen = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
     folder = None if out is None else writable(Path(out))
     with telling(progress) as report:

@@ -15,13 +15,14 @@ import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
+from raceway.errors import PluginError, RacewayError
 from raceway.framework.estimate import Note, short
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, percents, tilt_words
+from raceway.framework.sources import blamed
 from raceway.out.answer import Answer, Part
 from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
-from raceway.pipeline.reports import Chosen, write_reports
 from raceway.pipeline.simulate import Simulation
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import Pictures, plot
@@ -34,9 +35,13 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     import xarray
 
+    from raceway.framework.contracts import Report
+    from raceway.framework.registry import Entry, Registry
     from raceway.pipeline.gradient import Gradient
 
 SCHEMA = 1
+#: A report's entry in the registry, and the report with its options' defaults.
+Chosen = tuple["Entry", "Report"]
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
@@ -456,3 +461,41 @@ def _computed_facts(result: Result) -> list[Fact]:
     if result.geometry is not None:
         rows.append(("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
     return [*rows, ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}")]
+
+
+def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
+    """The reports of these names, each once, before anything is computed.
+
+    Raises
+    ------
+    PluginError
+        A name that no report has, or two; a report whose options have no defaults.
+    """
+    reports = []
+    for name in dict.fromkeys(names):
+        entry = registry.find("report", name)
+        with blamed(str(entry), "making it without options"):
+            reports.append((entry, entry.plugin()))
+    return reports
+
+
+def write_reports(reports: Iterable[Chosen], result: Result, folder: Path) -> list[Path]:
+    """Write every report; one that fails stops no other.
+
+    Raises
+    ------
+    PluginError
+        In the end: which failed, and why.
+    """
+    failures, files = list[str](), list[Path]()
+    for entry, report in reports:
+        try:
+            with blamed(str(entry), "write()"):
+                files += report.write(result, folder)
+        except PluginError as why:
+            failures.append(str(why))
+        except RacewayError as why:
+            failures.append(f"{entry}: {why}")
+    if not failures:
+        return files
+    raise PluginError(f"{'; '.join(failures)}. The result is saved: `{folder / 'result.json'}`")

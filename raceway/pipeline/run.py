@@ -29,6 +29,7 @@ from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
+from raceway.pipeline.front import PATIENCE
 from raceway.pipeline.plausible import (
     inertia_warnings,
     motion_warnings,
@@ -46,8 +47,6 @@ from raceway.scene.tables import TIME_CONSTANTS
 from raceway.scene.unused import unused
 from raceway.storage.tables import Tables
 
-#: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
-PATIENCE = 20.0
 #: Shorter plans count as this one [s]: start-up and search for orbits are the less predictable the shorter the run.
 _LEAST_S = 3.0
 #: The same of memory: runs that converge stay within 1.6 times their plan (examples/b7206_elastic_coarse.toml at points, soft to stiff).
