@@ -20,6 +20,7 @@ from typing import Any
 from benchmarks import calculix
 from raceway.elastic.contact import penalty_stiffness
 from raceway.errors import RacewayError, SceneError
+from raceway.planning.resolve import resolve
 from validation.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
 
 #: Meshes of about 10 000 elements at 4 elements per semi-axis and 300 N.
@@ -110,7 +111,7 @@ def groove_deck(load: float, nodes: float, approach: float, element: str = "C3D8
 def scene_deck(path: Path) -> str:
     """CalculiX's input for the bearing of a scene with [mesh]: its loads, tilt locked, seats rigid."""
     from raceway import load_scene
-    from raceway.bodies.mesh import mesh_scene, scene_mesher
+    from raceway.bodies.mesh import mesh_bodies, mesher_of
     from raceway.core.contact.hertz import contact_modulus
 
     scene = load_scene(path)
@@ -118,11 +119,11 @@ def scene_deck(path: Path) -> str:
         raise SceneError.at("mesh", None, "is required for a deck: [mesh] with kind = 'structured'")
     rings, balls = scene.bearing.rings, scene.bearing.balls
     modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
-    mesher = scene_mesher(scene)
+    mesher = mesher_of(resolve(scene))
     _, minor = mesher._semi_axes(scene.bearing, True)
     penalty = float(penalty_stiffness(modulus, minor / mesher.nodes_per_semi_axis))
     radial = (float(scene.load.radial[0]), float(scene.load.radial[1]))
-    return calculix.bearing_deck(mesh_scene(scene), rings.young, rings.poisson, penalty, scene.load.axial, radial)
+    return calculix.bearing_deck(mesh_bodies(resolve(scene)), rings.young, rings.poisson, penalty, scene.load.axial, radial)
 
 
 def table(found: dict[str, Any]) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.kernel import least
 from raceway import load_scene
 from raceway.bodies.basis import make_basis
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
 from raceway.core.contact.laws import linear
 from raceway.core.record import Recorder, Schedule, State
 from raceway.core.threads import ThreadPool, usable_cores
@@ -59,7 +59,7 @@ def bearing(scene: Any) -> ElasticBearing:
         formulation="one_point",
         friction=0.03,
     )
-    return ElasticBearing(mesh_scene(scene), data)
+    return ElasticBearing(mesh_bodies(resolve(scene)), data)
 
 
 class _Timed(Recorder):

@@ -10,7 +10,6 @@ from raceway.bodies.rigid import Rigid
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.ring.system import System
 from raceway.framework.contracts import Cost, Traits
-from raceway.planning.resolve import resolve
 
 TIMES = count(1)
 
@@ -96,11 +95,11 @@ def drifting(self, problem, plan):
 
 
 def deaf(self, problem, plan):
-    return Rigid.build(self, problem.changed(kinematics=attrs.evolve(problem.kinematics, radial_expansion=0.0)), plan)
+    return Rigid.build(self, attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, radial_expansion=0.0)), plan)
 
 
 def dry(self, problem, plan):
-    return Rigid.build(self, problem.changed(contact=attrs.evolve(problem.contact, friction=0.0)), without(plan))
+    return Rigid.build(self, attrs.evolve(problem, contact=attrs.evolve(problem.contact, friction=0.0)), without(plan))
 
 
 def without(plan):
@@ -108,7 +107,7 @@ def without(plan):
 
 
 def still(self, problem, plan):
-    return Rigid.build(self, problem.changed(kinematics=attrs.evolve(problem.kinematics, orbiting=False)), plan)
+    return Rigid.build(self, attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, orbiting=False)), plan)
 
 
 def single(self, problem, plan):
@@ -117,9 +116,8 @@ def single(self, problem, plan):
     return Rigid.build(self, problem, plan)
 
 
-def builds(self, scene):
-
-    Rigid.build(self, resolve(scene), make_plan(attrs.evolve(scene, bodies=Rigid())))
+def builds(self, problem):
+    Rigid.build(self, problem, make_plan(attrs.evolve(problem.scene, bodies=Rigid())))
     return []
 
 

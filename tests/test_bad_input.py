@@ -271,7 +271,7 @@ def test_a_run_that_diverges_says_when_and_why_and_keeps_the_last_good_state(tmp
 
 
 def test_a_fault_of_the_program_is_one_message(monkeypatch):
-    monkeypatch.setattr("raceway.planning.plan._plan", lambda problem, **_: 1 / 0)
+    monkeypatch.setattr("raceway.planning.plan.plan_of", lambda problem, **_: 1 / 0)
     found = invoke("check", ARTICLE)
     assert found.exit_code == 1
     assert "unexpected ZeroDivisionError" in found.stderr

@@ -7,6 +7,7 @@ import pytest
 
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
+from raceway.planning.resolve import resolve
 from raceway.testing import Model, model_of, settled, solve_equilibrium
 from validation.equilibria import loose, random_scenes
 from validation.reference.ring import Ring
@@ -18,7 +19,7 @@ from validation.tangent import cases
 def twin(model: Model) -> Ring:
     """The reference's bearing for a model's scene, from the scene's own numbers."""
     b, scene = model.scene.bearing, model.scene
-    spin = scene.spin_speed if scene.kinematics.ball_inertia else 0.0
+    spin = resolve(scene).spin_speed if scene.kinematics.ball_inertia else 0.0
     return Ring(
         b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer,
         spin_speed=spin, first_azimuth=np.radians(b.first_ball_azimuth_deg),

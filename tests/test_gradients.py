@@ -157,8 +157,8 @@ def test_condensed_bodies_refuse_what_changes_their_meshes():
     tables = LOADED | {"bodies": {"kind": "condensed"}}
     scene = scene_from_dict(tables)
     same, other = with_number(scene, "load.axial", 500.0), with_number(scene, "bearing.ball_diameter", 0.0096)
-    assert scene.bodies.same_bodies(scene, same)
-    assert not scene.bodies.same_bodies(scene, other)
+    assert scene.bodies.same_bodies(*map(resolve, (scene, same)))
+    assert not scene.bodies.same_bodies(*map(resolve, (scene, other)))
 
 
 def test_keys_come_from_the_declarations():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq, root
 
+from raceway.planning.resolve import resolve
 from raceway.testing import Model
 
 #: Hypothesis -> shares of the moment's tangential forces at the inner and the outer race, in units of M / D.
@@ -31,7 +32,7 @@ def harris_ball(
     g, scene = model.geometry, model.scene
     inner_share, outer_share = SHARES[hypothesis]
     d, ratio = g.ball_diameter, g.ball_diameter / g.pitch_diameter
-    spin, cage = scene.spin_speed, g.cage_speed(scene.spin_speed)
+    spin, cage = resolve(scene).spin_speed, g.cage_speed(resolve(scene).spin_speed)
     mass = g.ball_mass(scene.bearing.balls.density)
     centrifugal = 0.5 * mass * g.pitch_diameter * cage**2
     lo, li = g.offset_outer, g.offset_inner

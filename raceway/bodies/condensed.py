@@ -13,7 +13,7 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import Balls, Decisions, Motion
-from raceway.planning.resolve import Problem, resolve
+from raceway.planning.resolve import Problem
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -42,15 +42,15 @@ class _SectionCost:
     seconds: float
 
 
-def section_cost(scene: Scene) -> _SectionCost:
+def section_cost(problem: Problem) -> _SectionCost:
     """Predicted cost of the rings of a condensed scene."""
-    b = scene.bearing
+    b = problem.bearing
     length = 0.34 * b.ball_diameter
     size, along = 0.62 * length, 0.077 * length
-    if scene.mesh is not None:
-        size = min(float(getattr(scene.mesh, "element_size", size)), size)
+    if problem.mesh is not None:
+        size = min(float(getattr(problem.mesh, "element_size", size)), size)
         # A contact's semi-major axis is about a tenth of the ball; see raceway.bodies.condensed_bearing.
-        along = min(0.09 * b.ball_diameter / float(getattr(scene.mesh, "nodes_per_semi_axis", 4)), size)
+        along = min(0.09 * b.ball_diameter / float(getattr(problem.mesh, "nodes_per_semi_axis", 4)), size)
     width = b.width or b.ball_diameter
     wall = (
         0.5 * max(b.pitch_diameter - (b.bore or 0.0), (b.outer_diameter or 0.0) - b.pitch_diameter) - 0.25 * b.ball_diameter
@@ -61,26 +61,26 @@ def section_cost(scene: Scene) -> _SectionCost:
     return _SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
 
 
-def _section_faults(scene: Scene) -> list[Mistake]:
+def _section_faults(problem: Problem) -> list[Mistake]:
     """Elements that no memory holds."""
-    cost = section_cost(scene)
+    cost = section_cost(problem)
     if cost.bytes <= _BYTES_LIMIT:
         return []
     why = (
         f"would take {cost.bytes / 2**30:.1f} GiB for some {cost.nodes} nodes of a ring's section, above "
         f"{_BYTES_LIMIT / 2**30:.0f} GiB: take larger elements, or fewer nodes_per_semi_axis"
     )
-    return [Mistake("mesh.element_size", getattr(scene.mesh, "element_size", None), why)]
+    return [Mistake("mesh.element_size", getattr(problem.mesh, "element_size", None), why)]
 
 
-def _seat_faults(scene: Scene) -> list[Mistake]:
+def _seat_faults(problem: Problem) -> list[Mistake]:
     """Seats so soft that they hold nothing."""
     faults = []
-    load = abs(scene.load.axial) + sum(abs(force) for force in scene.load.radial)
-    load += 0.0 if scene.excitation is None else scene.excitation.amplitude_n
-    b = scene.bearing
+    load = abs(problem.load.axial) + sum(abs(force) for force in problem.load.radial)
+    load += 0.0 if problem.excitation is None else problem.excitation.amplitude_n
+    b = problem.bearing
     for key, diameter in (("inner_seat", b.bore), ("outer_seat", b.outer_diameter)):
-        seat = getattr(scene.supports, key)
+        seat = getattr(problem.supports, key)
         if isinstance(seat, str) or diameter is None or b.width is None:
             continue
         gives = load / (seat * pi * diameter * b.width)
@@ -124,16 +124,16 @@ class _PatchCost:
     step_s: float
 
 
-def patch_cost(scene: Scene) -> _PatchCost:
+def patch_cost(problem: Problem) -> _PatchCost:
     """Predicted cost of the contacts of a scene."""
-    n = nodes_of(scene)
-    balls = scene.bearing.balls_in_all
+    n = nodes_of(problem)
+    balls = problem.bearing.balls_in_all
     points = int(3.2 * n * n)
     rows = 3.6 * n + 1.0
     # Factors of all contacts; the compliances of both rings in two directions with what is made of them on the way.
     size = 2 * balls * 1.3 * points**2 + 2 * 5.0 * rows * (2.0 * rows) ** 2
     share = balls / 12.0
-    steps = _RUBBING if scene.contact.friction > 0.0 else 1.0
+    steps = _RUBBING if problem.contact.friction > 0.0 else 1.0
     return _PatchCost(
         points,
         int(8.0 * size),
@@ -143,14 +143,14 @@ def patch_cost(scene: Scene) -> _PatchCost:
     )
 
 
-def nodes_of(scene: Scene) -> int:
+def nodes_of(problem: Problem) -> int:
     """Points along each semi-axis."""
-    return int(getattr(scene.mesh, "nodes_per_semi_axis", NODES))
+    return int(getattr(problem.mesh, "nodes_per_semi_axis", NODES))
 
 
 _INSTEAD = "use discretisation = 'resultant'"
 #: Limits of contacts at surface points, each with the way out.
-_PATCHES: tuple[Rule[Scene], ...] = (
+_PATCHES: tuple[Rule[Problem], ...] = (
     Rule(
         "contact.kind", lambda s: s.contact.law.state_size > 0,
         f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {_INSTEAD}",
@@ -193,37 +193,37 @@ class Condensed:
             "integrator": {"kind": "newmark", "turns": 2, "steps_per_turn": 90},
         }
 
-    def faults(self, scene: Scene) -> list[Mistake]:
+    def faults(self, problem: Problem) -> list[Mistake]:
         """What condensed rings need: dimensions of bodies of revolution, the elements of the structured mesher, seats that hold."""
         faults = []
-        if scene.mesh is not None and scene.mesh.name != "structured":
+        if problem.mesh is not None and problem.mesh.name != "structured":
             why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
-            faults.append(Mistake("mesh.kind", scene.mesh.name, why))
+            faults.append(Mistake("mesh.kind", problem.mesh.name, why))
         for key in ("bore", "outer_diameter", "width"):
-            if attrs.asdict(scene.bearing, recurse=False)[key] is None:
+            if attrs.asdict(problem.bearing, recurse=False)[key] is None:
                 why = "is needed by elastic rings: give it, or take bodies.kind = 'rigid'"
                 faults.append(Mistake(f"bearing.{key}", None, why))
-        if not scene.bearing.equal_rows:
+        if not problem.bearing.equal_rows:
             why = "condensed bodies have one section for the rings of all rows: leave out what differs, or take bodies.kind = 'rigid'"
             faults.append(Mistake("bearing.row", None, why))
-        grown = {f"mounting.{key}": value for key, value in scene.mounting.changes.items()}
-        if scene.kinematics.ball_growth:
+        grown = {f"mounting.{key}": value for key, value in problem.mounting.changes.items()}
+        if problem.kinematics.ball_growth:
             grown["kinematics.ball_growth"] = 1.0
-        for key, value in grown.items() if _nodal(scene) else ():
+        for key, value in grown.items() if _nodal(problem) else ():
             why = "changes the shapes that surface points lie on: take contact.discretisation = 'resultant', or kinematics.radial_expansion"
             faults.append(Mistake(key, value, why))
-        unmeshed = unrefined(scene, "sections of condensed bodies")
+        unmeshed = unrefined(problem, "sections of condensed bodies")
         faults += unmeshed
-        faults += _seat_faults(scene)
-        if unmeshed or scene.contact.discretisation not in scene.contact.law.discretisations:
+        faults += _seat_faults(problem)
+        if unmeshed or problem.contact.discretisation not in problem.contact.law.discretisations:
             return faults
-        return faults + ((mistakes(_PATCHES, scene) if _nodal(scene) else []) or _section_faults(scene))
+        return faults + ((mistakes(_PATCHES, problem) if _nodal(problem) else []) or _section_faults(problem))
 
-    def traits(self, scene: Scene) -> Traits:
+    def traits(self, problem: Problem) -> Traits:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""
-        if _nodal(scene):
+        if _nodal(problem):
             return Traits(compiled=False, resultants=False)
-        return Traits(calibrated=scene.contact.kind == "hertz", renews=True, damps=True)
+        return Traits(calibrated=problem.contact.kind == "hertz", renews=True, damps=True)
 
     def stable_step(self, problem: Problem) -> float:
         """Of the ring on its contacts [s]."""
@@ -233,8 +233,8 @@ class Condensed:
         """What of the bodies' compliance is needed."""
         why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
         parts.keep("elastic rings and balls", why)
-        if _nodal(problem.scene):
-            cost = patch_cost(problem.scene)
+        if _nodal(problem):
+            cost = patch_cost(problem)
             why = f"contact.discretisation is nodal: some {cost.points} points carry a contact, {cost.bytes / 2**20:.0f} MiB"
             parts.keep("pressures at surface points", why)
             moves = problem.recorded and problem.integrator.method.inertial and problem.kinematics.ball_inertia
@@ -244,7 +244,7 @@ class Condensed:
             why_not = (
                 "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
             )
-            parts.decide(_balls_meet(problem.scene), BETWEEN_BALLS, "soft seats or thick rings", why_not)
+            parts.decide(_balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
             if problem.excitation is not None:
                 why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
                 parts.leave_out("inertia of the bodies' deformation", why)
@@ -256,33 +256,33 @@ class Condensed:
     def unused(self, scene: Scene) -> list[tuple[str, str]]:
         """Points stick by themselves."""
         why = "points stick by the compliance of rings and balls themselves"
-        return [("contact.stick_stiffness", why)] if _nodal(scene) else []
+        return [("contact.stick_stiffness", why)] if scene.contact.discretisation == "nodal" else []
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Sections or patches first, then the motion."""
-        if not _nodal(problem.scene):
+        if not _nodal(problem):
             more = _BETWEEN_S * (problem.bearing.ball_count / 12.0) ** 2 if parts.keeps(BETWEEN_BALLS) else 0.0
-            once = section_cost(problem.scene).seconds
+            once = section_cost(problem).seconds
             return Cost(START_S + once + compiled_motion(problem, balls, motion, _TIMES, more), once)
-        patches = patch_cost(problem.scene)
+        patches = patch_cost(problem)
         guess = MOTION if problem.excitation is not None and problem.integrator.method.inertial else 0.0
         seconds = patches.setup_s + 3.0 * patches.equilibrium_s + guess * patches.step_s
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0
         return Cost(START_S + seconds + _WITH_HALF * runs(problem, motion) * steps * patches.step_s)
 
-    def same_bodies(self, scene: Scene, changed: Scene) -> bool:
+    def same_bodies(self, problem: Problem, changed: Problem) -> bool:
         """Whether sections, contacts and materials, which compliances are computed from, are the same."""
         from raceway.bodies.basis import make_basis
         from raceway.bodies.condensed_bearing import sections
 
-        if (scene.bearing, scene.supports, scene.mesh) == (changed.bearing, changed.supports, changed.mesh):
+        if (problem.bearing, problem.supports, problem.mesh) == (changed.bearing, changed.supports, changed.mesh):
             return True  # all that sections are made of
-        first, second = (sections(each, make_basis(each)) for each in map(resolve, (scene, changed)))
+        first, second = (sections(each, make_basis(each)) for each in (problem, changed))
         return first == second
 
     def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.condensed_bearing`` and ``raceway.bodies.patch_bearing``."""
-        if _nodal(problem.scene):
+        if _nodal(problem):
             from raceway.bodies.patch_bearing import build as nodal
 
             return nodal(problem, plan)
@@ -291,11 +291,11 @@ class Condensed:
         return build(problem, plan)
 
 
-def _nodal(scene: Scene) -> bool:
-    return scene.contact.discretisation == "nodal"
+def _nodal(problem: Problem) -> bool:
+    return problem.contact.discretisation == "nodal"
 
 
-def _balls_meet(scene: Scene) -> bool:
+def _balls_meet(problem: Problem) -> bool:
     """Whether one ball's load reaches the next one through a ring.
 
     Notes
@@ -303,8 +303,8 @@ def _balls_meet(scene: Scene) -> bool:
     On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
     at 3.7 t (B7206C).
     """
-    b = scene.bearing
-    if scene.supports.inner_seat != "rigid" or scene.supports.outer_seat != "rigid":
+    b = problem.bearing
+    if problem.supports.inner_seat != "rigid" or problem.supports.outer_seat != "rigid":
         return True
     walls = [0.5 * (b.pitch_diameter - b.ball_diameter - (b.bore or 0.0))]
     walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))

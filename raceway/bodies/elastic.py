@@ -18,8 +18,7 @@ from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
 from raceway.planning.parts import Balls, Decisions, Motion
-from raceway.planning.resolve import Problem, axial_approach
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -80,38 +79,38 @@ class _ElasticCost:
     step_s: float
 
 
-def elastic_cost(scene: Scene) -> _ElasticCost | None:
+def elastic_cost(problem: Problem) -> _ElasticCost | None:
     """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
-    mesh = predicted_mesh(scene)
+    mesh = predicted_mesh(problem)
     if mesh is None:
         return None
-    cells, method = int(mesh["cells"]), scene.integrator.method
+    cells, method = int(mesh["cells"]), problem.integrator.method
     unknowns = int(3.4 * cells)  # nodes of coarse bodies are more than their cells
-    if scene.contact.discretisation == "nodal":
-        return _by_superelements(scene, mesh, cells, unknowns)
+    if problem.contact.discretisation == "nodal":
+        return _by_superelements(problem, mesh, cells, unknowns)
     large = int(unknowns > _FACTORS)
     setup, solve = cells * _SETUP_S[large], cells * _SOLVE_S[large]
     memory = int(_BYTES + _BYTES_A_CELL[large] * cells)
     first = _IMPORTS_S + cells * _BUILD_S + setup + _EQUILIBRIUM * solve
-    resultants = int(scene.contact.discretisation == "resultant")
+    resultants = int(problem.contact.discretisation == "resultant")
     neighbour = _NEIGHBOUR[resultants] * solve
     if not method.inertial:
         return _ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
-    plain = int(scene.bodies.formulation != "one_point")
+    plain = int(problem.bodies.formulation != "one_point")
     step = (
         _STEP[resultants] * solve + 0.2 * (1 - resultants) * setup
         if method.implicit
         else cells * _FORCE_S[plain] + _PYTHON_S
     )
-    start = 4.0 * neighbour + setup if scene.integrator.start == "orbit" else 0.0
-    return _ElasticCost(cells, unknowns, memory, _stable_step(scene), first, start, step)
+    start = 4.0 * neighbour + setup if problem.integrator.start == "orbit" else 0.0
+    return _ElasticCost(cells, unknowns, memory, _stable_step(problem), first, start, step)
 
 
-def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> _ElasticCost:
+def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int) -> _ElasticCost:
     """With pressures at points: equal balls and sectors are factored once, for statics and for the steps of a motion."""
-    method, count = scene.integrator.method, scene.bearing.ball_count
+    method, count = problem.integrator.method, problem.bearing.ball_count
     parts = {str(body["name"]): int(body["cells"]) for body in mesh["bodies"]}
-    if _equal_sectors(scene):
+    if _equal_sectors(problem):
         parts |= {name: parts[name] // count for name in ("inner_ring", "outer_ring") if name in parts}
     sizes = {
         name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))
@@ -120,23 +119,23 @@ def _by_superelements(scene: Scene, mesh: Tables, cells: int, unknowns: int) -> 
     factor = _FACTOR_S * sum(n**2 for n in sizes.values())
     memory = _BYTES + _POINT_BYTES * cells + _PEAK_BYTES * largest ** (4.0 / 3.0)
     first, solve = _IMPORTS_S + factor + _POINT_S * cells, _ALL_S * cells
-    if not method.inertial or scene.excitation is None:
+    if not method.inertial or problem.excitation is None:
         return _ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
-    plain = int(scene.bodies.formulation != "one_point")
-    start = 4.0 * solve if scene.integrator.start == "orbit" else 0.0
+    plain = int(problem.bodies.formulation != "one_point")
+    start = 4.0 * solve if problem.integrator.start == "orbit" else 0.0
     step = cells * _FORCE_S[plain] + _PYTHON_S
     if method.implicit:
         memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
         start, step = start + factor, _STEP_S * cells
-    return _ElasticCost(cells, unknowns, int(memory), _stable_step(scene), first, start, step)
+    return _ElasticCost(cells, unknowns, int(memory), _stable_step(problem), first, start, step)
 
 
-def _equal_sectors(scene: Scene) -> bool:
+def _equal_sectors(problem: Problem) -> bool:
     """Whether the mesh of a ring is known to be as many equal sectors as there are balls, before it is made."""
-    return scene.mesh is not None and scene.mesh.name == "structured" and scene.bearing.ball_count >= 3
+    return problem.mesh is not None and problem.mesh.name == "structured" and problem.bearing.ball_count >= 3
 
 
-def _stable_step(scene: Scene) -> float:
+def _stable_step(problem: Problem) -> float:
     """Of the ball's thinnest element and the contacts, whose 1/dt^2 add up [s].
 
     Notes
@@ -148,17 +147,17 @@ def _stable_step(scene: Scene) -> float:
     from raceway.core.contact.geometry import BallBearing
     from raceway.core.contact.hertz import contact_modulus
 
-    b, mesh, law = scene.bearing, scene.mesh, scene.contact.law
+    b, mesh, law = problem.bearing, problem.mesh, problem.contact.law
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
-    carried = axial_approach(b, scene.load.axial)[1] or 300.0
+    carried = problem.axial_approach[1] or 300.0
     load = getattr(mesh, "ball_load", None) or carried
     ellipses = BallBearing.of(b).ellipses(modulus)
     minors = [float(e.semi_axes(load)[1]) for e in ellipses]
     size = float(getattr(mesh, "element_size", inf))
-    fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4)) if refined(scene) else size
+    fine = min(minors) / float(getattr(mesh, "nodes_per_semi_axis", 4)) if refined(problem) else size
     zone = float(getattr(mesh, "patch", 1.25)) * max(minors)
     arc = 0.125 * pi * b.ball_diameter  # from a ball's pole to the edge of its cube
-    width = min(zone / ceil(zone / fine), size) if refined(scene) else _LAYER * arc / ceil(arc / size)
+    width = min(zone / ceil(zone / fine), size) if refined(problem) else _LAYER * arc / ceil(arc / size)
     steel, nu = b.balls, b.balls.poisson
     wave = (steel.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / steel.density) ** 0.5
     penalty = getattr(law, "stiffness", None)
@@ -169,7 +168,7 @@ def _stable_step(scene: Scene) -> float:
             300.0 * float(e.curvatures[0] * e.curvatures[1]) ** 0.5 * at / (pi * float(e.approach(at)) ** 2)
             for e in ellipses
         )
-    if scene.contact.discretisation == "resultant":  # on discs of many cells: far softer than elements
+    if problem.contact.discretisation == "resultant":  # on discs of many cells: far softer than elements
         return _THINNEST * width / wave
     elements, contacts = _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
     return float((elements**-2 + contacts**-2) ** -0.5)
@@ -211,7 +210,7 @@ _OTHER = "or take bodies.kind = 'condensed'"
 _ONE_ROW = f"elastic bodies are one row of balls: use 'single', {_OTHER}"
 _SHAPES = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {_OTHER}"
 #: What elastic bodies cannot do, each with the way out.
-_RULES: tuple[Rule[Scene], ...] = (
+_RULES: tuple[Rule[Problem], ...] = (
     Rule(
         "mesh", lambda s: s.mesh is None,
         f"is required by elastic bodies: for instance [mesh] with kind = 'structured', {_OTHER}",
@@ -244,9 +243,9 @@ _RULES: tuple[Rule[Scene], ...] = (
 )  # fmt: skip
 
 
-def _memory_faults(scene: Scene) -> list[Mistake]:
+def _memory_faults(problem: Problem) -> list[Mistake]:
     """Meshes whose matrices this process cannot hold."""
-    cost = elastic_cost(scene)
+    cost = elastic_cost(problem)
     most = _SHARE * allowed_bytes()
     if cost is None or cost.bytes <= most:
         return []
@@ -255,7 +254,7 @@ def _memory_faults(scene: Scene) -> list[Mistake]:
         f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): take larger elements or fewer "
         "nodes_per_semi_axis, or bodies.kind = 'condensed'"
     )
-    return [Mistake("mesh.kind", scene.mesh.name, why)]
+    return [Mistake("mesh.kind", problem.mesh.name, why)]
 
 
 def words(cost: _ElasticCost) -> str:
@@ -297,30 +296,30 @@ class Elastic:
         why = f"bodies.formulation is '{self.formulation}': only 'one_point' has hourglass modes"
         return {"hourglass": why} if self.formulation != "one_point" and self.hourglass != 0.05 else {}
 
-    def faults(self, scene: Scene) -> list[Mistake]:
+    def faults(self, problem: Problem) -> list[Mistake]:
         """What bodies with every node cannot do; meshes without cells, or too large."""
-        faults = mistakes(_RULES, scene)
-        if scene.bearing.row and len(scene.bearing.rows) > 1:
-            faults.append(Mistake("bearing.row", scene.bearing.signs, _ONE_ROW))
-        faults += [Mistake(f"mounting.{key}", value, _SHAPES) for key, value in scene.mounting.changes.items()]
-        points = [] if scene.contact.discretisation == "resultant" else unrefined(scene, "pressures at surface points")
-        unmeshed = points or mesh_faults(scene)
-        return faults + (unmeshed or ([] if faults else _memory_faults(scene)))
+        faults = mistakes(_RULES, problem)
+        if problem.bearing.row and len(problem.bearing.rows) > 1:
+            faults.append(Mistake("bearing.row", problem.bearing.signs, _ONE_ROW))
+        faults += [Mistake(f"mounting.{key}", value, _SHAPES) for key, value in problem.mounting.changes.items()]
+        points = [] if problem.contact.discretisation == "resultant" else unrefined(problem, "pressures at surface points")
+        unmeshed = points or mesh_faults(problem)
+        return faults + (unmeshed or ([] if faults else _memory_faults(problem)))
 
-    def traits(self, scene: Scene) -> Traits:
+    def traits(self, problem: Problem) -> Traits:
         """Stepped from Python; a run is too dear to be made twice."""
-        resultants = scene.contact.discretisation == "resultant"
-        calibrated = resultants and scene.contact.kind == "hertz"
+        resultants = problem.contact.discretisation == "resultant"
+        calibrated = resultants and problem.contact.kind == "hertz"
         return Traits(compiled=False, resultants=resultants, calibrated=calibrated, every_node=True)
 
     def stable_step(self, problem: Problem) -> float | None:
         """Of elements and contacts [s]; None where the mesher cannot tell."""
-        cost = elastic_cost(problem.scene)
+        cost = elastic_cost(problem)
         return None if cost is None or cost.stable_step_s == 0.0 else cost.stable_step_s
 
     def decide(self, problem: Problem, parts: Decisions) -> None:
         """What of the bodies is not left out: all of them."""
-        cost = elastic_cost(problem.scene)
+        cost = elastic_cost(problem)
         size = "" if cost is None else f": {words(cost)}"
         parts.keep(
             "elastic rings and balls", f"bodies.kind is elastic: finite elements of rings and balls, every node{size}"
@@ -339,7 +338,7 @@ class Elastic:
         parts.keep("other mirror half", why)
         count = problem.bearing.ball_count
         why = f"the {count} balls are one ball turned, and each ring {count} equal sectors: one of each is factored"
-        if nodal and _equal_sectors(problem.scene):
+        if nodal and _equal_sectors(problem):
             parts.leave_out("factors of equal balls and sectors", why)
         elif nodal:
             why = f"mesh.kind is {problem.mesh.name}: " if problem.mesh is not None else ""
@@ -351,21 +350,17 @@ class Elastic:
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
         parts.decide(nodal, "stress recovery", why, why_not)
 
-    def unused(self, scene: Scene) -> list[tuple[str, str]]:
-        """Nothing beyond what holds for all bodies."""
-        return []
-
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
-        cost = elastic_cost(problem.scene)
+        cost = elastic_cost(problem)
         if cost is None:
             return Cost(START_S, scales=False, at_least=True)
         seconds = START_S + cost.equilibrium_s
         if problem.contact.discretisation == "resultant":
-            seconds += section_cost(attrs.evolve(problem.scene, mesh=None)).seconds
+            seconds += section_cost(attrs.evolve(problem, mesh=None)).seconds
         if motion.recorded:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
-        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(problem.scene), scales=False, bytes=cost.bytes)
+        return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(problem), scales=False, bytes=cost.bytes)
 
     def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.elastic_bearing``."""

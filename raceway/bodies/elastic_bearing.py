@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
 from raceway.bodies.elastic_contacts import ElasticBodies, ElasticPoints, ElasticResultants
-from raceway.bodies.mesh import check_sets, mesh_scene, scene_mesher
+from raceway.bodies.mesh import check_sets, mesh_bodies, mesher_of
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, FRICTION
@@ -50,11 +50,11 @@ def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
         params = rigid.law_params
         angles = _angles(problem, plan, rigid, guess)
         # Of the bearing's own rings and balls, whatever mesh stands for them: the calibration is local.
-        compliances = elastic_bodies(problem.changed(mesh=None), basis)
+        compliances = elastic_bodies(attrs.evolve(problem, mesh=None), basis)
         beyond = np.concatenate([compliances.beyond(race, of) for race, of in enumerate(np.split(angles, 2))])
         setup = attrs.evolve(setup, angles=angles, beyond=beyond, params=lambda pair, area: params[pair])
-    meshes = mesh_scene(problem.scene)
-    check_sets(scene_mesher(problem.scene), meshes, problem.supports)
+    meshes = mesh_bodies(problem)
+    check_sets(mesher_of(problem), meshes, problem.supports)
     bodies = ElasticBearing(meshes, setup)
     if resultants:
         _refuse_stiff_law(problem, basis, bodies)

@@ -111,7 +111,6 @@ class ElasticBodies(Bearing):
         across = np.stack([self.bearing.setup.turn(k)[:, 2] for k in range(len(cage))])
         force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
-        scene = model.problem
         mesh = contacts.pop("mesh", {})
         return {
             "rigid_rings": rigid_rings(self.rigid, self.guess)[0],
@@ -119,8 +118,10 @@ class ElasticBodies(Bearing):
                 "cells": self.bearing.cells,
                 "nodes": bodies.assembly.nodes,
                 "unknowns": bodies.size,
-                "formulation": scene.bodies.formulation,
-                "hourglass_coefficient": scene.bodies.hourglass if scene.bodies.formulation == "one_point" else None,
+                "formulation": model.problem.bodies.formulation,
+                "hourglass_coefficient": model.problem.bodies.hourglass
+                if model.problem.bodies.formulation == "one_point"
+                else None,
                 **mesh,
             },
             "reaction_n": dict(zip("xyz", force.tolist(), strict=True)),
@@ -142,7 +143,7 @@ class ElasticBodies(Bearing):
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Elements that lock."""
-        return locking(model.scene)
+        return locking(model.problem)
 
 
 def _elastic(system: Ring) -> ElasticRing:

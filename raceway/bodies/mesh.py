@@ -12,8 +12,7 @@ import numpy as np
 
 from raceway.errors import MeshError, Mistake, PluginError, SceneError
 from raceway.framework.sources import blamed
-from raceway.planning.resolve import axial_approach
-from raceway.scene.scene import Scene
+from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -127,13 +126,13 @@ def _refusal(mesher: Mesher, name: str, fault: str, ratio: float) -> MeshError:
 _FROM, _ONE_POINT = 0.49, 0.4
 
 
-def locking(scene: Scene) -> list[str]:
+def locking(problem: Problem) -> list[str]:
     """A warning for each material that is nearly incompressible."""
-    one_point = scene.bodies.name == "elastic" and scene.bodies.formulation == "one_point"
+    one_point = problem.bodies.name == "elastic" and problem.bodies.formulation == "one_point"
     least = _ONE_POINT if one_point else _FROM
     warnings = []
     for part in ("rings", "balls"):
-        poisson = getattr(scene.bearing, part).poisson
+        poisson = getattr(problem.bearing, part).poisson
         if poisson >= least:
             warnings.append(
                 f"bearing.{part}.poisson = {poisson:g}: elements lock near 0.5, contacts at surface points are too stiff by "
@@ -143,7 +142,7 @@ def locking(scene: Scene) -> list[str]:
     return warnings
 
 
-def scene_mesher(scene: Scene) -> Mesher:
+def mesher_of(problem: Problem) -> Mesher:
     """The scene's mesher; an option ``ball_load`` that is left out becomes the static load of a ball under the axial load.
 
     Raises
@@ -151,15 +150,15 @@ def scene_mesher(scene: Scene) -> Mesher:
     SceneError
         A scene without [mesh].
     """
-    if scene.mesh is None:
+    if problem.mesh is None:
         raise SceneError.at("mesh", None, 'is required here: for instance [mesh] with kind = "structured"')
-    options = {field.name for field in attrs.fields(type(scene.mesh))}
-    if "ball_load" in options and scene.mesh.ball_load is None and scene.load.axial != 0.0:
-        return attrs.evolve(scene.mesh, ball_load=axial_approach(scene.bearing, scene.load.axial)[1])
-    return scene.mesh
+    options = {field.name for field in attrs.fields(type(problem.mesh))}
+    if "ball_load" in options and problem.mesh.ball_load is None and problem.load.axial != 0.0:
+        return attrs.evolve(problem.mesh, ball_load=problem.axial_approach[1])
+    return problem.mesh
 
 
-def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
+def mesh_bodies(problem: Problem) -> dict[str, HexMesh]:
     """Meshes by the name of the body, as ``HexMesh``, without inverted or degenerate cells.
 
     Raises
@@ -172,9 +171,9 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.mesh.quality import refuse_bad_cells
 
-    mesher = scene_mesher(scene)
+    mesher = mesher_of(problem)
     with blamed(f"mesher '{mesher.name}'", "mesh()"):
-        meshes = mesher.mesh(scene.bearing)
+        meshes = mesher.mesh(problem.bearing)
     if not isinstance(meshes, Mapping) or not meshes:
         raise PluginError(f"mesher '{mesher.name}': mesh() returned {type(meshes).__name__}; it must be meshes by name")
     out: dict[str, HexMesh] = {}
@@ -185,35 +184,35 @@ def mesh_scene(scene: Scene) -> dict[str, HexMesh]:
         except (AttributeError, MeshError) as why:
             raise PluginError(f"mesher '{mesher.name}': body '{name}' is no mesh: {why}") from why
         refuse_bad_cells(out[str(name)], str(name))
-    _check_size(mesher, scene.bearing, out)
+    _check_size(mesher, problem.bearing, out)
     return out
 
 
-def mesh_faults(scene: Scene) -> list[Mistake]:
+def mesh_faults(problem: Problem) -> list[Mistake]:
     """Why the table [mesh] cannot be used: sizes that its mesher refuses or the memory does not hold."""
-    if scene.mesh is None:
+    if problem.mesh is None:
         return []
     try:
-        _prediction(scene)
+        _prediction(problem)
     except MeshError as error:
         return [error.mistake or Mistake("mesh", None, str(error))]
     return []
 
 
-def unrefined(scene: Scene, who: str) -> list[Mistake]:
+def unrefined(problem: Problem, who: str) -> list[Mistake]:
     """A mesh without cells along a contact, which some bodies need; ``who``: in words."""
-    if scene.mesh is None or refined(scene):
+    if problem.mesh is None or refined(problem):
         return []
     why = f"{who} need cells along a contact: take at least 1, or elastic bodies with contact.discretisation = 'resultant'"
     return [Mistake("mesh.nodes_per_semi_axis", 0, why)]
 
 
-def refined(scene: Scene) -> bool:
+def refined(problem: Problem) -> bool:
     """Whether a structured mesh has cells along a contact ellipse; those of other meshers are not known."""
-    return bool(getattr(scene.mesh, "nodes_per_semi_axis", 1))
+    return bool(getattr(problem.mesh, "nodes_per_semi_axis", 1))
 
 
-def predicted_mesh(scene: Scene) -> Tables | None:
+def predicted_mesh(problem: Problem) -> Tables | None:
     """Predicted size of the scene's mesh.
 
     Returns
@@ -229,7 +228,7 @@ def predicted_mesh(scene: Scene) -> Tables | None:
     PluginError
         A mesher whose prediction is none, or that raises anything but a ``RacewayError``.
     """
-    prediction = None if scene.mesh is None else _prediction(scene)
+    prediction = None if problem.mesh is None else _prediction(problem)
     if prediction is None:
         return None
     from raceway.core.mesh.quality import body_bytes
@@ -238,15 +237,15 @@ def predicted_mesh(scene: Scene) -> Tables | None:
     return {"bodies": bodies, "cells": prediction.cells, "bytes": prediction.memory_bytes}
 
 
-def _prediction(scene: Scene) -> Prediction | None:
+def _prediction(problem: Problem) -> Prediction | None:
     """Prediction by the mesher's ``predict``, if it has one; refused where it would not fit."""
-    mesher = scene_mesher(scene)
+    mesher = mesher_of(problem)
     if not hasattr(mesher, "predict"):
         return None
     from raceway.core.mesh.quality import Prediction, refuse_memory
 
     with blamed(f"mesher '{mesher.name}'", "predict()"):
-        prediction = mesher.predict(scene.bearing)
+        prediction = mesher.predict(problem.bearing)
     if prediction is None:  # it cannot tell before it reads or meshes
         return None
     if isinstance(prediction, Mapping) and all(isinstance(cells, int) for cells in prediction.values()):

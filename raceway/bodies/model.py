@@ -245,11 +245,15 @@ def build_model(scene: Scene, plan: ScenePlan) -> Model:
     >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
     2.06
     """
-    problem = plan.problem if plan.problem.scene is scene else resolve(scene)
-    bearing = scene.body_kind.build(problem, plan)
+    return model_of(plan.problem if plan.problem.scene is scene else resolve(scene), plan)
+
+
+def model_of(problem: Problem, plan: ScenePlan) -> Model:
+    """The same as ``build_model``, of a problem."""
+    bearing = problem.body_kind.build(plan)
     if not isinstance(bearing, Bearing):
         raise PluginError(
-            f"bodies '{scene.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
+            f"bodies '{problem.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
         )
     return Model(problem, plan, bearing, bearing.system)
 

@@ -202,7 +202,7 @@ class _NodalBearing(Bearing):
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Contacts that the groove's edge cuts off, with the load at which that begins; points that are too few; elements that lock."""
         _, contacts = self.pressed(model, equilibrium)
-        z, radius, sentences = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.scene)
+        z, radius, sentences = model.system.ball_count, 0.5 * model.geometry.ball_diameter, locking(model.problem)
         for race, (word, ellipse) in enumerate((("inner", model.inner), ("outer", model.outer))):
             truncated = [state for state in contacts[race * z : (race + 1) * z] if state.truncated]
             if not truncated:
@@ -317,7 +317,7 @@ def _layout(problem: Problem, reach: Reach) -> tuple[float, float]:
     -----
     The mean is rounded to two digits: states near each other then share their compliances.
     """
-    nodes = float(nodes_of(problem.scene))
+    nodes = float(nodes_of(problem))
     load = getattr(problem.mesh, "ball_load", None)
     return nodes, float(load) if load is not None else float(f"{reach.mean_load:.1e}")
 

@@ -11,7 +11,6 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.planning.cost import START_S, Times, compiled_motion
 from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem
-from raceway.scene.scene import Scene
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
@@ -27,22 +26,22 @@ class Rigid:
 
     name: ClassVar[str] = "rigid"
 
-    def faults(self, scene: Scene) -> list[Mistake]:
+    def faults(self, problem: Problem) -> list[Mistake]:
         """Seats and meshes, which rigid bodies have none of; surface points."""
         faults = []
-        if scene.mesh is not None:
+        if problem.mesh is not None:
             why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
             faults.append(Mistake("mesh", None, why))
-        if scene.contact.discretisation == "nodal" and "nodal" in scene.contact.law.discretisations:
+        if problem.contact.discretisation == "nodal" and "nodal" in problem.contact.law.discretisations:
             why = "rigid bodies have no surface points: use 'resultant'"
             faults.append(Mistake("contact.discretisation", "nodal", why))
-        for key, seat in (("outer_seat", scene.supports.outer_seat), ("inner_seat", scene.supports.inner_seat)):
+        for key, seat in (("outer_seat", problem.supports.outer_seat), ("inner_seat", problem.supports.inner_seat)):
             if seat != "rigid":
                 why = "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'"
                 faults.append(Mistake(f"supports.{key}", seat, why))
         return faults
 
-    def traits(self, scene: Scene) -> Traits:
+    def traits(self, problem: Problem) -> Traits:
         """Contact resultants with compiled forces."""
         return Traits(renews=True, damps=True)
 
@@ -55,10 +54,6 @@ class Rigid:
         parts.leave_out("elastic rings and balls", "bodies.kind is rigid: only contacts deform")
         for part in ("a compliance for each ball and contact", "other mirror half", "stress recovery"):
             parts.leave_out(part, _NO_MESH)
-
-    def unused(self, scene: Scene) -> list[tuple[str, str]]:
-        """Nothing beyond what holds for all bodies."""
-        return []
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """The motion's: an equilibrium takes microseconds."""

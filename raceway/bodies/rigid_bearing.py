@@ -54,7 +54,8 @@ def build(problem: Problem, plan: ScenePlan) -> RigidBearing:
 
 def with_hertz(problem: Problem) -> Problem:
     """The problem with Hertz's law and one force a contact, where other bodies start from."""
-    return problem.changed(contact=attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant"))
+    contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
+    return attrs.evolve(problem, contact=contact)
 
 
 def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
-    from raceway.scene.scene import Scene
 
 
 class ContactLaw(attrs.AttrsInstance, Protocol):
@@ -377,28 +376,27 @@ class Cost:
 class BodiesKind(attrs.AttrsInstance, Protocol):
     """What rings and balls are made of: what deforms, and how the ring follows its loads.
 
-    1. ``faults(scene)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.
-    2. ``traits(scene)``: ``Traits``.
-    3. ``stable_step(problem)``: rough stable limit of explicit steps [s]; None where nothing is known.  A ``Problem`` of
-        ``raceway.planning.resolve`` has the tables of the scene, and what follows from them.
+    1. ``faults(problem)``: mistakes of the scene that these bodies cannot run, each with the remedy; nothing is built.  A
+        ``Problem`` of ``raceway.planning.resolve`` has the tables of the scene, and what follows from them.
+    2. ``traits(problem)``: ``Traits``.
+    3. ``stable_step(problem)``: rough stable limit of explicit steps [s]; None where nothing is known.
     4. ``decide(problem, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
-    5. ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
-    6. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    7. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
-    8. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    5. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
+    6. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
+    7. The fields of the class are the keys of the table [bodies] beside ``kind``.
+    8. May be left out: ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
     9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
-    10. May be left out: ``same_bodies(scene, other)``: whether nothing that is meshed differs between two scenes of this kind, so
+    10. May be left out: ``same_bodies(problem, changed)``: whether nothing that is meshed differs between two of this kind, so
         that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
     """
 
     name: ClassVar[str]
 
-    def faults(self, scene: Scene) -> list[Mistake]: ...
-    def traits(self, scene: Scene) -> Traits: ...
+    def faults(self, problem: Problem) -> list[Mistake]: ...
+    def traits(self, problem: Problem) -> Traits: ...
     def stable_step(self, problem: Problem) -> float | None: ...
     def decide(self, problem: Problem, parts: Decisions) -> None: ...
-    def unused(self, scene: Scene) -> list[tuple[str, str]]: ...
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
     def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing: ...
 
@@ -434,7 +432,7 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "format": ("raceway_formats", ("suffixes", "read")),
     "bodies": (
         "raceway_bodies",
-        ("faults", "traits", "stable_step", "decide", "unused", "cost", "build"),
+        ("faults", "traits", "stable_step", "decide", "cost", "build"),
     ),
     "report": ("raceway_reports", ("write",)),
     "executor": ("raceway_executors", ("compute",)),

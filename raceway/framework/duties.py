@@ -37,38 +37,42 @@ def _answer(plugin: str, duty: str, call: Callable[[], T], *types: type) -> T:
 
 
 class BodyKind:
-    """The kind of bodies of a scene: duties for this scene or its problem, which raise ``PluginError`` where the kind breaks them."""
+    """The kind of bodies of a problem: its duties, which raise ``PluginError`` where the kind breaks them."""
 
-    def __init__(self, scene: Scene) -> None:
-        self._scene, self._plugin, self._name = scene, scene.bodies, f"bodies '{scene.bodies.name}'"
+    def __init__(self, problem: Problem) -> None:
+        self._problem, self._plugin, self._name = problem, problem.bodies, f"bodies '{problem.bodies.name}'"
 
     def faults(self) -> list[Mistake]:
-        return _answer(self._name, "faults", lambda: self._plugin.faults(self._scene), list)
+        return _answer(self._name, "faults", lambda: self._plugin.faults(self._problem), list)
 
     @cached_property
     def traits(self) -> Traits:
-        return _answer(self._name, "traits", lambda: self._plugin.traits(self._scene), Traits)
+        return _answer(self._name, "traits", lambda: self._plugin.traits(self._problem), Traits)
 
-    def stable_step(self, problem: Problem) -> float | None:
-        return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(problem), float, type(None))
+    def stable_step(self) -> float | None:
+        return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(self._problem), float, type(None))
 
-    def decide(self, problem: Problem, parts: Decisions) -> None:
-        _answer(self._name, "decide", lambda: self._plugin.decide(problem, parts), type(None))
+    def decide(self, parts: Decisions) -> None:
+        _answer(self._name, "decide", lambda: self._plugin.decide(self._problem, parts), type(None))
 
-    def unused(self) -> list[tuple[str, str]]:
-        return _answer(self._name, "unused", lambda: self._plugin.unused(self._scene), list)
+    def cost(self, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+        return _answer(self._name, "cost", lambda: self._plugin.cost(self._problem, balls, motion, parts), Cost)
 
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
-        return _answer(self._name, "cost", lambda: self._plugin.cost(problem, balls, motion, parts), Cost)
+    def build(self, plan: ScenePlan) -> Bearing:
+        return _answer(self._name, "build", lambda: self._plugin.build(self._problem, plan), object)
 
-    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
-        return _answer(self._name, "build", lambda: self._plugin.build(problem, plan), object)
-
-    def same_bodies(self, other: Scene) -> bool:
-        """Whether another scene of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""
+    def same_bodies(self, changed: Problem) -> bool:
+        """Whether another problem of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""
         if not hasattr(self._plugin, "same_bodies"):
-            return self._scene.mesh is None or self._scene.bearing == other.bearing
-        return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._scene, other), object))
+            return self._problem.mesh is None or self._problem.bearing == changed.bearing
+        return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._problem, changed), object))
+
+
+def unused_with_bodies(scene: Scene) -> list[tuple[str, str]]:
+    """(key, reason) for each key of a scene that changes nothing with its kind of bodies, or ``PluginError``; none unless it says so."""
+    if not hasattr(scene.bodies, "unused"):
+        return []
+    return _answer(f"bodies '{scene.bodies.name}'", "unused", lambda: scene.bodies.unused(scene), list)
 
 
 def renews(law: ContactLaw) -> bool:

@@ -198,7 +198,7 @@ def model_spread(
             continue
         change: Tables = dict.fromkeys(_QUANTITIES)
         try:
-            problem = model.problem.changed(kinematics=attrs.evolve(kinematics, **changed))
+            problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **changed))
             variant, state = _under(model, problem, equilibrium)
             before, after = ((e.stiffness[1, 1], tilts_follow(e.stiffness, tilt)) for e in (equilibrium, state))
             for name, a, b in zip(_QUANTITIES[1:], before, after, strict=True):
@@ -234,7 +234,7 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     for key in unstated:
         for value in _HYPOTHESES[key]:
             try:
-                refuse_what_cannot_run(problem.changed(kinematics=attrs.evolve(problem.kinematics, **{key: value})))
+                refuse_what_cannot_run(attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, **{key: value})))
             except SceneError as error:
                 why = f"{why}; without kinematics.{key}: {error.mistakes[0].message}"
                 break

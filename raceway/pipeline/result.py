@@ -24,10 +24,10 @@ from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLO
 from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
 from raceway.pipeline.simulate import Simulation
+from raceway.planning.resolve import Problem
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import Pictures, plot
 from raceway.scene.catalogue import geometry_of
-from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
@@ -328,7 +328,7 @@ class Result(Answer):
         return {
             "definition": z.definition,
             **nested(IDENTIFIED, self)["identification"],
-            "damping_origin": damping_origin(self.model.scene),
+            "damping_origin": damping_origin(self.model.problem),
             "band": self.band,
             "tilt": self.model.problem.supports.tilt,
             "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
@@ -390,13 +390,13 @@ def band_table(ends: list[Result]) -> Tables:
 DRY = "dry: no damping is modelled"
 
 
-def damping_origin(scene: Scene) -> str:
+def damping_origin(problem: Problem) -> str:
     """What damps a scene, in words."""
-    contact, (low, high) = scene.contact, TIME_CONSTANTS
+    contact, (low, high) = problem.contact, TIME_CONSTANTS
     if contact.in_a_band:
         origin = f"c = tau k at the contacts, tau from {low:g} to {high:g} s: the band of rolling bearings (Kraemer 1993)"
     elif contact.loss_factor is not None:
-        tau = f"tau = {scene.time_constant:.4g} s"
+        tau = f"tau = {problem.time_constant:.4g} s"
         origin = f"contact.loss_factor {contact.loss_factor:g}: c = tau k at the contacts, {tau}"
     elif contact.time_constant is not None:
         origin = f"contact.time_constant: c = tau k at the contacts, tau = {contact.time_constant:g} s"
@@ -406,7 +406,7 @@ def damping_origin(scene: Scene) -> str:
         origin: bool(origin),
         f"contact law '{contact.kind}'": contact.law.dissipative,
         "contact.friction": contact.friction > 0.0,
-        f"rotor.damping: {scene.rotor.damping:g} N s/m": scene.rotor.damping > 0.0,
+        f"rotor.damping: {problem.rotor.damping:g} N s/m": problem.rotor.damping > 0.0,
     }
     return "; ".join(words for words, damps in origins.items() if damps) or DRY
 
@@ -453,11 +453,11 @@ def _equilibrium_facts(result: Result) -> list[Fact]:
 
 
 def _computed_facts(result: Result) -> list[Fact]:
-    scene, cost = result.model.scene, result.cost
-    kind = f"{scene.bodies.name} bodies, {scene.contact.kind}, {scene.integrator.kind}"
+    problem, cost = result.model.problem, result.cost
+    kind = f"{problem.bodies.name} bodies, {problem.contact.kind}, {problem.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
     compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
-    rows: list[Fact] = [("bearing", str(scene.source["bearing"].get("preset") or "own geometry"), kind)]
+    rows: list[Fact] = [("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind)]
     if result.geometry is not None:
         rows.append(("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
     return [*rows, ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}")]

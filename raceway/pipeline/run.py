@@ -41,6 +41,7 @@ from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
 from raceway.planning.plan import ScenePlan, make_plan
+from raceway.planning.resolve import resolve
 from raceway.planning.rules import implausible
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
@@ -113,7 +114,7 @@ def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:
     contacts = [attrs.evolve(scene.contact, damping=0.0, time_constant=tau) for tau in TIME_CONSTANTS]
     low, high = (once(attrs.evolve(scene, contact=contact)) for contact in contacts)
     sums = {key: value + high.cost[key] for key, value in low.cost.items() if key not in ("peak_memory_bytes", "threads")}
-    model = attrs.evolve(low.model, problem=low.model.problem.changed(contact=scene.contact))
+    model = attrs.evolve(low.model, problem=resolve(scene))
     warnings = tuple(dict.fromkeys((*low.warnings, *high.warnings)))
     return attrs.evolve(low, model=model, cost={**high.cost, **sums}, band=band_table([low, high]), warnings=warnings)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model, build_model
+from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.ring import Ring
@@ -19,7 +19,7 @@ from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, SceneError, StabilityError
 from raceway.framework.duties import at_whirl, ramp_turns, steady_form
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.plan import make_plan
+from raceway.planning.plan import plan_of
 from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
 
@@ -147,8 +147,8 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     for speed in model.problem.identifier.method.speeds_rpm:
         rpm = float(speed)
         excitation = at_whirl(force, rpm)
-        scene = attrs.evolve(model.scene, excitation=excitation, kinematics=kinematics)
-        at_speed = build_model(scene, make_plan(scene))
+        problem = attrs.evolve(model.problem, excitation=excitation, kinematics=kinematics)
+        at_speed = model_of(problem, plan_of(problem))
         motions.append(simulate(at_speed, solve_equilibrium(at_speed), on_progress))
     return motions
 
@@ -317,7 +317,7 @@ def _at_speed(model: Model, speed: float) -> Model | None:
     if steady is None:
         return None
     excitation = attrs.evolve(steady, speed_rpm=speed * 30.0 / pi)  # type: ignore[misc]
-    return build_model(attrs.evolve(model.scene, excitation=excitation), model.plan)
+    return model_of(attrs.evolve(model.problem, excitation=excitation), model.plan)
 
 
 def steady_record(

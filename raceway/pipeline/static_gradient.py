@@ -20,14 +20,14 @@ from collections.abc import Mapping
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model, build_model
+from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.ring import Evaluation
 from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.duties import renews
+from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import Key, with_number
-from raceway.scene.scene import Scene
 
 #: Steps at which a function is looked at, with their weights: (8 (f_1 - f_-1) - (f_2 - f_-2)) / 12 h, its error h^4 f^(5) / 30.
 WEIGHTS = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
@@ -103,7 +103,7 @@ def _direction_of(model: Model, key: Key) -> Direction:
     solves = model.problem.bearing.preloaded or renews(model.problem.contact.law)
     step, multiples = (_model_step(key, _FOUR), (-2, -1, 1, 2)) if solves else (_model_step(key, _TWO), (-1, 1))
     system, slopes, bends = surrogate(model.system), {}, False
-    _scene(model, key, -step)  # a key at the end of its range is refused, whatever it does
+    _problem(model, key, -step)  # a key at the end of its range is refused, whatever it does
     ahead = _model(model, key, step)
     if _same(model, ahead):
         return Direction(key, {}, np.zeros(5), 0.0, False, 1)
@@ -159,27 +159,27 @@ def _least(key: Key) -> float:
     return _LEAST.get(key.unit, _ELSE)
 
 
-def _scene(model: Model, key: Key, step: float) -> Scene:
-    """The scene with another number at the key."""
+def _problem(model: Model, key: Key, step: float) -> Problem:
+    """The problem with another number at the key."""
     try:
-        scene = with_number(model.scene, key.path, key.value + step)
+        problem = resolve(with_number(model.scene, key.path, key.value + step))
     except ValueError as why:
         if key.value == 0.0:
             raise NoDerivative("is 0, the end of its range: it switches a part on, which is no small change") from None
         raise NoDerivative(f"is at the end of its range: {why}") from None
-    if not model.scene.body_kind.same_bodies(scene):
+    if not model.problem.body_kind.same_bodies(problem):
         raise NoDerivative(
             "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. "
             "bodies.kind = 'rigid' has one"
         )
-    return scene
+    return problem
 
 
 def _model(model: Model, key: Key, step: float) -> Model:
     """The model at another number; the plan stays."""
-    scene = _scene(model, key, step)
+    problem = _problem(model, key, step)
     try:
-        return build_model(scene, model.plan)
+        return model_of(problem, model.plan)
     except RacewayError as why:
         raise NoDerivative(f"no model can be built at {key.value + step:.6g}: {why}") from None
 

@@ -260,7 +260,7 @@ def _started_by(model: Model, kind: str) -> Model:
     problem, excitation = model.problem, model.problem.excitation
     if ramp_turns(excitation) > 0.0:
         excitation = attrs.evolve(excitation, ramp_turns=0.0)
-    problem = problem.changed(excitation=excitation, integrator=attrs.evolve(problem.integrator, start=kind))
+    problem = attrs.evolve(problem, excitation=excitation, integrator=attrs.evolve(problem.integrator, start=kind))
     return attrs.evolve(model, problem=problem)
 
 

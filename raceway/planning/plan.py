@@ -116,21 +116,22 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> ScenePlan:
     >>> rw.make_plan(rw.Scene.from_toml("examples/b7206.toml")).time_step_s  # [s]
     1.388888888888889e-05
     """
-    return _plan(resolve(scene), force)
+    return plan_of(resolve(scene), force)
 
 
-def _plan(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
+def plan_of(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
+    """The same as ``make_plan``, of a problem."""
     refuse_what_cannot_run(problem)
     parts = Decisions(force)
     tilts = decide_tilts(problem, parts)
     balls = decide_balls(problem, parts)
-    problem.scene.body_kind.decide(problem, parts)
+    problem.body_kind.decide(parts)
     motion = decide_motion(problem, parts, tilts, balls.friction)
     decide_output(problem, parts, motion)
     count = problem.bearing.balls_in_all
     if motion.recorded:
         refuse_memory(problem, motion.turns, motion.steps_per_turn, count)
-    cost = problem.scene.body_kind.cost(problem, balls, motion, parts)
+    cost = problem.body_kind.cost(balls, motion, parts)
     free = (0 if problem.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return ScenePlan(
@@ -181,7 +182,7 @@ def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
     problem = resolve(as_scene(scene, plugins=plugins))
     if mistakes := foreseen(problem):
         raise SceneError(mistakes)
-    return _plan(problem)
+    return plan_of(problem)
 
 
 @attrs.frozen(repr=False)
@@ -253,7 +254,7 @@ def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
     """
     try:
         problem = resolve(as_scene(scene, plugins=plugins))
-        _plan(problem)
+        plan_of(problem)
     except SceneError as error:
         return Check(tuple(error.mistakes))
     return Check(tuple(foreseen(problem)), implausible(problem))

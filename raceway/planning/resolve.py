@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import ceil, cos, log, pi, sin, sqrt
-from typing import Any
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
-from raceway.framework.duties import changes_speed, duration_s, ramp_turns, steady_form
+from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
-from raceway.scene.scene import Scene
-from raceway.scene.tables import Contact, Identifying, Integration, Kinematics, Load, Mounting, Rotor, Supports
+from raceway.scene.scene import Scene, SceneTables
+from raceway.scene.tables import (
+    TIME_CONSTANTS,
+)
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
@@ -38,15 +39,12 @@ class Inertia:
 
 
 @attrs.frozen
-class Problem:
+class Problem(SceneTables):
     """What is computed: the tables of a scene, and what follows from them.
 
     Attributes
     ----------
     scene : what the user said, for messages and results
-    bearing ... identifier : its tables and plug-ins
-    spin_speed : of the inner ring [rad/s];  spin_changes : whether it follows an excitation that changes its speed
-    time_constant : of contact dashpots c = tau k [s]
 
     Notes
     -----
@@ -54,30 +52,41 @@ class Problem:
     """
 
     scene: Scene
-    bearing: Bearing
-    supports: Supports
-    rotor: Rotor
-    load: Load
-    excitation: Any
-    bodies: Any
-    mesh: Any
-    contact: Contact
-    kinematics: Kinematics
-    mounting: Mounting
-    integrator: Integration
-    identifier: Identifying
-    spin_speed: float
-    spin_changes: bool
-    time_constant: float
 
-    def changed(self, **tables: Any) -> Problem:
-        """The same problem with other tables."""
-        return resolve(attrs.evolve(self.scene, **tables))
+    @cached_property
+    def body_kind(self) -> BodyKind:
+        """The kind of bodies, which answers for this problem."""
+        return BodyKind(self)
 
     @property
     def traits(self) -> Traits:
         """Of the bodies."""
-        return self.scene.body_kind.traits
+        return self.body_kind.traits
+
+    @cached_property
+    def spin_speed(self) -> float:
+        """Speed of the inner ring [rad/s]."""
+        rpm = self.kinematics.spin_speed_rpm
+        if rpm is None:
+            rpm = speed_rpm(self.excitation) or 0.0
+        return rpm * pi / 30.0
+
+    @cached_property
+    def time_constant(self) -> float:
+        """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""
+        contact = self.contact
+        if contact.in_a_band:
+            return TIME_CONSTANTS[0]
+        if contact.loss_factor is not None and self.excitation is not None:
+            return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
+        return contact.time_constant or 0.0
+
+    @cached_property
+    def spin_changes(self) -> bool:
+        """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
+        excitation = self.excitation
+        changing = excitation is not None and excitation.period_s is None and has_phase(excitation)
+        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
     @cached_property
     def inertia(self) -> Inertia:
@@ -165,7 +174,7 @@ class Problem:
     @cached_property
     def stable_step(self) -> float | None:
         """Rough stable limit of explicit steps [s], by the bodies; None where nothing is known."""
-        return self.scene.body_kind.stable_step(self)
+        return self.body_kind.stable_step()
 
     @cached_property
     def has_orbits(self) -> bool:
@@ -210,12 +219,9 @@ class Problem:
         return self.ramped or self.integrator.start != "orbit" or self.several_speeds
 
 
-_TABLES = tuple(field.name for field in attrs.fields(Problem) if field.name != "scene")
-
-
 def resolve(scene: Scene) -> Problem:
     """What a scene asks for; pure."""
-    return Problem(scene, **{name: getattr(scene, name) for name in _TABLES})
+    return Problem(scene=scene, **{table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)})
 
 
 def damped_limit(limit: float, time_constant: float) -> float:

@@ -217,7 +217,7 @@ def refuse_what_cannot_run(problem: Problem) -> None:
     except SceneError as error:  # a body that lacks its thermal expansion
         growth = error.mistakes
     faults = [
-        *problem.scene.body_kind.faults(), *mistakes(_CONTACTS, problem), *growth, *mistakes(_MOTION, problem),
+        *problem.body_kind.faults(), *mistakes(_CONTACTS, problem), *growth, *mistakes(_MOTION, problem),
     ]  # fmt: skip
     if faults:
         raise SceneError(faults)

@@ -31,6 +31,7 @@ from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
 from raceway.scene.inputs import Change, SceneSource, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
@@ -303,7 +304,7 @@ def law(
     force, stiffness, damping = contact.curves(approach, rate)
     hertz_force, hertz_stiffness = contact.hertz(approach)
     return LawCurves(
-        read.contact.kind, read.title, damping_origin(read), contact, approach, rate, force, stiffness, damping,
+        read.contact.kind, read.title, damping_origin(resolve(read)), contact, approach, rate, force, stiffness, damping,
         hertz_force, hertz_stiffness, cycle(contact, size, frequency), tuple(contact.row(share * elastic) for share in _SHARES),
     )  # fmt: skip
 

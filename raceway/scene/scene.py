@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache, cached_property
-from math import pi
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.framework.duties import BodyKind, has_phase, speed_rpm
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.bearing import Bearing
 from raceway.scene.changes import told
 from raceway.scene.inputs import Given
 from raceway.scene.tables import (
     TABLES,
-    TIME_CONSTANTS,
     Contact,
     Identifying,
     Integration,
@@ -32,7 +29,25 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(repr=False)
-class Scene(Shown):
+class SceneTables:
+    """Tables of a scene file, and plug-ins with their options; excitation and mesh may be None."""
+
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Any
+    mesh: Any
+    contact: Contact
+    kinematics: Kinematics
+    mounting: Mounting
+    integrator: Integration
+    identifier: Identifying
+
+
+@attrs.frozen(repr=False)
+class Scene(SceneTables, Shown):
     """One scene: what is computed, in SI units, every key checked.
 
     Attributes
@@ -56,18 +71,6 @@ class Scene(Shown):
     """
 
     title: str
-    bearing: Bearing
-    supports: Supports
-    rotor: Rotor
-    load: Load
-    excitation: Any
-    bodies: Any
-    mesh: Any
-    contact: Contact
-    kinematics: Kinematics
-    mounting: Mounting
-    integrator: Integration
-    identifier: Identifying
     source: Tables = attrs.field(repr=False, eq=False)
     given: Given | None = attrs.field(default=None, repr=False, eq=False)
 
@@ -136,19 +139,6 @@ class Scene(Shown):
 
         return as_scene(self, tables)
 
-    @cached_property
-    def body_kind(self) -> BodyKind:
-        """The kind of bodies, which answers for this scene."""
-        return BodyKind(self)
-
-    @property
-    def spin_speed(self) -> float:
-        """Speed of the inner ring [rad/s]."""
-        rpm = self.kinematics.spin_speed_rpm
-        if rpm is None:
-            rpm = speed_rpm(self.excitation) or 0.0
-        return rpm * pi / 30.0
-
     def says(self, key: str) -> bool:
         """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
         part: object = self.source
@@ -157,23 +147,6 @@ class Scene(Shown):
                 return False
             part = part[name]
         return True
-
-    @property
-    def time_constant(self) -> float:
-        """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""
-        contact = self.contact
-        if contact.in_a_band:
-            return TIME_CONSTANTS[0]
-        if contact.loss_factor is not None and self.excitation is not None:
-            return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
-        return contact.time_constant or 0.0
-
-    @property
-    def spin_changes(self) -> bool:
-        """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
-        excitation = self.excitation
-        changing = excitation is not None and excitation.period_s is None and has_phase(excitation)
-        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
     def _shown(self) -> tuple[str, list[Fact]]:
         """What was said, a table a row; defaults and a preset's numbers are left out."""

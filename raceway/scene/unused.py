@@ -8,6 +8,7 @@ from contextlib import suppress
 import attrs
 
 from raceway.errors import RacewayError
+from raceway.framework.duties import unused_with_bodies
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
 from raceway.framework.rules import Rule, speaking
@@ -68,7 +69,7 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
     by_plugins = [
         (f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()
     ]
-    core = [*speaking(_RULES, scene), *scene.body_kind.unused()]
+    core = [*speaking(_RULES, scene), *unused_with_bodies(scene)]
     return [*by_plugins, *((key, why) for key, why in core if key in written), *foreign]
 
 

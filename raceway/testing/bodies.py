@@ -20,6 +20,7 @@ from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.duties import unused_with_bodies
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
@@ -199,13 +200,13 @@ class BodiesSuite(Suite):
 
     kind = "bodies"
 
-    @duty("faults(scene): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
+    @duty("faults(problem): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
     def test_faults(self, bodies: BodiesKind) -> str:
         registry, refused = _registry_with(bodies), []
         with _nothing_built():
             for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in _EXTRAS.items()}}.items():
                 scene = _scene_of(bodies, changes, registry)
-                faults = bodies.faults(scene)
+                faults = bodies.faults(resolve(scene))
                 require(isinstance(faults, list), f"{word}: faults() returns {type(faults).__name__}, not a list")
                 for fault in faults:
                     require(isinstance(fault, Mistake), f"{word}: faults() holds {fault!r}, which is no Mistake")
@@ -222,7 +223,7 @@ class BodiesSuite(Suite):
         scene = _scene_of(bodies)
         problem = resolve(scene)
         with _nothing_built():
-            traits, limit, parts = bodies.traits(scene), bodies.stable_step(problem), Decisions()
+            traits, limit, parts = bodies.traits(problem), bodies.stable_step(problem), Decisions()
             require(isinstance(traits, Traits), f"traits() returns {type(traits).__name__}, not Traits")
             require(all(type(trait) is bool for trait in attrs.astuple(traits)), f"{traits} holds more than True and False")
             require(limit is None or 0.0 < limit < np.inf, f"stable_step() = {limit!r} is neither None nor a time [s]")
@@ -236,7 +237,7 @@ class BodiesSuite(Suite):
             names = [part.part for part in (*parts.kept, *parts.left_out)]
             twice = sorted({name for name in names if names.count(name) > 1})
             require(not twice, f"{', '.join(twice)} is decided twice")
-            for path, why in bodies.unused(scene):
+            for path, why in unused_with_bodies(scene):
                 require(_is_key(scene, path) and why, f"unused() names `{path}`, which is no key, or gives no reason")
             cost = bodies.cost(problem, balls, motion, parts)
         require(isinstance(cost, Cost), f"cost() returns {type(cost).__name__}, not Cost")
@@ -366,7 +367,7 @@ class BodiesSuite(Suite):
         plain = settled(_scene_of(bodies, PLAIN, registry))[1].displacement
         for word, (changes, shows) in _EXTRAS.items():
             scene = _scene_of(bodies, changes, registry)
-            if _refused(scene) or not bodies.traits(scene).resultants:
+            if _refused(scene) or not bodies.traits(resolve(scene)).resultants:
                 continue
             computed.append(word)
             try:

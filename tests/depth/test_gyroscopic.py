@@ -144,7 +144,7 @@ def test_moments_of_a_bearing_that_does_not_turn_are_left_out(built):
 def test_the_scalar_of_the_moment(built):
     """J times inner ring's speed times cage speed, J = m D^2 / 10."""
     model = fast(built)
-    g, w = model.geometry, model.scene.spin_speed
+    g, w = model.geometry, model.problem.spin_speed
     mass = 7810.0 * np.pi / 6.0 * g.ball_diameter**3
     expected = (
         mass * g.ball_diameter**2 / 10.0 * w * 0.5 * w * (1.0 - g.ball_diameter * np.cos(np.radians(15)) / g.pitch_diameter)

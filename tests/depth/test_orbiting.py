@@ -156,7 +156,7 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
     }
     model, now = settled(tables)
     row = ball_pass_table(model, now)["rows"][0]
-    cage, b = row["ftf_in_forces"] * model.scene.spin_speed, model.scene.bearing
+    cage, b = row["ftf_in_forces"] * model.problem.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
     centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2
     assert model.system.table[:, CENTRIFUGAL] == pytest.approx(centrifugal, rel=1e-13)

@@ -196,7 +196,7 @@ def test_speed_loosens_a_fit():
     """As much as a solid shaft grows less than the ring's bore: annuli under their own centrifugal force, by finite differences."""
     one = scene(kinematics={"ring_growth": True, "spin_speed_rpm": 30000.0}, shaft_interference=20e-6)
     b = one.bearing
-    steel, w = b.rings, one.spin_speed
+    steel, w = b.rings, resolve(one).spin_speed
     outside = 0.5 * (b.pitch_diameter - b.ball_diameter) + 0.2 * b.ball_diameter
 
     def bore_growth(inside, outside, at):

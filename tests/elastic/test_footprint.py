@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
 from raceway.core.mesh.hex_mesh import azimuth
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.elastic.resultant import Footprint, _ellipse, footprint
 from raceway.elastic.surface import Facets
+from raceway.planning.resolve import resolve
 from raceway.testing import b7206c
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.
@@ -43,7 +44,7 @@ class Place:
 @pytest.fixture(scope="module")
 def bearing():
     scene = scene_from_dict(b7206c(bearing={"ball_count": 3}, bodies={"kind": "elastic"}, mesh=MESH))
-    return scene.bearing, mesh_scene(scene)
+    return scene.bearing, mesh_bodies(resolve(scene))
 
 
 def on(bearing, body: str, angle: float, ball: int = 1) -> Place:

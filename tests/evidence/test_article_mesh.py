@@ -17,13 +17,14 @@ import pytest
 
 from raceway import load_scene
 from raceway.bodies.elastic import elastic_cost
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
 from raceway.bodies.model import build_model
 from raceway.elastic.assembly import Assembly
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.ring import ElasticRing
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
 from raceway.storage.kernel_cache import cache_root
 from validation.command_line import EXAMPLES
 
@@ -132,7 +133,7 @@ def test_cost_at_rest(claim):
     claim("at rest: equilibrium and 5 x 5 stiffness from nothing", first["cpu_s"], unit="CPU s", at_most=600.0, **COST,
           source="one thread, kernels compiled before")  # fmt: skip
     begin = time.process_time()
-    mesh_scene(load_scene(SCENE))
+    mesh_bodies(resolve(load_scene(SCENE)))
     claim("of which meshing", time.process_time() - begin, unit="CPU s", at_most=20.0, **COST, source="a tenth of the whole")
     slowest = max(static(case)["cpu_s"] for case in list(CASES)[1:])
     claim("another load, superelements from the disk: the slowest of three", slowest, unit="CPU s", at_most=20.0, **COST,
@@ -142,7 +143,7 @@ def test_cost_at_rest(claim):
 @pytest.mark.parametrize("name", SIZES)
 def test_plan(claim, name):
     """Before this process grows: a child's peak memory begins with its parent's."""
-    cost = elastic_cost(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()]))
+    cost = elastic_cost(resolve(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()])))
     run = measured(dict(SIZES[name])) if SIZES[name] else static("1000 N")
     size = f"plan, {run['model']['mesh']['cells']} elements"
     twice = {"at_least": 0.5, "at_most": 2.0, "source": "a plan decides whether to start"}

@@ -19,7 +19,8 @@ import pytest
 
 from raceway import load_scene
 from raceway.bodies.condensed import Condensed
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
+from raceway.planning.resolve import resolve
 from raceway.plugins.formats import Vtu
 from raceway.scene.growth import ring_inertia
 from raceway.scene.reading import scene_from_dict
@@ -220,7 +221,7 @@ def test_coarsest_mesh_in_other_scenes(claim, words, bound, changes):
 def half_held(mesh, folder):
     """Tables of an outer ring that its housing holds where y > 0, from files."""
     scene = scene_from_dict(elastic(mesh))
-    found, write = mesh_scene(scene), Vtu().write
+    found, write = mesh_bodies(resolve(scene)), Vtu().write
     outer = found["outer_ring"]
     seat = outer.facet_sets["seat"][outer.points[outer.facet_nodes("seat")].mean(axis=1)[:, 1] > 0.0]
     held = attrs.evolve(outer, facet_sets={**outer.facet_sets, "seat": seat}, node_sets={})
@@ -287,7 +288,7 @@ def test_penalty_of_rigid_bodies(claim):
 def test_inertia_of_the_inner_ring(claim):
     mesh = {"kind": "structured", "element_size": 0.5e-3, "nodes_per_semi_axis": 2}
     scene = scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "mesh": mesh})
-    ring = mesh_scene(scene)["inner_ring"]
+    ring = mesh_bodies(resolve(scene))["inner_ring"]
     place, volume = ring.points[ring.cells].mean(axis=1), ring.cell_volumes()
     solid = scene.bearing.rings.density * float(volume @ (0.5 * (place[:, 1] ** 2 + place[:, 2] ** 2) + place[:, 0] ** 2))
     quantity, source = "transverse inertia of the inner ring: relative error", "0.5 mm hexahedra: chords, cells as points"

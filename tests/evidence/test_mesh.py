@@ -40,10 +40,11 @@ ELEMENTS = 1_061_016
 BUILD = """
 import json, resource, sys, time
 from raceway import load_scene
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
+from raceway.planning.resolve import resolve
 scene = load_scene(sys.argv[1])
 begin = time.process_time()
-meshes = mesh_scene(scene)
+meshes = mesh_bodies(resolve(scene))
 seconds = time.process_time() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 from raceway.core.mesh.quality import summary

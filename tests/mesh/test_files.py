@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.mesh import check_sets, mesh_scene
+from raceway.bodies.mesh import check_sets, mesh_bodies
+from raceway.planning.resolve import resolve
 from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.gmsh import Gmsh
@@ -163,7 +164,7 @@ def test_files_of_no_use(mesher, name, words, tmp_path, capfd):
 def test_scenes_name_files_beside_them(given, tmp_path):
     mesh = 'kind = "file"\nscale = 1e-2\ninner_ring = "body.inp"\nsets = {inner_ring = {raceway = "outside"}}\n'
     (tmp_path / "scene.toml").write_text(f'[bearing]\npreset = "B7206C"\n[mesh]\n{mesh}')
-    assert mesh_scene(load_scene(tmp_path / "scene.toml"))["inner_ring"].volume() == pytest.approx(6e-6)
+    assert mesh_bodies(resolve(load_scene(tmp_path / "scene.toml")))["inner_ring"].volume() == pytest.approx(6e-6)
     for more, words in (({}, "names no body"), ({"ball": "b.inp", "sets": {"bal": {}}}, r"did you mean 'ball'")):
         with pytest.raises(SceneError, match=words):
             scene_from_dict({"bearing": {"preset": "B7206C"}, "mesh": {"kind": "file", **more}})

@@ -9,7 +9,8 @@ import attrs
 import pytest
 
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
-from raceway.bodies.mesh import mesh_scene, predicted_mesh
+from raceway.bodies.mesh import mesh_bodies, predicted_mesh
+from raceway.planning.resolve import resolve
 from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.structured_mesh import Structured
@@ -27,8 +28,8 @@ def scene(bodies="elastic", **mesh):
 
 def test_the_prediction_is_the_mesh():
     chosen = scene(element_size=1.5e-3, nodes_per_semi_axis=2)
-    found = predicted_mesh(chosen)
-    meshes = mesh_scene(chosen)
+    found = predicted_mesh(resolve(chosen))
+    meshes = mesh_bodies(resolve(chosen))
     assert {body["name"]: body["cells"] for body in found["bodies"]} == {n: len(m.cells) for n, m in meshes.items()}
     assert found["cells"] == sum(len(mesh.cells) for mesh in meshes.values())
     kept = sum(mesh.memory_bytes for mesh in meshes.values())
@@ -82,16 +83,16 @@ def millimetres(tmp_path_factory):
 def test_a_forgotten_scale_is_refused_with_the_remedy(millimetres, body):
     mesh = {"kind": "file", body: str(millimetres / f"{body}.inp")}
     with pytest.raises(MeshError, match=rf"`mesh.scale` = 1.0: the mesh of '{body}' .* write mesh.scale = 0.001 "):
-        mesh_scene(scene(**mesh))
+        mesh_bodies(resolve(scene(**mesh)))
     with pytest.raises(MeshError, match=r"write mesh.scale = 0.001 "):
-        mesh_scene(scene(**mesh, scale=1e-6))
-    assert list(mesh_scene(scene(**mesh, scale=1e-3))) == [body]
+        mesh_bodies(resolve(scene(**mesh, scale=1e-6)))
+    assert list(mesh_bodies(resolve(scene(**mesh, scale=1e-3)))) == [body]
 
 
 def test_a_body_of_another_bearing_is_warned_of(millimetres):
     mesh = {"kind": "file", "outer_ring": str(millimetres / "outer_ring.inp"), "scale": 1.1e-3}
     with pytest.warns(UserWarning, match=r"'outer_ring' measures 0.0682 m where `outer_diameter` of the bearing is 0.062 m"):
-        mesh_scene(scene(**mesh))
+        mesh_bodies(resolve(scene(**mesh)))
 
 
 def test_balls_of_another_size_are_warned_of_once(tmp_path):
@@ -99,7 +100,7 @@ def test_balls_of_another_size_are_warned_of_once(tmp_path):
     centred = ball.points - 0.5 * (ball.points.max(axis=0) + ball.points.min(axis=0))
     Abaqus().write(tmp_path / "ball.inp", attrs.evolve(ball, points=0.8 * centred))
     with pytest.warns(UserWarning, match="`ball_diameter` of the bearing") as found:
-        mesh_scene(scene(kind="file", ball=str(tmp_path / "ball.inp")))
+        mesh_bodies(resolve(scene(kind="file", ball=str(tmp_path / "ball.inp"))))
     assert len(found) == 1
 
 
@@ -140,16 +141,23 @@ class Guessing:
 
 def test_other_meshers_predictions_are_judged():
     chosen = scene()
-    assert predicted_mesh(attrs.evolve(chosen, mesh=Guessing({"ball_0": 7})))["cells"] == 7
+    assert predicted_mesh(resolve(attrs.evolve(chosen, mesh=Guessing({"ball_0": 7}))))["cells"] == 7
     with pytest.raises(MeshError, match="`mesh.kind` = 'guessing': would give about 1e\\+09 elements"):
-        predicted_mesh(attrs.evolve(chosen, mesh=Guessing({"ball_0": 10**9})))
+        predicted_mesh(resolve(attrs.evolve(chosen, mesh=Guessing({"ball_0": 10**9}))))
     with pytest.raises(PluginError, match="predict\\(\\) returned float; it must be body -> number of cells"):
-        predicted_mesh(attrs.evolve(chosen, mesh=Guessing(7.0)))
+        predicted_mesh(resolve(attrs.evolve(chosen, mesh=Guessing(7.0))))
 
 
-@pytest.mark.parametrize(("duty", "call"), [("mesh", mesh_scene), ("predict", predicted_mesh), ("predict", make_plan)])
+@pytest.mark.parametrize(
+    ("duty", "call"),
+    [
+        ("mesh", lambda scene: mesh_bodies(resolve(scene))),
+        ("predict", lambda scene: predicted_mesh(resolve(scene))),
+        ("predict", make_plan),
+    ],
+)
 def test_what_a_mesher_raises_is_put_to_its_name(duty, call):
     with pytest.raises(PluginError, match=rf"^mesher 'guessing': {duty}\(\) raises KeyError: 'teeth'"):
         call(attrs.evolve(scene(), mesh=Guessing(KeyError("teeth"))))
     with pytest.raises(MemoryError):  # no fault of a mesher: the command line says what to do about it
-        mesh_scene(attrs.evolve(scene(), mesh=Guessing(MemoryError())))
+        mesh_bodies(resolve(attrs.evolve(scene(), mesh=Guessing(MemoryError()))))

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.mesh import mesh_scene, scene_mesher
+from raceway.bodies.mesh import mesh_bodies, mesher_of
 from raceway.core.mesh import ball_mesh as sphere
 from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.mesh.hex_mesh import EDGES, graded, growing
 from raceway.core.mesh.quality import _quality, refuse_bad_cells, summary
 from raceway.core.mesh.ring_mesh import ring_mesh, ring_shape
+from raceway.planning.resolve import resolve
 from raceway.plugins.structured_mesh import Structured
 from tests.mesh.solids import facet_normals
 from validation.command_line import EXAMPLES
@@ -142,7 +143,7 @@ def test_nodes_of_the_groove_bore_and_sides_lie_on_them():
 def test_the_articles_mesh_has_its_size_and_is_good():
     scene = load_scene(EXAMPLES / "b7206_article_mesh.toml")
     assert scene_from_dict(scene.to_dict()).mesh == scene.mesh
-    meshes = mesh_scene(scene)
+    meshes = mesh_bodies(resolve(scene))
     found = summary({name: meshes[name] for name in ("inner_ring", "outer_ring", "ball_00")})
     cells = sum(len(mesh.cells) for mesh in meshes.values())
     assert abs(cells / 1_061_016 - 1.0) < 0.001
@@ -154,9 +155,9 @@ def test_the_articles_mesh_has_its_size_and_is_good():
 def test_the_ball_load_comes_from_the_scene():
     tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "mesh": {"kind": "structured"}}
     # 1000 N on 12 balls at 15 to 19 degrees: 256 to 322 N.
-    assert 250.0 < scene_mesher(scene_from_dict(tables)).ball_load < 330.0
+    assert 250.0 < mesher_of(resolve(scene_from_dict(tables))).ball_load < 330.0
     with pytest.raises(SceneError, match="`mesh`"):
-        mesh_scene(scene_from_dict({"bearing": {"preset": "B7206C"}}))
+        mesh_bodies(resolve(scene_from_dict({"bearing": {"preset": "B7206C"}})))
 
 
 @pytest.mark.parametrize(

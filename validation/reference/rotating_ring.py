@@ -6,6 +6,7 @@ from scipy.sparse.linalg import spsolve
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.revolution.body import Revolution
 from raceway.core.revolution.sections import coarse_profile
+from raceway.planning.resolve import resolve
 
 
 def growth_by_elements(scene, size=0.5e-3):
@@ -15,7 +16,7 @@ def growth_by_elements(scene, size=0.5e-3):
     body = Revolution(profile, 360, steel.young, steel.poisson, steel.density, seat="free")
     nodes = len(profile.points)
     load, moved = np.zeros(3 * nodes), np.zeros(3 * nodes)
-    load[::3] = np.asarray(body.sector.mass).reshape(nodes, -1)[:, 0] * scene.spin_speed**2 * profile.points[:, 0]
+    load[::3] = np.asarray(body.sector.mass).reshape(nodes, -1)[:, 0] * resolve(scene).spin_speed ** 2 * profile.points[:, 0]
     # Harmonic 0 without torsion; one node held along the axis.
     kept = np.setdiff1d(np.arange(3 * nodes), np.r_[1 : 3 * nodes : 3, 2])
     moved[kept] = spsolve(body.harmonic(0).tocsc()[kept][:, kept], load[kept])

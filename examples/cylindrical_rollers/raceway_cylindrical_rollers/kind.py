@@ -54,7 +54,7 @@ class CylindricalRollers:
             "kinematics": {"ball_inertia": False},
         }  # fmt: skip
 
-    def faults(self, scene: Scene) -> list[Mistake]:
+    def faults(self, problem: Problem) -> list[Mistake]:
         """Loads and motions that rollers do not carry, contacts that are no lines, forces that are not computed."""
         found: list[Mistake] = []
 
@@ -62,11 +62,14 @@ class CylindricalRollers:
             if bad:
                 found.append(Mistake(path, value, why))
 
-        b, supports, contact, moving = scene.bearing, scene.supports, scene.contact, scene.kinematics
+        b, supports, contact, moving = problem.bearing, problem.supports, problem.contact, problem.kinematics
         nothing = "cylindrical rollers carry no axial load: something else holds the ring, supports.axial = 'displacement'"
         refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
         refuse(
-            scene.load.axial != 0.0, "load.axial", scene.load.axial, "cylindrical rollers carry no axial load: leave it out"
+            problem.load.axial != 0.0,
+            "load.axial",
+            problem.load.axial,
+            "cylindrical rollers carry no axial load: leave it out",
         )
         why = "the rollers' stiffness against tilts is not computed: use 'locked'"
         refuse(supports.tilt != "locked", "supports.tilt", supports.tilt, why)
@@ -86,12 +89,12 @@ class CylindricalRollers:
         refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers come in one row: use 'single'")
         why = "a line contact has none: give bearing.radial_clearance alone"
         refuse(bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, why)
-        refuse(scene.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: leave the table out")
+        refuse(problem.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: leave the table out")
         for key, seat in (("outer_seat", supports.outer_seat), ("inner_seat", supports.inner_seat)):
             refuse(seat != "rigid", f"supports.{key}", seat, "rigid rings have rigid seats: use 'rigid'")
         return found
 
-    def traits(self, scene: Scene) -> Traits:
+    def traits(self, problem: Problem) -> Traits:
         """Compiled contact resultants."""
         return Traits()
 

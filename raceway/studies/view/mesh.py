@@ -193,8 +193,9 @@ def mesh(
     RacewayError
         A format that only reads, or a package that is missing.
     """
-    from raceway.bodies.mesh import mesh_scene
+    from raceway.bodies.mesh import mesh_bodies
     from raceway.core.mesh.quality import summary
+    from raceway.planning.resolve import resolve
 
     registry = registry_with(plugins)
     written = _format(registry, form)
@@ -205,7 +206,7 @@ def mesh(
     if scene.mesh is None:
         scene = attrs.evolve(scene, mesh=registry.find("mesher", "structured").plugin())
     try:
-        meshes = mesh_scene(scene)
+        meshes = mesh_bodies(resolve(scene))
     except MemoryError:
         raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
     seconds = time.perf_counter() - start

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 import numpy as np
 
-from raceway.bodies.mesh import mesh_scene
+from raceway.bodies.mesh import mesh_bodies
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
@@ -203,7 +203,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
     images = dict(_images(result, bearing, moments, on_progress))
     fields: dict[str, bytes] = {}
     if result.model.traits.every_node:
-        mesh = mesh_picture(mesh_scene(result.model.scene), f"{result.title}\nthe mesh")
+        mesh = mesh_picture(mesh_bodies(result.model.problem), f"{result.title}\nthe mesh")
         images["mesh.png"] = _Image(mesh, "the mesh of rings and balls", "The finite-element mesh, a sector cut away")
         fields = _stresses(result, images, on_progress)
     files = {name: image.content for name, image in images.items()}
