@@ -27,11 +27,11 @@ from raceway.points import sensitivities as bars
 from raceway.points.law import law
 from raceway.points.plot import layout, select
 from raceway.studies.article import figures as article
-from raceway.studies.catalogue import section as drawing
+from raceway.studies.catalogue import catalogue as drawing
 from raceway.studies.fit import picture as fits
 from raceway.studies.fit.shaft_angle import rotation_of
 from raceway.studies.fit.synchronous import synchronous
-from raceway.studies.rig import page as rig
+from raceway.studies.rig import study as rig
 from raceway.studies.view import pictures as view_pictures
 from raceway.studies.view import stress
 from raceway.studies.view.bodies import Bearing

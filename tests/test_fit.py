@@ -11,9 +11,8 @@ from raceway import ConvergenceError, SceneError, load_scene
 from raceway.scene.changes import with_number
 from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
-from raceway.studies.fit.disturbances import aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
-from raceway.studies.fit.linear import _free_parts, _Linear, _spectra_of
+from raceway.studies.fit.linear import _aliased, _free_parts, _Linear, _spectra_of, _spectrum, _tone, _uneven
 from raceway.studies.fit.signals import signals_of, write_recording
 from raceway.studies.fit.table import _TableResiduals, measurements_in
 from raceway.studies.rig.signals import record as rig_record
@@ -291,9 +290,9 @@ def test_noise_that_is_not_white_is_named_and_its_own_scatter_makes_the_interval
 def test_power_that_is_not_even_is_found_where_it_is():
     """Exponential power with four times the mean over a 16th of the lines, and none of the kind where it is even."""
     power = np.random.default_rng(4).exponential(size=(1600, 1))
-    assert uneven(power) is None
+    assert _uneven(power) is None
     power[700:800] *= 4.0
-    where, factor = uneven(power)
+    where, factor = _uneven(power)
     assert 700 <= where < 800 and factor == pytest.approx(4.0 / (1.0 + 3.0 / 16.0), rel=0.3)
 
 
@@ -301,11 +300,11 @@ def test_a_tone_between_lines_is_found_at_its_frequency():
     """20.3 lines: the transform of a cosine is that of its window, which falls with the distance."""
     n, random = 2048, np.random.default_rng(5)
     noise, t = random.standard_normal(n), np.arange(n)
-    lines = spectrum(np.cos(20.3 * 2.0 * np.pi * t / n + 1.0)[:, None])
+    lines = _spectrum(np.cos(20.3 * 2.0 * np.pi * t / n + 1.0)[:, None])
     white, omega = np.full((200, 1), 1.0 / n), 2.0 * np.pi * np.arange(1, 201) / n
-    small = spectrum(noise[:, None])[1:201]
-    assert tone(small, white, omega) is None
-    assert tone(lines[1:201] + small, white, omega) == pytest.approx(20.3 * 2.0 * np.pi / n, rel=2e-3)
+    small = _spectrum(noise[:, None])[1:201]
+    assert _tone(small, white, omega) is None
+    assert _tone(lines[1:201] + small, white, omega) == pytest.approx(20.3 * 2.0 * np.pi / n, rel=2e-3)
 
 
 def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
@@ -320,8 +319,8 @@ def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
             phase, w0 = (t - begin) / width, np.pi / width
             sampled += np.where((phase > 0.0) & (phase < 1.0), size * np.sin(np.pi * phase), 0.0)
             exact += size * np.exp(-1j * w * begin) * w0 * (1.0 + np.exp(-1j * w * width)) / (w0**2 - w**2) / n
-        error = spectrum(sampled[:, None])[20:1000, 0] - exact[20:1000]
-        said, part = aliased(sampled[:, None], np.array([1e-12]))
+        error = _spectrum(sampled[:, None])[20:1000, 0] - exact[20:1000]
+        said, part = _aliased(sampled[:, None], np.array([1e-12]))
         assert 0.0 < part < 1.0
         ratios.append(np.sqrt((np.abs(error) ** 2).mean() / (np.abs(said[20:1000]) ** 2).mean()))
     assert 0.8 < np.exp(np.mean(np.log(ratios))) < 1.25

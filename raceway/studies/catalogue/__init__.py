@@ -1,9 +1,8 @@
 """The catalogue of bearings, and balls and grooves inferred from what a maker prints.
 
-catalogue            ``raceway.catalogue``: bearings listed, searched, one in full, and the command;  section: its picture, in proportion
+catalogue            ``raceway.catalogue``: bearings listed, searched, one in full, and the command; its section in proportion
 printed              what makers print, and tables of it
-ratings              load ratings of ISO 281 and ISO 76; Hertz contacts of many grooves; axial stiffness of a preloaded pair
-rating_conventions   how makers rate: by the standards' tables, or by their own grooves; candidates of ball count and diameter
+rating_conventions   load ratings of ISO 281 and ISO 76, and how makers rate: by the standards' tables, or by their own grooves; candidates of ball count and diameter
 inferred             from printed numbers to balls and grooves, each number with scatter and reason
 infer                ``raceway.infer``, and tables of many bearings; ``raceway catalogue --infer``
 """

@@ -6,5 +6,5 @@ shaft_angle      angle of the shaft from keyphasor pulses or speed;  synchronous
 estimate         free and uncertain numbers, least squares, confidence region, combinations that the data do not determine
 rig              from the 1x response at the sensor to the bearing: by inversion, by a fit
 table            fit to measured K, C, displacements over keys of the scene
-linear           K, C, mass from force and displacement;  disturbances: hum, coloured noise, aliasing of such a record
+linear           K, C, mass from force and displacement; hum, coloured noise, aliasing of such a record
 """

@@ -8,7 +8,12 @@ With noise of both channels, residuals e = Z X + T - F have the variance s^2 = |
 s with Z, which removes the bias by noise in X.  sx^2 and sf^2, sums of white noise and powers of 1 / w, are determined by the residuals
 themselves.  Tones in them (hum) are fitted beside T, with amplitudes that may grow or fall: a tone in X is Z at its frequency times the same,
 but for a polynomial that T has.  Where residuals are not white then, each frequency's score determines the covariance (White's sandwich, with
-leverages: HC3), and a force that is not over at half the sampling rate widens it (``disturbances``).
+leverages: HC3), and a force that is not over at half the sampling rate widens it.
+
+Power of residuals over their variance is exponential with the mean 1 at each frequency, independent from one to the next, where noise is
+stationary.  A peak far above its neighbours is a tone; blocks of frequencies whose means differ by more than that allows are not white.
+A force sampled at fs has at each frequency w its true spectrum at fs - w added.  What its upper half would add at half the rate, with
+signs of lobes and times of pulses, stands for that: spectra of pulses without jumps fall with 1 / w^2 beyond their first lobe.
 
 References
 ----------
@@ -24,10 +29,69 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.studies.fit.disturbances import TONES, aliased, spectrum, tone, uneven
 from raceway.studies.fit.estimate import Estimate, Free, estimate, judged
 from raceway.studies.fit.fitted import Fitted, Series, refuse_few
 from raceway.studies.fit.signals import Signals
+
+#: A tone's power over the median of its neighbours, which lie within this many frequencies; frequencies of a tone to either side; tones at most.
+_FAR, _NEIGHBOURS, _WIDTH, TONES = 30.0, 16, 2, 6
+#: Blocks of frequencies whose powers are compared, and probability below which they are not alike.
+_BLOCKS, _UNLIKELY = 16, 1e-3
+#: Part of the frequencies below half the sampling rate whose mean power is compared with noise, and the factor by which it is more.
+_TOP, _LOUDER = 0.1, 4.0
+
+
+def _spectrum(signal: np.ndarray) -> np.ndarray:
+    """Discrete Fourier transform of real signals (N, ...) less their means, over N."""
+    return np.asarray(np.fft.rfft(signal - signal.mean(axis=0), axis=0) / len(signal))
+
+
+def _tone(residuals: np.ndarray, variance: np.ndarray, omega: np.ndarray) -> float | None:
+    """Frequency [rad/s] of the largest tone in complex residuals (n, d) at even frequencies (n,); None without one."""
+    power = np.abs(residuals) ** 2 / variance
+    peak, axis = np.unravel_index(int(np.argmax(power)), power.shape)
+    power, residual = power[:, axis], residuals[:, axis]
+    distance = np.abs(np.arange(len(power)) - peak)
+    near = power[(distance <= _NEIGHBOURS) & (distance > _WIDTH)]
+    if len(near) < _NEIGHBOURS or power[peak] < _FAR * np.median(near) / np.log(2.0):
+        return None
+    beside = max((k for k in (peak - 1, peak + 1) if 0 <= k < len(power)), key=lambda k: float(power[k]))
+    # The components of a tone fall with the distance from it, their phases alternate.
+    index = float(((peak * residual[peak] - beside * residual[beside]) / (residual[peak] - residual[beside])).real)
+    return float(omega[0] + (omega[1] - omega[0]) * np.clip(index, peak - 1, peak + 1))
+
+
+def _uneven(power: np.ndarray) -> tuple[int, float] | None:
+    """Index amid the block of power (n, d) over variance that is farthest from the mean, and its factor; None for white residuals."""
+    from scipy.stats import chi2
+
+    blocks = np.array_split(power, _BLOCKS)
+    factors = np.array([block.mean() for block in blocks]) / power.mean()
+    deviations = np.array([block.size for block in blocks]) * (factors - 1.0) ** 2
+    if chi2.sf(deviations.sum(), _BLOCKS - 1) > _UNLIKELY:
+        return None
+    worst = int(np.argmax(deviations))
+    return sum(len(block) for block in blocks[:worst]) + len(blocks[worst]) // 2, float(factors[worst])
+
+
+def _aliased(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
+    """Standard error (N / 2 + 1, d), with its phase, of a force (N, d) by its spectrum beyond half the sampling rate.
+
+    noise : (d,) variance at a frequency, at most
+    Returns as well : largest amplitude just below half the rate over that of all frequencies; 0 where noise hides it
+    """
+    count = len(signal)
+    quiet = signal - np.median(signal, axis=0)
+    # A window removes what beginning and end of a record add everywhere, and leaves 3 / 8 of the noise; pulses are rare, noise is not.
+    windowed = np.abs(_spectrum(np.hanning(count)[:, None] * quiet)) ** 2
+    noise = np.minimum(noise, (1.4826 * np.median(np.abs(quiet), axis=0)) ** 2 / count)
+    level = windowed[-int(_TOP * len(windowed)) :].mean(axis=0)
+    visible = level > _LOUDER * 0.375 * noise
+    share = np.linspace(0.0, 1.0, count // 2 + 1)[:, None]  # frequency over half the rate
+    folded = _spectrum((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
+    part = float(np.sqrt(np.where(visible, level / windowed.max(axis=0), 0.0).max()))
+    return np.where(visible, folded, 0.0) / np.sqrt(2.0), part
+
 
 #: Part of the force's power below and above the band of frequencies that are used, and how far these reach beyond it.
 _OUTSIDE, _WIDER = 5e-4, 0.5
@@ -84,7 +148,7 @@ def _spectra_of(signals: Signals) -> _Spectra:
     displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
     count, interval = len(force), float(steps.mean())
     omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)
-    of_force, of_displacement = spectrum(force), spectrum(displacement)
+    of_force, of_displacement = _spectrum(force), _spectrum(displacement)
     power = np.cumsum((np.abs(of_force) ** 2).sum(axis=1))
     low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
@@ -152,7 +216,7 @@ class _Linear:
         x, turns = 1j * omega / omega[-1], np.outer(time, self.tones)
         grown = (time / time[-1])[:, None]
         waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)]
-        hum = [spectrum(wave)[self.spectra.indices] for wave in waves]
+        hum = [_spectrum(wave)[self.spectra.indices] for wave in waves]
         self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE), *hum])
         powers = {"K": np.ones_like(omega) + 0j, "C": 1j * omega, "mass": -(omega**2) + 0j}
         self.slopes = np.zeros((len(omega), len(axes), len(axes), len(self.free)), complex)
@@ -221,7 +285,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
 def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, _Linear, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
-    while hum := tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
+    while hum := _tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
         tones = (*problem.tones, hum)
         if len(tones) > TONES or _share_of_force(spectra, tones) > _TONAL:
             answer, problem = without_tones  # a model that misses the force itself does so at the force's frequencies
@@ -289,13 +353,13 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
     if (growth := float(np.sqrt((variance / white)[: max(len(hz) // 16, 1)].mean()))) > _COLOURED:
         text = f"noise grows toward low frequencies (1/f): at {hz[0]:.4g} Hz {growth:.2g} times its white part"
         problem.remarks.append(f"{text}; weights follow it")
-    if largest := uneven((answer.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
+    if largest := _uneven((answer.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
         lever = 1.0 - (np.linalg.qr(answer.jacobian)[0] ** 2).sum(axis=1)
         scores = (slopes * (answer.residuals / np.maximum(lever, _LEVER))[:, None]).reshape(2, -1, count).sum(axis=0)
         text = f"residuals are not white: their power near {hz[largest[0]]:.4g} Hz is {largest[1]:.2g} times the mean"
         problem.remarks.append(f"{text}; intervals follow from each line's own")
     alone = judged(answer.free[:count], answer.values[:count], answer.residuals, slopes, False, answer.evaluations, scores)
-    force, share = aliased(spectra.signal, variance.min(axis=0))
+    force, share = _aliased(spectra.signal, variance.min(axis=0))
     if not share:
         return alone
     problem.remarks.append(

@@ -1,6 +1,5 @@
 """Reference cases: published numbers, closed forms, and this program by two ways.
 
-study   ``raceway verify``: every case and its verdict
+study   ``raceway verify``: how each case is computed, and its verdict
 reference   the cases of sources, and a number beside theirs
-cases   how each is computed: bearings, impacts of spheres, peak pressures of the article
 """
