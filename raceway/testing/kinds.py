@@ -54,7 +54,7 @@ class FormatSuite(Suite):
     """
 
     kind = "format"
-    what: Any = None
+    what: object = None
 
     @duty("attributes: suffixes with the dot, options")
     def test_declaration(self, form: Format) -> None:
@@ -93,7 +93,7 @@ class FormatSuite(Suite):
                     else:
                         require(False, f"`{path.name}` is read without an error")
 
-    def _content(self, form: Format) -> Any:
+    def _content(self, form: Format) -> object:
         if self.what is not None:
             return self.what
         example = getattr(form, "example_content", None)

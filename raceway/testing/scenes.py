@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
@@ -11,15 +13,15 @@ if TYPE_CHECKING:
     from raceway.scene.scene import Scene
 
 
-def b7206c(**tables: object) -> dict[str, Any]:
+def b7206c(**tables: object) -> Tables:
     """The tables of a B7206C under 1000 N; each keyword replaces or extends one table."""
-    scene: dict[str, Any] = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    scene: Tables = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
     for name, table in tables.items():
         scene[name] = {**scene.get(name, {}), **table} if isinstance(table, dict) else table
     return scene
 
 
-def model_of(scene: Scene | dict[str, Any]) -> Model:
+def model_of(scene: Scene | Tables) -> Model:
     """The built model of a scene, or of its tables."""
     from raceway import build_model, make_plan, scene_from_dict
 
@@ -27,7 +29,7 @@ def model_of(scene: Scene | dict[str, Any]) -> Model:
     return build_model(scene, make_plan(scene))
 
 
-def settled(scene: Scene | dict[str, Any]) -> tuple[Model, Equilibrium]:
+def settled(scene: Scene | Tables) -> tuple[Model, Equilibrium]:
     """Model and static equilibrium of a scene, or of its tables."""
     from raceway.pipeline.equilibrium import solve_equilibrium
 

@@ -148,7 +148,7 @@ class Suite:
     apart: ClassVar[bool] = True
 
     @duty("a frozen attrs class whose options are declared")
-    def test_declaration(self, plugin: Any) -> None:
+    def test_declaration(self, plugin: attrs.AttrsInstance) -> None:
         check_class(self.kind, plugin)
 
     @classmethod
@@ -176,7 +176,7 @@ class Suite:
             raise ConformityError(f"{type(self).__name__} needs a class attribute `plugin`")
         return self.plugin if isinstance(self.plugin, type) else type(self.plugin)
 
-    def examples(self) -> Iterator[Any]:
+    def examples(self) -> Iterator[object]:
         """Instances to check; suites for plug-ins whose options matter override it or give the class ``examples()``."""
         if not isinstance(self.plugin, type):
             yield self.plugin
@@ -231,7 +231,7 @@ class Suite:
         require(notes, "there is no example to check")
         return "; ".join(dict.fromkeys(n for n in notes if n))
 
-    def _examples(self) -> list[Any]:
+    def _examples(self) -> list[object]:
         try:
             return list(self.examples())
         except ConformityError:

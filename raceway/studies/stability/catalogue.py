@@ -6,7 +6,6 @@ What a case measures is in the module that its ``measure`` names.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import attrs
 
@@ -343,7 +342,7 @@ def _points(base: Tables, registry: Registry) -> Iterator[Case]:
     turn: Tables = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
     for law in _laws_with(registry, "nodal"):
 
-        def case(name: str, measure: str, changes: Tables, shown: Tables | None = None, law: str = law, **more: Any) -> Case:
+        def case(name: str, measure: str, changes: Tables, shown: Tables | None = None, law: str = law, **more: str) -> Case:
             setting = {"law": law, "bodies": "condensed, points", **(shown or {})}
             arguments = {"tables": base, "changes": {**_POINTS, **changes, "contact.kind": law}, **more}
             return Case(f"surface points: {name}", measure, setting, arguments, measure == _AT_REST and name == "base")
@@ -365,7 +364,7 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
     """One force a contact and pressures at points, with every law that both can have."""
 
     def case(
-        name: str, measure: str, changes: Tables, bodies: str = "points", tables: Tables = TINY, law: str = "", **more: Any
+        name: str, measure: str, changes: Tables, bodies: str = "points", tables: Tables = TINY, law: str = "", **more: str
     ) -> Case:  # fmt: skip
         setting = ({"law": law} if law else {}) | {"bodies": f"elastic, {bodies}"}
         setting |= {"integrator": more["integrator"]} if "integrator" in more else {}
