@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from raceway.studies.catalogue.infer import _sizes_of
 from raceway.studies.catalogue.inferred import STIFFNESS_90, Inferred, infer_printed
-from raceway.studies.catalogue.printed import printed_by, sizes_of
+from raceway.studies.catalogue.printed import printed_by
 from raceway.studies.catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
 FOLDER = Path(__file__).resolve().parents[1] / "raceway" / "data" / "series"
@@ -103,7 +104,7 @@ def _list(words: Iterable[str]) -> str:
 
 def every() -> dict[str, str]:
     """Text by series."""
-    sizes = [infer_printed(one, maker="NSK", conformity=CONFORMITY) for one in sizes_of(printed_by("nsk"))]
+    sizes = [infer_printed(one, maker="NSK", conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))]
     return {series: text(series, [x for x in sizes if x.printed.names[0].startswith(series)]) for series in SERIES}
 
 

@@ -12,9 +12,9 @@ import raceway as rw
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.studies.catalogue.infer import _infer_table
+from raceway.studies.catalogue.infer import _infer_table, _sizes_of
 from raceway.studies.catalogue.inferred import STIFFNESS_90, infer_printed
-from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by, sizes_of
+from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by
 from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS, _BallRow, _groove, _load_factor, _static_factor
 from validation.command_line import invoke
 
@@ -26,7 +26,7 @@ HEAD = "name,bore_mm,outer_diameter_mm,width_mm,contact_angle_deg,dynamic_rating
 @pytest.fixture(scope="module")
 def series():
     """The printed sizes of the series 70, 72, 79, inferred with one conformity."""
-    return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in sizes_of(printed_by("nsk"))}
+    return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))}
 
 
 # --- standards

@@ -20,8 +20,9 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.store import written
 from raceway.studies.stability import scenes, systems
 from raceway.studies.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
+from raceway.studies.stability.scenes import _axial_displacement, _axial_force
 from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
-from raceway.studies.stability.systems import Bench, axial_displacement, axial_force
+from raceway.studies.stability.systems import Bench
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
@@ -139,9 +140,9 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
         model = Bench(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY).model()
         found[load] = solve_equilibrium(model)
         # A difference over a thousandth of the penetration errs by the square of that.
-        assert axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
+        assert _axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
     # The state decides, not the load that the model was given.
-    assert axial_force(model, found[1e5]) == pytest.approx(1e5, rel=1e-5)
+    assert _axial_force(model, found[1e5]) == pytest.approx(1e5, rel=1e-5)
     balls = found[1e5]
     along = balls.contact_force[:12] * np.sin(balls.angle_inner)
     assert along.sum() / 1e5 - 1.0 > 0.02
@@ -274,18 +275,18 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
     model = Bench(BASE, {**_with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
-    own, found = axial_displacement(model), solve_equilibrium(model).displacement[0]
+    own, found = _axial_displacement(model), solve_equilibrium(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
     # Deliberate fault: surfaces that touch.
     monkeypatch.setattr(systems, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
-    assert abs(axial_displacement(model) / found - 1.0) > 0.1
+    assert abs(_axial_displacement(model) / found - 1.0) > 0.1
 
 
 def test_the_axial_displacement_by_a_laws_own_force():
     """Of the cubic law in closed form: delta = (Q / 2e17)^(1/3) at both races."""
     model = Bench(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry_with([CUBIC])).model()
-    axial, radial = np.add(model.geometry.rest, (axial_displacement(model), 0.0))
+    axial, radial = np.add(model.geometry.rest, (_axial_displacement(model), 0.0))
     approach = np.hypot(axial, radial) - model.geometry.centre_distance
     load = 2e17 * (0.5 * approach) ** 3
     assert 12 * load * axial / np.hypot(axial, radial) == pytest.approx(1000.0, rel=1e-9)

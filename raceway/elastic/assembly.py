@@ -56,47 +56,6 @@ class Cage:
         return np.asarray(self.rows.T @ self.force(u))
 
 
-#: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
-SHARE = 0.1
-#: With friction: of a motion in which a ball rolls, and of turning in the meridian plane, where it does not.
-_ROLLS, _HELD = 1e-3, 100.0
-
-
-def cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray:
-    """(4,) springs [N/m, N m/rad] of a ball's cage, for the rows of ``cage_rows``.
-
-    Parameters
-    ----------
-    normal : stiffness of a Hertz contact [N/m];  diameter : of the ball [m]
-
-    Notes
-    -----
-    With friction a cage's stiffness is felt: what pushes a ball that cannot turn slides or sticks.  Balls roll along their orbits,
-    hence freely about axes in the meridian plane; about the orbit they do not, as for rigid and condensed bodies.
-    """
-    turning = 0.1 * diameter**2  # of a sphere: what a spring on every node by its mass holds against turning
-    share = np.array([_ROLLS, _HELD, _ROLLS, _ROLLS] if friction else [SHARE] * 4)
-    return np.asarray(share * normal * np.array([1.0, turning, turning, turning]))
-
-
-def cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
-
-    Notes
-    -----
-    A rigid motion u = c + w x r about the centre of mass gives c . along and the parts of w; elastic motions that are orthogonal to
-    the rigid ones give nothing.
-    """
-    total = mass.sum()
-    arm = points - (mass[:, None] * points).sum(axis=0) / total
-    inertia = ((arm**2).sum(axis=1)[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]) * mass[:, None, None]
-    turn = np.stack([np.cross(np.eye(3)[a], arm) for a in range(3)]) * mass[:, None]
-    turn = np.linalg.solve(inertia.sum(axis=0), turn.reshape(3, -1))
-    axis = np.array([1.0, 0.0, 0.0])
-    about = np.stack([along, np.cross(along, axis), axis])
-    return np.vstack([(mass[:, None] / total * along).reshape(1, -1), about @ turn])
-
-
 @attrs.frozen(eq=False)
 class Frame:
     """A rigid frame of a few degrees of freedom, and the nodes that move with it.

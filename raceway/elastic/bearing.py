@@ -11,12 +11,13 @@ from raceway.core.hexahedron.operator import HexOperator
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.core.record import Motion, Observation, State, divide
 from raceway.core.threads import ThreadPool
-from raceway.elastic.assembly import SHARE, Assembly, Body, Cage, Frame, cage_rows, cage_stiffness
+from raceway.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.contact import CIRCLE, Contact, NodalContact
-from raceway.elastic.interface import equal_parts, free_nodes, touchable
+from raceway.elastic.interface import free_nodes, touchable
 from raceway.elastic.iterative_solver import LinearSolver, nodal_contact, resultant_contact
 from raceway.elastic.newton import TOLERANCE, Settled, settle
+from raceway.elastic.superelement import Copies, Group, same_bodies, sectors
 from raceway.elastic.superelement_solver import CondensedSolver
 from raceway.errors import ConvergenceError, MeshError
 
@@ -316,6 +317,60 @@ class ElasticSystem:
                 )
 
 
+#: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
+SHARE = 0.1
+#: With friction: of a motion in which a ball rolls, and of turning in the meridian plane, where it does not.
+_ROLLS, _HELD = 1e-3, 100.0
+
+
+def _cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray:
+    """(4,) springs [N/m, N m/rad] of a ball's cage, for the rows of ``_cage_rows``.
+
+    normal : stiffness of a Hertz contact [N/m];  diameter : of the ball [m]
+
+    With friction a cage's stiffness is felt: what pushes a ball that cannot turn slides or sticks.  Balls roll along their orbits,
+    hence freely about axes in the meridian plane; about the orbit they do not, as for rigid and condensed bodies.
+    """
+    turning = 0.1 * diameter**2  # of a sphere: what a spring on every node by its mass holds against turning
+    share = np.array([_ROLLS, _HELD, _ROLLS, _ROLLS] if friction else [SHARE] * 4)
+    return np.asarray(share * normal * np.array([1.0, turning, turning, turning]))
+
+
+def _cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
+
+    A rigid motion u = c + w x r about the centre of mass gives c . along and the parts of w; elastic motions that are orthogonal to
+    the rigid ones give nothing.
+    """
+    total = mass.sum()
+    arm = points - (mass[:, None] * points).sum(axis=0) / total
+    inertia = ((arm**2).sum(axis=1)[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]) * mass[:, None, None]
+    turn = np.stack([np.cross(np.eye(3)[a], arm) for a in range(3)]) * mass[:, None]
+    turn = np.linalg.solve(inertia.sum(axis=0), turn.reshape(3, -1))
+    axis = np.array([1.0, 0.0, 0.0])
+    about = np.stack([along, np.cross(along, axis), axis])
+    return np.vstack([(mass[:, None] / total * along).reshape(1, -1), about @ turn])
+
+
+def _equal_parts(assembly: Assembly, azimuth: np.ndarray) -> list[Group]:
+    """The inner ring, the outer ring and the balls (Z,) at their azimuths [rad], each body in one group; supports are equal, too."""
+    rings = [Group(_ring_parts(assembly, index, azimuth), [index]) for index in (0, 1)]
+    bodies = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
+    balls = same_bodies(bodies, azimuth, assembly.starts[2:-1])
+    return rings + [Group(copies, [ball + 2 for ball in members]) for copies, members in balls]
+
+
+def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
+    body, first = assembly.bodies[index], int(assembly.starts[index])
+    seat = np.zeros(len(body.points), dtype=bool)
+    if body.foundation is not None:
+        seat[body.foundation[0].ravel()] = True
+    cells = np.asarray(body.operator.cells, dtype=np.int64)
+    marks = np.column_stack([free_nodes(assembly, index), seat])
+    ring_sectors = sectors(body.points, cells, azimuth, marks, first)
+    return Copies.single(body.points, cells, first) if ring_sectors is None else ring_sectors
+
+
 class ElasticBearing:
     """One row of balls between two rings.
 
@@ -341,7 +396,7 @@ class ElasticBearing:
             held = np.zeros((len(mesh.points), 3), dtype=bool)
             bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
         assembly = Assembly(bodies)
-        assembly.groups = equal_parts(assembly, setup.azimuth)
+        assembly.groups = _equal_parts(assembly, setup.azimuth)
         if setup.caged:
             assembly.hold(self._cage(assembly))
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
@@ -442,13 +497,13 @@ class ElasticBearing:
         g = s.geometry
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
-        springs = cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
+        springs = _cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
         nodal = np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
             mass = assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
             along = np.array([0.0, -np.sin(s.azimuth[k]), np.cos(s.azimuth[k])])
-            means = cage_rows(body.points, mass, along)
+            means = _cage_rows(body.points, mass, along)
             data.append(means.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), means.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(means.shape[1]), 4))

@@ -8,9 +8,11 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import normal_displacement
+from raceway.core.hexahedron.shape import shape_values
+from raceway.core.mesh.hex_mesh import shape_slopes
 from raceway.elastic.contact import Contact, PlaceLaw
 from raceway.elastic.linear_statics import StaticSolver
-from raceway.elastic.surface import Facets, locate
+from raceway.elastic.surface import Facets
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:
@@ -263,6 +265,34 @@ class _Separation:
     spread: float
 
 
+#: Cells near a point that are tried, and Newton's steps in each of them.
+_TRIED, _INTERIOR_STEPS = 12, 15
+#: Places in a cell's own coordinates that Newton's method may reach.
+_FAR = 5.0
+
+
+def _locate(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n, 8) and weights (n, 8) that interpolate at ``where`` (n, 3) [m].
+
+    points : (m, 3) nodes [m];  cells : (k, 8) trilinear hexahedra
+
+    A point outside of the mesh is extrapolated from the cell that it is nearest to, in that cell's coordinates.
+    """
+    from scipy.spatial import KDTree
+
+    near = KDTree(points[cells].mean(axis=1)).query(where, k=min(_TRIED, len(cells)))[1].reshape(len(where), -1)
+    local = np.zeros((*near.shape, 3))
+    corners = points[cells[near]]
+    for _ in range(_INTERIOR_STEPS):
+        flat = local.reshape(-1, 3)
+        missing = where[:, None] - np.einsum("nkc,nkca->nka", shape_values(flat).reshape(*near.shape, 8), corners)
+        slopes = np.einsum("nkcb,nkca->nkab", shape_slopes(flat).reshape(*near.shape, 8, 3), corners)
+        local = np.clip(local + np.linalg.solve(slopes, missing[..., None])[..., 0], -_FAR, _FAR)
+    best = np.abs(local).max(axis=2).argmin(axis=1)
+    rows = np.arange(len(where))
+    return cells[near[rows, best]], shape_values(local[rows, best])
+
+
 class LoadedBody:
     """One body, to be pressed in many places.
 
@@ -327,7 +357,7 @@ class LoadedBody:
         """
         along = self.along(contact, normal)
         depth = reach * np.linspace(*DEPTHS, COUNT)
-        nodes, weights = locate(self._points, self._cells, pole + depth[:, None] * normal)
+        nodes, weights = _locate(self._points, self._cells, pole + depth[:, None] * normal)
         places, force = _ellipse(semi_axes)
         half = normal_displacement(depth, np.linalg.norm(places, axis=1), *self._material[:2]) @ force
         difference = np.einsum("nk,nk->n", weights, along[nodes]) - half

@@ -6,9 +6,7 @@ import attrs
 import numpy as np
 from numba import float64, int64, void
 
-from raceway.core.hexahedron.shape import shape_values
 from raceway.core.jit import jit
-from raceway.core.mesh.hex_mesh import shape_slopes
 from raceway.core.signatures import MATRIX
 
 _NODES = int64[:, ::1]
@@ -113,38 +111,6 @@ def neighbours(quads: np.ndarray) -> np.ndarray:
     first, second = order[:-1][same], order[1:][same]
     out[first], out[second] = second // 4, first // 4
     return out.reshape(-1, 4)
-
-
-#: Cells near a point that are tried, and Newton's steps in each of them.
-_TRIED, _INTERIOR_STEPS = 12, 15
-#: Places in a cell's own coordinates that Newton's method may reach.
-_FAR = 5.0
-
-
-def locate(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n, 8) and weights (n, 8) that interpolate at ``where`` (n, 3) [m].
-
-    Parameters
-    ----------
-    points : (m, 3) nodes [m];  cells : (k, 8) trilinear hexahedra
-
-    Notes
-    -----
-    A point outside of the mesh is extrapolated from the cell that it is nearest to, in that cell's coordinates.
-    """
-    from scipy.spatial import KDTree
-
-    near = KDTree(points[cells].mean(axis=1)).query(where, k=min(_TRIED, len(cells)))[1].reshape(len(where), -1)
-    local = np.zeros((*near.shape, 3))
-    corners = points[cells[near]]
-    for _ in range(_INTERIOR_STEPS):
-        flat = local.reshape(-1, 3)
-        missing = where[:, None] - np.einsum("nkc,nkca->nka", shape_values(flat).reshape(*near.shape, 8), corners)
-        slopes = np.einsum("nkcb,nkca->nkab", shape_slopes(flat).reshape(*near.shape, 8, 3), corners)
-        local = np.clip(local + np.linalg.solve(slopes, missing[..., None])[..., 0], -_FAR, _FAR)
-    best = np.abs(local).max(axis=2).argmin(axis=1)
-    rows = np.arange(len(where))
-    return cells[near[rows, best]], shape_values(local[rows, best])
 
 
 #: (4, 2) signs of a facet's corners in its own coordinates.

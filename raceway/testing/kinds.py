@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,11 +14,13 @@ import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Refused
-from raceway.testing.scenes import example_result, example_scene
+from raceway.testing.scenes import b7206c
 from raceway.testing.suite import Suite, check_class, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Executor, Format, Mesher, Report, Study
+    from raceway.pipeline.result import Result
+    from raceway.scene.scene import Scene
 
 
 #: Relative difference of real numbers that a text of ten figures may make.
@@ -110,6 +113,26 @@ def _within(numbers: np.ndarray, limits: int | tuple[int, int]) -> bool:
     return bool(len(numbers) and (numbers >= 0).all() and (numbers < limits).all())
 
 
+@cache
+def _example_scene() -> Scene:
+    """A bearing of 30 mm bore under axial load and a turning force, two turns."""
+    from raceway import scene_from_dict
+
+    turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
+    method = {"kind": "newmark", "turns": 2, "steps_per_turn": 90}
+    return scene_from_dict(
+        b7206c(title="conformance", excitation=turning, integrator=method, kinematics={"ball_inertia": False})
+    )
+
+
+@cache
+def _example_result() -> Result:
+    """The scene's ``Result``."""
+    from raceway.pipeline.run import run
+
+    return run(_example_scene())
+
+
 class MesherSuite(Suite):
     """Duties of ``raceway.framework.contracts.Mesher``."""
 
@@ -117,7 +140,7 @@ class MesherSuite(Suite):
 
     @duty("mesh(bearing) returns meshes by name, each with points (n, 3) [m] and cells (m, 8)")
     def test_meshes(self, mesher: Mesher) -> None:
-        meshes = mesher.mesh(example_scene().bearing)
+        meshes = mesher.mesh(_example_scene().bearing)
         require(isinstance(meshes, Mapping) and meshes, f"mesh() returns {type(meshes).__name__}, not meshes by name")
         for name, mesh in meshes.items():
             points, cells = np.asarray(mesh.points), np.asarray(mesh.cells)
@@ -129,7 +152,7 @@ class MesherSuite(Suite):
 
     @duty("no cell is flat or inside out")
     def test_volumes(self, mesher: Mesher) -> None:
-        for name, mesh in mesher.mesh(example_scene().bearing).items():
+        for name, mesh in mesher.mesh(_example_scene().bearing).items():
             corner = np.asarray(mesh.points)[np.asarray(mesh.cells)]
             # Nodes 0 to 3 around the bottom, 4 to 7 above them: the edges at each corner, right-handed.
             for at, ends in enumerate(AROUND):
@@ -138,7 +161,7 @@ class MesherSuite(Suite):
 
     @duty("sets, where there are some, name nodes (k,) and facets (k, 2) that exist")
     def test_sets(self, mesher: Mesher) -> None:
-        for name, mesh in mesher.mesh(example_scene().bearing).items():
+        for name, mesh in mesher.mesh(_example_scene().bearing).items():
             for word, members in getattr(mesh, "node_sets", {}).items():
                 nodes = np.asarray(members)
                 good = nodes.ndim == 1 and _within(nodes, len(mesh.points))
@@ -150,7 +173,7 @@ class MesherSuite(Suite):
 
     @duty("twice the same bearing gives the same mesh")
     def test_repeats(self, mesher: Mesher) -> None:
-        first, second = (mesher.mesh(example_scene().bearing) for _ in range(2))
+        first, second = (mesher.mesh(_example_scene().bearing) for _ in range(2))
         require(set(first) == set(second), "the bodies differ")
         for name in first:
             equal = all(_same(getattr(first[name], word), getattr(second[name], word)) for word in ("points", "cells"))
@@ -166,7 +189,7 @@ class ReportSuite(Suite):
     def test_writes(self, report: Report) -> None:
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(2):
-                paths = [Path(p) for p in report.write(example_result(), Path(folder))]
+                paths = [Path(p) for p in report.write(_example_result(), Path(folder))]
                 require(paths, "write() returns no path")
                 for path in paths:
                     require(path.is_file() and path.stat().st_size > 0, f"`{path.name}` does not exist or is empty")
@@ -177,10 +200,10 @@ class ReportSuite(Suite):
 
     @duty("the result is left untouched")
     def test_result_untouched(self, report: Report) -> None:
-        before = example_result().to_dict()
+        before = _example_result().to_dict()
         with tempfile.TemporaryDirectory() as folder:
-            report.write(example_result(), Path(folder))
-        require(example_result().to_dict() == before, "the result was changed")
+            report.write(_example_result(), Path(folder))
+        require(_example_result().to_dict() == before, "the result was changed")
 
 
 #: Batches of a trial, and how many may be taken before the first is answered.

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.pipeline.result import Result
     from raceway.scene.scene import Scene
 
 
@@ -35,23 +33,3 @@ def settled(scene: Scene | Tables) -> tuple[Model, Equilibrium]:
 
     model = model_of(scene)
     return model, solve_equilibrium(model)
-
-
-@cache
-def example_scene() -> Scene:
-    """A bearing of 30 mm bore under axial load and a turning force, two turns."""
-    from raceway import scene_from_dict
-
-    turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
-    method = {"kind": "newmark", "turns": 2, "steps_per_turn": 90}
-    return scene_from_dict(
-        b7206c(title="conformance", excitation=turning, integrator=method, kinematics={"ball_inertia": False})
-    )
-
-
-@cache
-def example_result() -> Result:
-    """The scene's ``Result``."""
-    from raceway.pipeline.run import run
-
-    return run(example_scene())

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from raceway.elastic.assembly import Cage, cage_rows, cage_stiffness
+from raceway.elastic.assembly import Cage
+from raceway.elastic.bearing import _cage_rows, _cage_stiffness
 from raceway.elastic.iterative_solver import _LowRankContacts
 from tests.superelements.bearings import built
 
@@ -103,7 +104,7 @@ def test_a_rigid_motion_gives_its_parts():
     arm = points - mass @ points / mass.sum()
     for row, axis in enumerate((along, along, radius, np.array([1.0, 0.0, 0.0]))):
         u = np.cross(axis, arm) if row else np.tile(axis, (len(points), 1))
-        found = cage_rows(points, mass, along) @ u.ravel()
+        found = _cage_rows(points, mass, along) @ u.ravel()
         wanted = np.eye(4)[row]
         # "radius" is a unit vector of either sign.
         assert np.abs(found) == pytest.approx(wanted, abs=1e-12)
@@ -112,7 +113,7 @@ def test_a_rigid_motion_gives_its_parts():
 def test_with_friction_balls_roll_along_their_orbits_and_not_across():
     """Against the stiffness of a contact at the ball's surface: what rolls is hardly held, what does not is rigid beside it."""
     normal, diameter = 1e8, 0.01
-    orbit, across, *rolling = cage_stiffness(normal, diameter, friction=True)
+    orbit, across, *rolling = _cage_stiffness(normal, diameter, friction=True)
     arm = 0.25 * diameter**2
     assert orbit < 1e-2 * normal
     assert max(rolling) < 1e-2 * normal * arm

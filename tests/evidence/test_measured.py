@@ -23,8 +23,7 @@ from raceway.scene.inputs import evolve
 from raceway.scene.reading import rig_of
 from raceway.scene.tables import Rig
 from raceway.studies.fit.fit import fit
-from raceway.studies.fit.identify import identify, identify_recording
-from raceway.studies.fit.rig import _coefficients
+from raceway.studies.fit.identify import _coefficients, identify, identify_recording
 from raceway.studies.fit.signals import write_recording
 from raceway.studies.fit.synchronous import slow_roll
 from raceway.studies.rig.signals import _silent, record, response, slow_roll_record, white_noise

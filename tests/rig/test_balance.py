@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.fit.rig import _coefficients, invert, standard_errors, with_moment, with_tilt_of
+from raceway.studies.fit.identify import _coefficients, _standard_errors
+from raceway.studies.fit.rig import invert, with_moment, with_tilt_of
 from raceway.studies.shaft import _whirling_load, bearing, find_root, rotor, shaft
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
@@ -91,7 +92,7 @@ def test_scatter_is_that_of_many_noisy_lines(rig, state):
     found = [with_tilt_of(line, state, state.sensor + one) for one in noise]
     # 400 samples know a standard deviation to 1 / sqrt(800) = 3.5 %; three times that.
     assert np.std([_coefficients(one) for one in found], axis=0) == pytest.approx(
-        standard_errors(line, state, error), rel=0.11
+        _standard_errors(line, state, error), rel=0.11
     )
 
 

@@ -18,8 +18,8 @@ import numpy as np
 
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.patches.gap import Points
-from raceway.core.revolution.body import BallMesh, Revolution, free_ball, groove_compliance
-from raceway.core.revolution.sections import dofs, graded_profile
+from raceway.core.revolution.body import Revolution, groove_compliance
+from raceway.core.revolution.sections import Profile, ball_profile, dofs, graded_profile
 from raceway.errors import MeshError
 
 
@@ -252,21 +252,88 @@ def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Pat
     return Patch(ball, race, spacing.area)
 
 
+#: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
+_DIGITS = 9
+
+
+@attrs.frozen(eq=False)
+class _FreeBall:
+    """Compliance of a floating ball between points near its equator.
+
+    latitudes : (n,) of the surface nodes [rad], towards the rolling direction
+    dimensionless : (o, len(components) n, len(components) n) u E R / F, components one after the other
+
+    A displacement u of a ball of radius R and Young's modulus E under a force F is c F / (E R), where c belongs to radius 1
+    and modulus 1. Rigid motions stand apart: c gives displacements relative to the mean motion of the ball's masses ("ball
+    centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.
+    """
+
+    latitudes: np.ndarray
+    dimensionless: np.ndarray
+
+    def compliance(self, radius: float, young: float) -> np.ndarray:
+        """(o, observed, loads) of a ball of that radius [m] and modulus [Pa], in m/N."""
+        return np.asarray(self.dimensionless / (radius * young))
+
+
+@attrs.frozen
+class _BallMesh:
+    """Sizes of a ball's elements.
+
+    divisions : sectors around the equator
+    lateral_step, half_width : distance of the nodes along the rolling direction, and up to where, as arc lengths [m]
+    depth_step, bulk : first layer below the surface, and elements far from it [m]
+    """
+
+    divisions: int
+    lateral_step: float
+    half_width: float
+    depth_step: float
+    bulk: float
+
+    def profile(self, radius: float) -> Profile:
+        """The section of a ball of radius 1 with the sizes of a ball of that radius [m]."""
+        sizes = (self.lateral_step, self.half_width, self.depth_step, self.bulk)
+        return ball_profile(1.0, *(round(length / radius, _DIGITS) for length in sizes))
+
+
+def _free_ball(
+    radius: float,
+    poisson: float,
+    mesh: _BallMesh,
+    offsets: np.ndarray,
+    components: tuple[int, ...] = (0, 2),
+    formulation: str = "incompatible",
+    harmonics: str = "all",
+) -> _FreeBall:
+    """The floating ball of a radius [m], from the cache where it is there.
+
+    offsets : (o,) sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away
+    components : 0 r (outward), 1 theta, 2 x (rolling direction)
+    harmonics : a ball has but some hundred, and it is coarsest around its equator, where sampling is least exact
+    """
+    profile = mesh.profile(radius)
+    degrees = dofs(profile.race, components)
+    body = Revolution(profile, mesh.divisions, 1.0, poisson, formulation=formulation, seat="free")
+    label = f"ball, {mesh.divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}"
+    return _FreeBall(profile.angles, body.cached_compliance(label, degrees, degrees, np.asarray(offsets), harmonics))
+
+
 def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: bool = False) -> _Ball:
     """The floating ball on a grid of so many rows; ``shear``: with its compliance along the rows' direction, for friction."""
     steps = np.append(np.arange(rows), spacing.ball_divisions // 2)
     finest = min(spacing.along, spacing.across)
 
     half_width = (spacing.columns - 0.5) * spacing.across
-    mesh = BallMesh(spacing.ball_divisions, spacing.across, half_width, finest, solid.bulk)
-    along_normal = free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
+    mesh = _BallMesh(spacing.ball_divisions, spacing.across, half_width, finest, solid.bulk)
+    along_normal = _free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
     assert len(along_normal.latitudes) == 2 * spacing.columns + 1
     normal = np.array([np.cos(along_normal.latitudes), np.sin(along_normal.latitudes)])
     near = _projected(along_normal.compliance(radius, solid.young), normal)
     middle = len(along_normal.latitudes) // 2
     opposite, around = float(near[-1, middle, middle]), None
     if shear:
-        rolling = free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
+        rolling = _free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
         around = np.ascontiguousarray(rolling.compliance(radius, solid.young)[:-1])
     return _Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
 

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.revolution.sections import Profile, ball_profile, dofs
+from raceway.core.revolution.sections import Profile
 from raceway.errors import MeshError
 from raceway.storage.array_cache import kept
 from raceway.storage.tables import Tables
@@ -547,74 +547,3 @@ def _flat(dofs: np.ndarray) -> np.ndarray:
 
 def _field(r: np.ndarray, theta: np.ndarray, x: np.ndarray) -> np.ndarray:
     return np.column_stack([r, theta, x]).ravel()
-
-
-#: Digits kept of the mesh's dimensionless sizes, so that equal balls of unequal size find the same entry.
-_DIGITS = 9
-
-
-@attrs.frozen(eq=False)
-class _FreeBall:
-    """Compliance of a floating ball between points near its equator.
-
-    latitudes : (n,) of the surface nodes [rad], towards the rolling direction
-    dimensionless : (o, len(components) n, len(components) n) u E R / F, components one after the other
-
-    A displacement u of a ball of radius R and Young's modulus E under a force F is c F / (E R), where c belongs to radius 1
-    and modulus 1. Rigid motions stand apart: c gives displacements relative to the mean motion of the ball's masses ("ball
-    centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.
-    """
-
-    latitudes: np.ndarray
-    dimensionless: np.ndarray
-
-    def compliance(self, radius: float, young: float) -> np.ndarray:
-        """(o, observed, loads) of a ball of that radius [m] and modulus [Pa], in m/N."""
-        return np.asarray(self.dimensionless / (radius * young))
-
-
-@attrs.frozen
-class BallMesh:
-    """Sizes of a ball's elements.
-
-    Attributes
-    ----------
-    divisions : sectors around the equator
-    lateral_step, half_width : distance of the nodes along the rolling direction, and up to where, as arc lengths [m]
-    depth_step, bulk : first layer below the surface, and elements far from it [m]
-    """
-
-    divisions: int
-    lateral_step: float
-    half_width: float
-    depth_step: float
-    bulk: float
-
-    def profile(self, radius: float) -> Profile:
-        """The section of a ball of radius 1 with the sizes of a ball of that radius [m]."""
-        sizes = (self.lateral_step, self.half_width, self.depth_step, self.bulk)
-        return ball_profile(1.0, *(round(length / radius, _DIGITS) for length in sizes))
-
-
-def free_ball(
-    radius: float,
-    poisson: float,
-    mesh: BallMesh,
-    offsets: np.ndarray,
-    components: tuple[int, ...] = (0, 2),
-    formulation: str = "incompatible",
-    harmonics: str = "all",
-) -> _FreeBall:
-    """The floating ball of a radius [m], from the cache where it is there.
-
-    Parameters
-    ----------
-    offsets : (o,) sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away
-    components : 0 r (outward), 1 theta, 2 x (rolling direction)
-    harmonics : a ball has but some hundred, and it is coarsest around its equator, where sampling is least exact
-    """
-    profile = mesh.profile(radius)
-    degrees = dofs(profile.race, components)
-    body = Revolution(profile, mesh.divisions, 1.0, poisson, formulation=formulation, seat="free")
-    label = f"ball, {mesh.divisions} x {len(profile.quads)} elements, Poisson's ratio {poisson:g}"
-    return _FreeBall(profile.angles, body.cached_compliance(label, degrees, degrees, np.asarray(offsets), harmonics))

@@ -18,7 +18,7 @@ from raceway.out.wrapping import Words
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
 from raceway.studies.catalogue.inferred import QUANTITIES, Inferred, infer_printed
-from raceway.studies.catalogue.printed import PairStiffness, Printed, Rating, Table, printed_by, read_table, sizes_of
+from raceway.studies.catalogue.printed import PairStiffness, Printed, Rating, Table, printed_by, read_table
 
 #: A number in SI units, or text with a unit.
 Quantity = float | str
@@ -109,8 +109,6 @@ _TABLES = {"nsk": "NSK", "gmn": "GMN"}
 class _InferredTable(Answer):
     """Inferred sizes of a table, and what could not be inferred.
 
-    Attributes
-    ----------
     table, maker : what was read;  sizes : how many, and ``internals`` of them with printed balls
     answers : inferred sizes, and what is refused, in the order of the table: a name, or a reason by name
     """
@@ -216,6 +214,24 @@ def _line(answer: Inferred) -> dict[str, str]:
     return line
 
 
+def _sizes_of(lines: Iterable[Printed]) -> list[Printed]:
+    """Lines that differ in the contact angle alone, together: the same designation but for its suffix, or the same dimensions
+    where they say no internals of their own."""
+    groups: dict[object, list[Printed]] = {}
+    for line in lines:
+        key = line.names if line.internals is not None else (line.bore, line.outer_diameter, line.width)
+        groups.setdefault(key, []).append(line)
+    return [
+        attrs.evolve(
+            group[0],
+            ratings=tuple(rating for line in group for rating in line.ratings),
+            pairs=tuple(pair for line in group for pair in line.pairs),
+            names=tuple(name for line in group for name in line.names),
+        )
+        for group in groups.values()
+    ]
+
+
 def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> _InferredTable:
     """All sizes of a table.
 
@@ -225,7 +241,7 @@ def _infer_table(table: str, maker: str | None = None, conformity: float | None 
     """
     packaged = table.lower() in _TABLES and not Path(table).exists()
     read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))
-    sizes = sizes_of(read.lines)
+    sizes = _sizes_of(read.lines)
     maker = maker or (_TABLES[table.lower()] if packaged else None)
     answers: list[Inferred | tuple[str, str]] = [(fault.path, str(fault)) for fault in read.faults]
     faults: list[SceneError] = []

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -219,21 +218,3 @@ def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
         names=(cells["name"],) if cells["name"] else (),
         internals=internals,
     )
-
-
-def sizes_of(lines: Iterable[Printed]) -> list[Printed]:
-    """Lines that differ in the contact angle alone, together: the same designation but for its suffix, or the same dimensions
-    where they say no internals of their own."""
-    groups: dict[object, list[Printed]] = {}
-    for line in lines:
-        key = line.names if line.internals is not None else (line.bore, line.outer_diameter, line.width)
-        groups.setdefault(key, []).append(line)
-    return [
-        attrs.evolve(
-            group[0],
-            ratings=tuple(rating for line in group for rating in line.ratings),
-            pairs=tuple(pair for line in group for pair in line.pairs),
-            names=tuple(name for line in group for name in line.names),
-        )
-        for group in groups.values()
-    ]

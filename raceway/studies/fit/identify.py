@@ -28,21 +28,11 @@ from raceway.storage.files import without_nan, writable
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fitted import interval
-from raceway.studies.fit.rig import (
-    changed_rotors,
-    invert,
-    largest_change,
-    refuse_no_load,
-    sensitivities,
-    standard_errors,
-    tilted,
-    turned,
-    with_tilt_of,
-)
+from raceway.studies.fit.rig import changed_rotors, invert, refuse_no_load, with_tilt_of
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
 from raceway.studies.fit.signals import Data, Recording, faults_at, recording_of, signals_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, stated_run_out, synchronous
-from raceway.studies.shaft import Bearing, State, bearing, rotor
+from raceway.studies.shaft import Bearing, Rotor, State, bearing, rotor
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -396,6 +386,58 @@ def identify(
     return answer
 
 
+def _coefficients(state: State) -> np.ndarray:
+    """K [N/m] and C [N s/m] with the rig's tilt, then with the tilt locked (4,)."""
+    return np.array([state.stiffness, state.damping, *state.locked])
+
+
+def _standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
+    """Standard errors of ``_coefficients`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
+
+    Z is analytic in the deflection while moment over tilt stays; half of its variance lies along each direction.
+    """
+    step = 1e-4 * abs(state.sensor)
+    more, less = (_coefficients(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
+    change = (more - less) / (2.0 * step)
+    slopes = np.hypot(change[::2], state.speed * change[1::2])
+    stiffness = slopes * error / np.sqrt(2.0)
+    return np.array([stiffness[0], stiffness[0] / state.speed, stiffness[1], stiffness[1] / state.speed])
+
+
+def _largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
+    """Largest change of ``_coefficients`` (4,) among changed states."""
+    return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
+
+
+def _turned(shaft: Rotor, state: State, response: complex, angle: float) -> list[State]:
+    """States when the response with its run-out [m] turns by an angle [rad] either way."""
+    moved = [state.sensor + response * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
+    return [with_tilt_of(shaft, state, sensor) for sensor in moved]
+
+
+def _tilted(shaft: Rotor, state: State, part: float) -> list[State]:
+    """States when the tilt stiffness that is assumed is off by a part of itself either way.
+
+    The tilt stiffness is that of the scene's bearing, and no sensor sees it.  How far the scene misses the K of the signals is
+    all that is known of how far it misses the tilt stiffness, which goes with the axial stiffness and follows the contact angle more.
+    """
+    return [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / (1.0 + part), 1.0 + part)]
+
+
+def _sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[dict[str, float | str]]:
+    """Relative change of K by one change of what is taken as known.
+
+    rotors : of changed rigs, by their change
+    """
+    states = {change: with_tilt_of(changed, state, state.sensor) for change, changed in rotors.items()}
+    states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
+    more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
+    states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)
+    states["sensor's scale +1 %"] = with_tilt_of(shaft, state, 1.01 * state.sensor)
+    base = with_tilt_of(shaft, state, state.sensor).stiffness
+    return [{"change": change, "stiffness": changed.stiffness / base - 1.0} for change, changed in states.items()]
+
+
 def identify_recording(
     recording: Recording, rig: Rig, tested: Bearing, run_out: RunOut | Synchronous | None = None
 ) -> Identified:
@@ -429,11 +471,11 @@ def identify_recording(
     scene_stiffness = float((state.force / deflection).real + state.mass * state.speed**2)
     missed = abs(scene_stiffness / state.stiffness - 1.0)
     parts = {
-        "spread": COVERAGE * standard_errors(shaft, state, component.error),
-        "slow roll": COVERAGE * standard_errors(shaft, state, response.run_out.error),
-        "marks": largest_change(state, turned(shaft, state, with_run_out, component.angle_error)),
-        "window": largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
-        "tilt": largest_change(state, tilted(shaft, state, _TILT * missed)),
+        "spread": COVERAGE * _standard_errors(shaft, state, component.error),
+        "slow roll": COVERAGE * _standard_errors(shaft, state, response.run_out.error),
+        "marks": _largest_change(state, _turned(shaft, state, with_run_out, component.angle_error)),
+        "window": _largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
+        "tilt": _largest_change(state, _tilted(shaft, state, _TILT * missed)),
     }
-    changes = sensitivities(changed_rotors(rig, component.speed), shaft, state)
+    changes = _sensitivities(changed_rotors(rig, component.speed), shaft, state)
     return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)

@@ -13,8 +13,7 @@ balance of shaft and bearing, which is solved to 1e-7: its integrator may be any
 
 from __future__ import annotations
 
-from cmath import exp
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import attrs
 import numpy as np
@@ -108,48 +107,6 @@ def _state(shaft: Rotor, force: complex, moment: complex, tested: State | Bearin
     return State(shaft.speed, force, moment, deflection, slope, sensor, tested.mass, tested.coupling, runs)
 
 
-def _coefficients(state: State) -> np.ndarray:
-    """K [N/m] and C [N s/m] with the rig's tilt, then with the tilt locked (4,)."""
-    return np.array([state.stiffness, state.damping, *state.locked])
-
-
-def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
-    """Standard errors of ``_coefficients`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
-
-    Notes
-    -----
-    Z is analytic in the deflection while moment over tilt stays; half of its variance lies along each direction.
-    """
-    step = 1e-4 * abs(state.sensor)
-    more, less = (_coefficients(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
-    change = (more - less) / (2.0 * step)
-    slopes = np.hypot(change[::2], state.speed * change[1::2])
-    stiffness = slopes * error / np.sqrt(2.0)
-    return np.array([stiffness[0], stiffness[0] / state.speed, stiffness[1], stiffness[1] / state.speed])
-
-
-def largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
-    """Largest change of ``_coefficients`` (4,) among changed states."""
-    return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
-
-
-def turned(shaft: Rotor, state: State, response: complex, angle: float) -> list[State]:
-    """States when the response with its run-out [m] turns by an angle [rad] either way."""
-    moved = [state.sensor + response * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
-    return [with_tilt_of(shaft, state, sensor) for sensor in moved]
-
-
-def tilted(shaft: Rotor, state: State, part: float) -> list[State]:
-    """States when the tilt stiffness that is assumed is off by a part of itself either way.
-
-    Notes
-    -----
-    The tilt stiffness is that of the scene's bearing, and no sensor sees it.  How far the scene misses the K of the signals is
-    all that is known of how far it misses the tilt stiffness, which goes with the axial stiffness and follows the contact angle more.
-    """
-    return [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / (1.0 + part), 1.0 + part)]
-
-
 def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
     """The rotor with one change of what is taken as known."""
     rigs: dict[str, Rig] = {
@@ -166,22 +123,6 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
     except ValueError:  # it sits at the end already
         rigs["sensor 0.5 mm nearer to the bearing"] = attrs.evolve(rig, sensor_distance=rig.sensor_distance - 5e-4)
     return {change: rotor(changed, speed) for change, changed in rigs.items()}
-
-
-def sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[dict[str, float | str]]:
-    """Relative change of K by one change of what is taken as known.
-
-    Parameters
-    ----------
-    rotors : of changed rigs, by their change
-    """
-    states = {change: with_tilt_of(changed, state, state.sensor) for change, changed in rotors.items()}
-    states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
-    more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
-    states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)
-    states["sensor's scale +1 %"] = with_tilt_of(shaft, state, 1.01 * state.sensor)
-    base = with_tilt_of(shaft, state, state.sensor).stiffness
-    return [{"change": change, "stiffness": changed.stiffness / base - 1.0} for change, changed in states.items()]
 
 
 @attrs.frozen(eq=False)

@@ -24,7 +24,7 @@ from raceway.points.axes import shown
 from raceway.points.plot import LIST, Selection, listed, only_axes
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
-from raceway.studies.rotor.sources import DIRECTION, SOURCES, reduced, refuse_without_motion, tilt_note
+from raceway.studies.rotor.sources import DIRECTION, SOURCES, reduced, tilt_note
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 #: Entries by name: row and column of the 2x2 matrix over (y, z).
@@ -105,6 +105,11 @@ def unit(name: str) -> str:
     return "N/m" if name[0] == "k" else "N s/m"
 
 
+def _refuse_without_motion(selection: Selection) -> None:
+    if selection.value("excitation.kind") is None or "z_real" not in selection.dataset:
+        raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
+
+
 def coefficients(
     selection: Selection, source: str | None = None, unresolved: float = 0.0, least: int = LEAST_POINTS
 ) -> Coefficients:
@@ -135,7 +140,7 @@ def coefficients(
     _refuse_gaps(selection)
     _refuse_few(selection, least)
     if source != "tangent":
-        refuse_without_motion(selection)
+        _refuse_without_motion(selection)
     stiffness, damping, resolved, definition, notes = SOURCES[source](selection)
     measured = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, replaced = _without_noise(damping, resolved, unresolved)

@@ -33,11 +33,6 @@ _ROUNDING = 1e-7
 Matrices = tuple[np.ndarray, np.ndarray, np.ndarray, str, list[str]]
 
 
-def refuse_without_motion(selection: Selection) -> None:
-    if selection.value("excitation.kind") is None or "z_real" not in selection.dataset:
-        raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
-
-
 def _rotating(selection: Selection) -> Matrices:
     """One complex number for both directions."""
     kind = selection.value("excitation.kind")

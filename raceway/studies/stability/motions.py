@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.core.record import Record, Schedule
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.orbit import at_time, from_orbit, steady_orbit
@@ -23,7 +23,7 @@ from raceway.planning.resolve import SAFETY
 from raceway.storage.tables import Tables
 from raceway.studies.stability.catalogue import UNDAMPED
 from raceway.studies.stability.study import Limit, Rows
-from raceway.studies.stability.systems import Bench, Still, energy_of_contacts, inverted, mass_at
+from raceway.studies.stability.systems import Bench, Still, energy_of_contacts, inverted
 
 if TYPE_CHECKING:
     from raceway.core.record import Motion
@@ -94,6 +94,12 @@ def _trend(at: Still, record: Record) -> tuple[float, float]:
     return slope / size, float(np.abs(means - means[0]).max() / size)
 
 
+def _mass_at(position: float, speed: float = 0.0, acceleration: float = 0.0) -> Motion:
+    """The motion of one mass on one contact, along x."""
+    x = np.eye(5)[0]
+    return Motion(position * x, speed * x, acceleration * x, np.zeros((1, 2)), np.zeros((1, 2)))
+
+
 def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) -> None:
     """A mass meets a contact: its greatest force and the speed that it leaves with.
 
@@ -111,7 +117,7 @@ def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) 
     if at.dissipative:
         force, rebound = _solved_impact(system, mass, speed, depth)
     dt = pi * depth / speed / steps
-    record = integrate(method, system, mass_at(-0.4 * dt * speed, speed), Schedule(dt, 2 * steps, 1))
+    record = integrate(method, system, _mass_at(-0.4 * dt * speed, speed), Schedule(dt, 2 * steps, 1))
     departure = -float(record.velocity[-1, 0])
     energy = (departure / rebound) ** 2 - 1.0
     setting = {"speed [m/s]": speed, "steps a contact": steps}
@@ -198,7 +204,7 @@ def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: fl
     plain: Any = bench.method(integrator)
     method, falls = attrs.evolve(plain, **options), []
     for height in _HEIGHTS:
-        start = mass_at(-height * q[0], 0.0, load / mass)
+        start = _mass_at(-height * q[0], 0.0, load / mass)
         late = integrate(method, system, start, Schedule(dt, 400, 1)).contact_force[-100:, 0]
         falls.append((_unrest(late, load), 100.0 * float((late <= 0.0).mean()), height))
     worst, opened, height = max(falls)
@@ -246,7 +252,7 @@ def linear(rows: Rows, bench: Bench, integrator: str) -> None:
     ring = surrogate(bench.model().system)
     system = impact_system(2.0, ring.law, ring.law_params[:1], clearance=1.0, stiffness=2e8)
     limit = system.critical_time_step(np.zeros((5, 5)))
-    _around_the_limit(rows, bench.method(integrator), system, mass_at(1e-6, 0.0, -1e2), np.zeros(5), limit)
+    _around_the_limit(rows, bench.method(integrator), system, _mass_at(1e-6, 0.0, -1e2), np.zeros(5), limit)
 
 
 def small_motions(rows: Rows, bench: Bench, integrator: str) -> None:
