@@ -2,8 +2,8 @@
 
 study       cases, their rows, and how they are run: ``raceway stability``
 catalogue   all cases and their data
-systems     bearings and masses that cases are measured on; expectations by a law's own force and energy
+systems     bearings that cases are measured on
 motions     steps around the stable limit, conserved energy, impacts, chatter
-scenes      extreme scenes with every law and integrator; surface points and full models
+scenes      extreme scenes with every law and integrator, expected by a law's own force and energy; surface points and full models
 elements    finite elements at their worst
 """

@@ -1,5 +1,7 @@
 """Extreme scenes, run as a user would run them with every law and integrator: balances, closed forms, the steady orbit.
 
+Approaches are the inverse of a law's force function, found by bisection; forces on the ring are slopes of the stored energy.
+
 Contacts at surface points of condensed bodies are compared with the calibrated law on the same bodies; an equilibrium takes a second
 and a step a tenth of one, so there are few steps.  Of bodies whose every node is a degree of freedom coarse meshes know the
 displacement with one calibrated force a contact: it is compared with condensed bodies.  With pressures at points they do not (the

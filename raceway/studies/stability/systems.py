@@ -1,7 +1,4 @@
-"""Systems that the catalogue's cases are measured on, and what is expected of them by a law's own force and stored energy.
-
-Approaches are the inverse of the law's force function, found by bisection; forces on the ring are slopes of the stored energy.
-"""
+"""Systems that the catalogue's cases are measured on."""
 
 from __future__ import annotations
 
