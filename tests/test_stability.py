@@ -279,7 +279,7 @@ def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_forc
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
     # Deliberate fault: surfaces that touch.
-    monkeypatch.setattr(systems, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
+    monkeypatch.setattr(scenes, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
     assert abs(_axial_displacement(model) / found - 1.0) > 0.1
 
 
