@@ -41,7 +41,7 @@ class Cage:
 
     Notes
     -----
-    Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.  Friction pushes: see ``cage_stiffness``.
+    Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.  Friction pushes: see ``raceway.elastic.bearing``.
     """
 
     rows: csr_matrix
