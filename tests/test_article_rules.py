@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.studies.article import rules
-from raceway.studies.article.claims import verdicts
-from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding, _where, exponent, judge
+from raceway.studies.article import claims
+from raceway.studies.article.claims import _exponent, _judge, _where, verdicts
+from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 from validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
@@ -88,14 +88,14 @@ def test_exponents_and_their_intervals():
     none = np.zeros(9)
     for p in (1.0, 2.0, 3.7):
         for constant in (False, True):
-            found = exponent(x, 4.0 * constant + 0.3 * x**p, none, constant)
+            found = _exponent(x, 4.0 * constant + 0.3 * x**p, none, constant)
             assert abs(found.value - p) <= 0.011 and found.high - found.low < 0.05, "the grid's step"
             assert found.roughly_quadratic is (p == 2.0)
-    noisy = exponent(x, 0.3 * x**2, np.full(9, 0.1), False)
+    noisy = _exponent(x, 0.3 * x**2, np.full(9, 0.1), False)
     assert noisy.low < 1.0 < noisy.high and not noisy.roughly_quadratic
-    assert exponent(x[:3], x[:3], none[:3], True) is None
+    assert _exponent(x[:3], x[:3], none[:3], True) is None
     gap = np.where(np.arange(9) == 4, np.nan, x**2)
-    assert exponent(x, gap, none, False).roughly_quadratic
+    assert _exponent(x, gap, none, False).roughly_quadratic
 
 
 def test_a_claim_that_holds_in_a_region_names_it_and_mentions_nothing_else():
@@ -144,38 +144,40 @@ def test_each_reading_of_claim_5_can_hold(number, k):
 
 
 def test_about_takes_a_quarter_and_no_more():
-    assert rules.about(0.0601, 0.08) and rules.about(0.0999, 0.08)
-    assert not rules.about(0.0599, 0.08) and not rules.about(0.1001, 0.08)
+    assert claims._about(0.0601, 0.08) and claims._about(0.0999, 0.08)
+    assert not claims._about(0.0599, 0.08) and not claims._about(0.1001, 0.08)
 
 
 def test_courses():
     for expected, values in {
         "rises": 1.0 + W, "falls": 2.0 - W, "level": 1.0 + 0.004 * W, "not monotonic": 1.0 + 0.1 * np.sin(6.0 * W)
     }.items():  # fmt: skip
-        assert rules.course(values, SMALL, NONE) == expected
+        assert claims._course(values, SMALL, NONE) == expected
     # A dent within the runs' own errors is none.
     dent = 1.0 + W + np.where(np.arange(9) == 4, -0.2, 0.0)
-    assert rules.course(dent, SMALL, NONE) == "not monotonic" and rules.course(dent, np.full(9, 0.1), NONE) == "rises"
+    assert claims._course(dent, SMALL, NONE) == "not monotonic" and claims._course(dent, np.full(9, 0.1), NONE) == "rises"
 
 
 def test_an_unstable_motion_at_an_end_leaves_no_judgement_and_one_between_is_bridged():
     values = 1.0 + W
     between, end = values.copy(), values.copy()
     between[3], end[-1] = np.nan, np.nan
-    assert rules.course(between, SMALL, NONE) == "rises"
-    assert rules.course(end, SMALL, NONE) is None
-    assert rules.change_within(W, end, NONE, 0.75, 1.0) is None
-    assert rules.spread(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
+    assert claims._course(between, SMALL, NONE) == "rises"
+    assert claims._course(end, SMALL, NONE) is None
+    assert claims._change_within(W, end, NONE, 0.75, 1.0) is None
+    assert claims._spread(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
 
 
 def test_nothing_is_judged_over_a_failed_run():
     values, failed = 1.0 + W**2, np.arange(9) == 4
     values[failed] = np.nan
     surface, lost = np.stack([values, 2.0 * values]), np.stack([NONE, failed])
-    assert rules.course(values, SMALL, failed) is None
-    assert rules.change_within(W, values, failed, 0.0, 0.25) is None and rules.spread(W, surface, lost, 0.0, 0.25) is None
-    assert rules.influence_grows(surface, lost) is None
-    assert rules.rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
+    assert claims._course(values, SMALL, failed) is None
+    assert (
+        claims._change_within(W, values, failed, 0.0, 0.25) is None and claims._spread(W, surface, lost, 0.0, 0.25) is None
+    )
+    assert claims._influence_grows(surface, lost) is None
+    assert claims._rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
                                  np.stack([NONE, failed, NONE]))[3:6] == [True, None, True]  # fmt: skip
 
 
@@ -210,4 +212,4 @@ def test_regions_in_words():
 
 
 def test_a_verdict_of_nothing_has_failed():
-    assert judge("0", "claim", "rule", "text", []).kind == FAILED
+    assert _judge("0", "claim", "rule", "text", []).kind == FAILED
