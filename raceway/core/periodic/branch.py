@@ -295,21 +295,6 @@ def _moved(path: Path, free: np.ndarray, linear: Eliminated, first: np.ndarray, 
     return attrs.evolve(path, q=path.q + change.q, v=path.v + change.v, a=path.a + change.a), change
 
 
-def towards(before: Point, after: Point, parameter: float) -> Path:
-    """The path at one parameter between two points, or of the second one where their meshes differ."""
-    path = after.solved.path
-    if before.solved.path.intervals == path.intervals and np.array_equal(before.solved.path.nodes, path.nodes):
-        part = (parameter - before.parameter) / (after.parameter - before.parameter)
-        path = between(before.solved.path, path, part)
-    return path
-
-
-def between(first: Path, second: Path, part: float) -> Path:
-    """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
-    names = ("q", "v", "a", "ball", "rate")
-    return attrs.evolve(second, **{x: (1.0 - part) * getattr(first, x) + part * getattr(second, x) for x in names})
-
-
 def _twice(symmetry: Symmetry) -> Symmetry:
     """The symmetry of two spans."""
     turned = symmetry.rotation @ symmetry.rotation

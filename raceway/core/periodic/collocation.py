@@ -382,14 +382,6 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     path.rate[:, :, rated] = rates
 
 
-def between(problem: Problem, path: Path) -> np.ndarray:
-    """Rates (m e, Z, c) at the points between the Gauss points that estimates try."""
-    s = len(problem.rule.points)
-    values = problem.rule.tried_values
-    rate = path.rate.reshape(path.intervals, s, *path.rate.shape[1:])
-    return np.ascontiguousarray(np.einsum("es,mszc->mezc", values, rate).reshape(-1, *path.rate.shape[1:]))
-
-
 def _longer(nodes: np.ndarray) -> np.ndarray:
     """Nodes with an interval more at each end."""
     h = np.diff(nodes)

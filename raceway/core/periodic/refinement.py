@@ -17,7 +17,7 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved, between, integrals, rotations, solve
+from raceway.core.periodic.collocation import Path, Problem, Solved, integrals, rotations, solve
 from raceway.core.periodic.intervals import Excitation, carry, contacts, forces, try_between
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import States
@@ -32,6 +32,14 @@ _PARTS = 8
 _BETWEEN = 1.0 / 64.0
 #: Newton's iteration ends at this part of the tolerance.
 _NEWTON = 1e-2
+
+
+def _between(problem: Problem, path: Path) -> np.ndarray:
+    """Rates (m e, Z, c) at the points between the Gauss points that estimates try."""
+    s = len(problem.rule.points)
+    values = problem.rule.tried_values
+    rate = path.rate.reshape(path.intervals, s, *path.rate.shape[1:])
+    return np.ascontiguousarray(np.einsum("es,mszc->mezc", values, rate).reshape(-1, *path.rate.shape[1:]))
 
 
 @attrs.frozen(eq=False)
@@ -64,7 +72,7 @@ def estimate(solved: Solved, closed: Callable[[np.ndarray], np.ndarray] | None =
     inverse = np.linalg.inv(system.mass[np.ix_(free, free)])
     defect = np.empty((m, 2 * n))
     excitation = Excitation(system.force, system.force_params, problem.share, problem.clock)
-    tried = attrs.evolve(path, rate=between(problem, path)).samples(np.empty((0, 5)))
+    tried = attrs.evolve(path, rate=_between(problem, path)).samples(np.empty((0, 5)))
     evaluated = try_between(
         problem.equations, excitation, inverse, problem.mesh(path.nodes), problem.rule.try_packed, tried, defect
     )
@@ -266,14 +274,6 @@ def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
         order = repeat.orders[spans][:, :, None]
         ball, rate = (np.take_along_axis(x, np.broadcast_to(order, x.shape), axis=1) for x in (ball, rate))
     return q, v, a, np.ascontiguousarray(ball), np.ascontiguousarray(rate)
-
-
-def half_a_turn_later(solved: Solved, problem: Problem) -> Path:
-    """The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own."""
-    nodes = solved.path.nodes
-    q, v, _, _, _ = states(solved, nodes + np.pi)
-    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
-    return Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
 
 
 def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:

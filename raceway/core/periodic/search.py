@@ -12,11 +12,11 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.periodic.branch import Branch, Point, between, towards
+from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, one_pitch, one_turn, solve, stiff
 from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.intervals import Eliminated, forces
-from raceway.core.periodic.refinement import Refined, displacements, half_a_turn_later, motion_at, refine
+from raceway.core.periodic.refinement import Refined, displacements, motion_at, refine, states
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
@@ -120,6 +120,21 @@ def _full_steps(problem: Problem, first: Path, tolerance: float) -> Solved:
     return solve(problem, first, tolerance, 0, _LIMIT)
 
 
+def _towards(before: Point, after: Point, parameter: float) -> Path:
+    """The path at one parameter between two points, or of the second one where their meshes differ."""
+    path = after.solved.path
+    if before.solved.path.intervals == path.intervals and np.array_equal(before.solved.path.nodes, path.nodes):
+        part = (parameter - before.parameter) / (after.parameter - before.parameter)
+        path = _between(before.solved.path, path, part)
+    return path
+
+
+def _between(first: Path, second: Path, part: float) -> Path:
+    """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
+    names = ("q", "v", "a", "ball", "rate")
+    return attrs.evolve(second, **{x: (1.0 - part) * getattr(first, x) + part * getattr(second, x) for x in names})
+
+
 def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
     nodes = mesh_of(problem, highest_order(problem, tangent), 2)
@@ -133,7 +148,7 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
         problem.watch()
         step = min(step, 1.0 - share)
         here = part(share + step)
-        first = _guess(here, q, tangent, nodes) if before is None else between(before, last, 1.0 + step / gap)
+        first = _guess(here, q, tangent, nodes) if before is None else _between(before, last, 1.0 + step / gap)
         try:
             solved = _full_steps(here, first, ROUGH)
         except ConvergenceError:
@@ -321,6 +336,14 @@ def _force_continuation(
         return
 
 
+def _half_a_turn_later(solved: Solved, problem: Problem) -> Path:
+    """The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own."""
+    nodes = solved.path.nodes
+    q, v, _, _, _ = states(solved, nodes + np.pi)
+    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
+    return Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
+
+
 def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
     """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
     opposite = _reverses(problem) and problem.system.scalars[CAGE] == 0.0
@@ -328,10 +351,10 @@ def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], t
         for share in (1.0, -1.0):
             if (before.parameter - share) * (after.parameter - share) > 0.0 or (share < 0.0 and not opposite):
                 continue
-            path = towards(before, after, share)
+            path = _towards(before, after, share)
             try:
                 if share < 0.0:
-                    path = half_a_turn_later(attrs.evolve(after.solved, path=path), problem)
+                    path = _half_a_turn_later(attrs.evolve(after.solved, path=path), problem)
                 yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
             except ConvergenceError:
                 continue
@@ -428,7 +451,7 @@ def _continued_to(
     points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
     for before, after in pairwise(islice(points, POINTS)):
         if (after.parameter - 1.0) * sense >= 0.0:
-            return refine(solve(at(1.0), towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
+            return refine(solve(at(1.0), _towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
         if (after.folded and not through) or (after.parameter - ratio) * sense < 0.0:
             break
     raise ConvergenceError("the branch turns back")
