@@ -30,7 +30,7 @@ from raceway.pipeline.run import run
 from raceway.planning.cost import START_S
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import record_bytes, resolve
-from raceway.planning.rules import foreseen, implausible
+from raceway.planning.rules import foreseen, scene_warnings
 from raceway.scene.scene import Scene
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.
@@ -100,7 +100,7 @@ def check(tables: dict[str, Any]) -> tuple[Scene | None, ScenePlan | None, str]:
         plan = make_plan(scene)
         json.dumps(plan.to_dict(), allow_nan=False)
         mistakes = foreseen(resolve(scene))
-        implausible(resolve(scene))
+        scene_warnings(resolve(scene))
     except RacewayError as error:
         assert error.exit_code in (1, 2), error.exit_code
         assert str(error).strip(), "no message"

@@ -222,7 +222,7 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     problem = model.problem
     if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
-    unstated = [key for key in _HYPOTHESES if not problem.scene.says(f"kinematics.{key}")]
+    unstated = [key for key in _HYPOTHESES if not problem.says(f"kinematics.{key}")]
     if not unstated:
         return {}, Estimate.HYPOTHESES_STATED()
     if compiled(model.system) is None:

@@ -41,11 +41,10 @@ from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
 from raceway.planning.plan import ScenePlan, make_plan
-from raceway.planning.resolve import resolve
-from raceway.planning.rules import implausible
+from raceway.planning.resolve import Problem, resolve
+from raceway.planning.rules import scene_warnings
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS
-from raceway.scene.unused import unused
 from raceway.storage.tables import Tables
 
 #: Shorter plans count as this one [s]: start-up and search for orbits are the less predictable the shorter the run.
@@ -141,7 +140,7 @@ def _run(
         allowance.check(label, step, total)
 
     equilibrium = solve_equilibrium(model, progress, None if near is None else near.equilibrium.displacement)
-    if scene.excitation is None:
+    if model.excitation is None:
         answer = _Answer(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:
         answer = _answer(model, equilibrium, _motions(model, equilibrium, progress, near, stay), allowance)
@@ -167,7 +166,7 @@ def _run(
         error=answer.error,
         cost={**times, **_work(answer.motions)},
         stability=_stability(answer.motions),
-        environment=_environment(scene, registry),
+        environment=_environment(model.problem, registry),
         lines=_lines(model, simulation),
         bodies=bodies,
         warnings=_warnings(model, equilibrium, answer, bodies),
@@ -238,8 +237,7 @@ def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: T
         *equilibrium.warnings,
         *sliding_warnings(model, equilibrium),
         *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
-        *implausible(model.problem),
-        *unused(model.scene),
+        *scene_warnings(model.problem),
     ]
     return tuple(dict.fromkeys(warnings))
 
@@ -311,19 +309,19 @@ def _drift(motion: Simulation) -> float | None:
     return None if ring is None else energy_balance(ring, motion.whole).drift
 
 
-def _environment(scene: Scene, registry: Registry) -> Tables:
+def _environment(problem: Problem, registry: Registry) -> Tables:
     import numba
 
     from raceway import __version__
 
     plugins = [
-        ("contact_law", scene.contact.kind),
-        ("integrator", scene.integrator.kind),
-        ("identifier", scene.identifier.kind),
-        ("bodies", scene.bodies.name),
+        ("contact_law", problem.contact.kind),
+        ("integrator", problem.integrator.kind),
+        ("identifier", problem.identifier.kind),
+        ("bodies", problem.bodies.name),
     ]
-    if scene.excitation is not None:
-        plugins.append(("excitation", scene.excitation.name))
+    if problem.excitation is not None:
+        plugins.append(("excitation", problem.excitation.name))
     entries = [registry.find(kind, name) for kind, name in plugins]
     return {
         "raceway": __version__,

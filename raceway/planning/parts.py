@@ -81,7 +81,7 @@ class Motion:
 
 def _off(problem: Problem, key: str, value: str) -> str:
     """A key as the reason of what is left out, and whether nobody asked for that."""
-    return f"{key} is {value}{'' if problem.scene.says(key) else ', by default'}"
+    return f"{key} is {value}{'' if problem.says(key) else ', by default'}"
 
 
 def decide_tilts(problem: Problem, parts: Decisions) -> bool:

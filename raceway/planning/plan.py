@@ -17,7 +17,7 @@ from raceway.framework.shown import Fact, Shown, number
 from raceway.planning.cost import slowness
 from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.resolve import Problem, refuse_memory, resolve
-from raceway.planning.rules import foreseen, implausible, refuse_what_cannot_run
+from raceway.planning.rules import foreseen, refuse_what_cannot_run, scene_warnings
 from raceway.scene.inputs import as_scene
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -192,7 +192,7 @@ class Check(Shown):
     Attributes
     ----------
     mistakes : tuple of Mistake, each with ``path``, ``value`` and ``message``; they keep the scene from running
-    warnings : tuple of str, values that are possible and unlikely
+    warnings : tuple of str, values that are possible and unlikely, keys without effect
 
     Examples
     --------
@@ -257,4 +257,4 @@ def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
         plan_of(problem)
     except SceneError as error:
         return Check(tuple(error.mistakes))
-    return Check(tuple(foreseen(problem)), implausible(problem))
+    return Check(tuple(foreseen(problem)), scene_warnings(problem))

@@ -53,6 +53,15 @@ class Problem(SceneTables):
 
     scene: Scene
 
+    def says(self, key: str) -> bool:
+        """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
+        part: object = self.scene.source
+        for name in key.split("."):
+            if not isinstance(part, dict) or name not in part:
+                return False
+            part = part[name]
+        return True
+
     @cached_property
     def body_kind(self) -> BodyKind:
         """The kind of bodies, which answers for this problem."""

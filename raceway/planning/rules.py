@@ -14,6 +14,7 @@ from raceway.framework.duties import has_phase, renews, speed_rpm
 from raceway.framework.rules import Rule, mistakes, speaking
 from raceway.planning.resolve import Problem, recorded_per_turn
 from raceway.scene.growth import GROWTH, LOOSE
+from raceway.scene.unused import unused
 
 
 def _slow_key(p: Problem) -> str:
@@ -110,7 +111,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     Rule(
         "mounting.shaft_material.density",
         lambda p: p.kinematics.ring_growth and p.mounting.shaft_material
-        and not p.scene.says("mounting.shaft_material.density"),
+        and not p.says("mounting.shaft_material.density"),
         "is required by kinematics.ring_growth: the shaft grows with the speed, too",
     ),
     Rule(
@@ -271,17 +272,17 @@ _YOUNG = 1e9
 _TABLES = ("bearing", "rotor", "contact", "kinematics", "mesh", "supports", "mounting")
 
 
-def implausible(problem: Problem) -> tuple[str, ...]:
-    """A sentence for each value that is likely to be in another unit, and for each ring that is loose."""
-    warnings = [words for _, words in speaking(LOOSE, problem.running)]
+def scene_warnings(problem: Problem) -> tuple[str, ...]:
+    """A sentence for each ring that is loose, each value that is likely to be in another unit, and each key without effect."""
+    sentences = [words for _, words in speaking(LOOSE, problem.running)]
     for table in _TABLES:
         for path, unit, value in _numbers(getattr(problem, table), table):
             most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))
             if abs(value) > most:
-                warnings.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
+                sentences.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
             if unit == "Pa" and value < _YOUNG:
-                warnings.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
-    return tuple(warnings)
+                sentences.append(f"`{path}` = {value:g} Pa is less than {1e-9 * _YOUNG:g} GPa: steel has 2.1e11 Pa")
+    return (*sentences, *unused(problem.scene))
 
 
 def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str | None, float]]:

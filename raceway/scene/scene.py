@@ -139,15 +139,6 @@ class Scene(SceneTables, Shown):
 
         return as_scene(self, tables)
 
-    def says(self, key: str) -> bool:
-        """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
-        part: object = self.source
-        for name in key.split("."):
-            if not isinstance(part, dict) or name not in part:
-                return False
-            part = part[name]
-        return True
-
     def _shown(self) -> tuple[str, list[Fact]]:
         """What was said, a table a row; defaults and a preset's numbers are left out."""
         from raceway.scene.inputs import as_given, leaves
