@@ -34,15 +34,6 @@ _MM = 1e3
 _POINTS = 60
 
 
-def _draw_section(name: str, bearing: Bearing, path: Path) -> Path:
-    """Write the section as PNG.
-
-    SceneError: A bearing without bore, outer diameter or width.
-    RacewayError: matplotlib is missing, or the file cannot be written.
-    """
-    return save_figure(_section(name, bearing), path, 150)
-
-
 def _section(name: str, bearing: Bearing) -> Figure:
     """The figure: left the whole bearing, right one ball."""
     try:
@@ -265,7 +256,7 @@ def _entry(preset: Preset, picture: Path | None) -> Listing:
         "printed": preset.printed,
         "geometry": geometry,
         "ball_pass": {"contact_angle_deg": b.contact_angle_deg, **passes},
-        "files": [] if picture is None else [str(_draw_section(preset.name, b, picture))],
+        "files": [] if picture is None else [str(save_figure(_section(preset.name, b), picture, 150))],
     }
     parts += [Words(f"{', '.join(names)}: {source}", "dim") for source, names in sources.items()]
     return Listing(preset.title, content, [*parts, *written(content["files"])])
