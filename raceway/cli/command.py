@@ -76,6 +76,7 @@ class Command(NamedTuple):
     named_by : argument with the file whose name stands for the title
     unchecked : the scene is not read before the front has changed it
     pictures : whether they are drawn unless something else is said; None: there are none
+    remaining : the bar shows the time left: parts take about the same time each
 
     Examples
     --------
@@ -94,6 +95,7 @@ class Command(NamedTuple):
     named_by: str = ""
     unchecked: bool = False
     pictures: bool | None = True
+    remaining: bool = False
 
     def click(self) -> click.Command:
         """The command, with the module of its front imported."""
@@ -132,7 +134,7 @@ class Command(NamedTuple):
             command = set_keys(given(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
-                command = _argument(parameter)(command)
+                command = _argument(parameter, self._about(parameter).metavar)(command)
         return click.command(self.name, short_help=self.summary, help=help_text)(command)
 
     def _about(self, parameter: inspect.Parameter) -> Option:
@@ -176,10 +178,11 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
     return str(inspect.unwrap(front).__globals__.get(text, text))
 
 
-def _argument(parameter: inspect.Parameter) -> Callable[[Value], Value]:
+def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
     required = parameter.default is inspect.Parameter.empty
     kind = PATH if "Path" in str(parameter.annotation) else None
-    return click.argument(parameter.name, type=kind, required=required, default=None if required else parameter.default)
+    default = None if required else parameter.default
+    return click.argument(parameter.name, type=kind, required=required, default=default, metavar=metavar)
 
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
@@ -217,7 +220,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     arguments |= {name: value for name, value in shared.items() if name in known}
     stopped = None
     with keeping(kept):
-        with show_progress() as progress:
+        with show_progress(about.remaining) as progress:
             if "progress" in known:
                 arguments["progress"] = progress
             try:
@@ -236,7 +239,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 answer, stopped = stop.partial, stop  # what is finished is written and shown first
         files: list[str] = []
         failed = None if folder is None else attempt(lambda: answer.save(folder, pictures and stopped is None), files)
-        show(answer.to_dict(), as_json, failed or _by_flags(about, answer.failure()), lambda: answer.screen(files))
+        failed = failed or _by_flags(about, answer.failure())
+        show(answer.to_dict() if as_json else {}, as_json, failed, lambda: answer.screen(files))
         if stopped is not None:
             raise stopped
     return 0 if answer.passed else 1

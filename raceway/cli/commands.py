@@ -27,7 +27,7 @@ _VARY = Option(
     metavar="A.B=X,Y", help="Values x,y,z or a range start:stop:count of a key, all combinations of which are run."
 )
 
-ANSWERS = (
+ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "run",
         "raceway.pipeline.front:run",
@@ -55,7 +55,36 @@ ANSWERS = (
         folder="-compare",
         unchecked=True,
     ),
-    Later("sweep", "raceway.cli.sweep:sweep", "One scene at thousands of points, kept in a store; parallel, resumable."),
+    Command(
+        "sweep",
+        "raceway.cli.sweep:sweep",
+        "One scene at thousands of points, kept in a store; parallel, resumable.",
+        "raceway sweep examples/b7206.toml --plot K \\\n"
+        "    --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200\n"
+        "raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200\n"
+        "raceway sweep examples/steady_orbit.toml --list points.csv \\\n"
+        "    --executor joblib --workers 4",
+        {
+            "source": Option(metavar="SCENE|STORE", positional=True),
+            "axes": Option("grid", "A.B=X,Y"),
+            "points": Option("list", "FILE"),
+            "design": Option(metavar="FILE.toml"),
+            "settings": Option("set", "A.B=C"),
+            "executor": Option(metavar="NAME"),
+            "workers": Option(metavar="N"),
+            "scheduler": Option(metavar="ADDRESS"),
+            "store": Option("out", "STORE"),
+            "value": Option("plot", "NAME"),
+            "x": Option(metavar="KEY"),
+            "y": Option(metavar="KEY"),
+            "at": Option(metavar="KEY=VALUE"),
+            "kind": Option(choices=("curves", "map", "surface")),
+            "picture": Option(metavar="FILE"),
+        },
+        folder=None,
+        pictures=None,
+        remaining=True,
+    ),
     Command(
         "follow",
         "raceway.points.follow:follow",
@@ -249,7 +278,7 @@ DEVELOPERS = (
     Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
 )
 #: Heading in --help -> its commands.
-SECTIONS = {
+SECTIONS: dict[str, tuple[Command | Later, ...]] = {
     "Answers": ANSWERS,
     "Trust": TRUST,
     "Studies": (Later("study", "raceway.cli.study:study", "Whole studies that end in a page, and others' studies."),),

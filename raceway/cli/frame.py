@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import wraps
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from raceway.scene.scene import Scene
 
 
-R = TypeVar("R")
 F = TypeVar("F", bound=Callable[..., object])
 
 #: Where results go unless --out says otherwise.
@@ -33,12 +31,11 @@ PATH = click.Path(path_type=Path, readable=False)
 set_keys = click.option(
     "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
 )
-at_option = click.option("--at", multiple=True, metavar="KEY=VALUE", help="Choose a value of an axis; repeat for more.")
 
 
-def out_option(default: str, what: str = "Folder", metavar: str = "DIR") -> Callable[[F], F]:
+def out_option(default: str) -> Callable[[F], F]:
     """--out; ``default`` is only shown, the command chooses it."""
-    return click.option("--out", type=PATH, metavar=metavar, help=f"{what} [{default}].")
+    return click.option("--out", type=PATH, metavar="DIR", help=f"Folder [{default}].")
 
 
 plugin_files = click.option(
@@ -54,19 +51,6 @@ def common(command: F) -> F:
         "-v", "--verbose", is_flag=True, expose_value=False, callback=listen, help="Say on standard error what is computed."
     )(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
-
-
-def record(kind: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
-    """The innermost decorator of a command with many options: they come as one record, a named tuple with their names."""
-
-    def decorate(command: Callable[[R], int]) -> Callable[..., int]:
-        @wraps(command)
-        def filled(**given: object) -> int:
-            return command(kind(**given))
-
-        return filled
-
-    return decorate
 
 
 def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
@@ -175,14 +159,6 @@ def _changed(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake
 def require_matplotlib(otherwise: str) -> None:
     if find_spec("matplotlib") is None:
         raise RacewayError(f"pictures need matplotlib: {extra('pictures')}, or {otherwise}.")
-
-
-def has_netcdf() -> bool:
-    """Whether labelled results can be written; says what is missing."""
-    missing = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
-    if missing:
-        warn(f"no results.nc: it needs {', '.join(missing)}; {extra('sweep')}; points.sqlite holds everything")
-    return not missing
 
 
 def has_matplotlib(by_default: bool) -> bool:

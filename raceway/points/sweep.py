@@ -278,10 +278,8 @@ def sweep(
 
     Raises
     ------
-    SceneError
-        A mistake in the scene or in a value of an axis; nothing has been computed.
-    PluginError
-        An executor that is not known or cannot work.
+    SceneError, PluginError
+        A mistake in the scene or in a value of an axis, an executor that is not known or cannot work; nothing has been computed.
     ConvergenceError
         Every point failed.
     RacewayError
