@@ -61,6 +61,7 @@ _MODULES = {
     "raceway.points.compare": "compare Comparison",
     "raceway.points.sweep": "sweep",
     "raceway.points.follow": "follow",
+    "raceway.points.function": "function Function PointStatus",
     "raceway.points.precision": "precision Precision",
     "raceway.points.band": "band Band",
     "raceway.points.sensitivities": "sensitivities Sensitivities",

@@ -7,6 +7,7 @@ from math import pi, radians
 import attrs
 import numpy as np
 
+from raceway.core.columns import Number, largest, per_ball
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.ring import ChangingSpeed, Growth
@@ -23,6 +24,8 @@ from raceway.storage.tables import Tables
 @attrs.frozen(eq=False)
 class Basis:
     """Geometry and load-independent contacts of a scene.
+
+    Of n operating points all numbers may be columns (n,).
 
     Attributes
     ----------
@@ -80,31 +83,33 @@ def make_basis(problem: Problem) -> Basis:
         azimuths,
         row,
         axial,
-        max(ball_load, 1.0),
+        largest(ball_load, 1.0),
         growth_of(problem.running, row),
     )
 
 
 def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:
     """Of the grooves; ``row`` (Z,) is each ball's."""
-    rows = np.array([[*attrs.astuple(grown), 0.0] for grown in running.grooves])
+    numbers = np.broadcast_arrays(*(number for grown in running.grooves for number in (*attrs.astuple(grown), 0.0)))
+    rows = np.stack(numbers, axis=-1).reshape(*numbers[0].shape, len(running.grooves), -1)
     # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
-    common = rows[0].copy()
+    common = rows[..., 0, :].copy()
     if running.bearing.equal_rows:
-        common[0] = rows[:, 0].mean()
-    return Growth(common, (rows - common)[row])
+        common[..., 0] = rows[..., 0].mean(axis=-1)
+    return Growth(common, (rows - common[..., None, :])[..., row, :])
 
 
 def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
-    """The contacts as a law sees them, mounted and at standstill."""
+    """The contacts as a law sees them, mounted and at standstill; those of n points (n 2 Z,) one after the other."""
     inner, outer = basis.inner, basis.outer
-    z, rings, balls = len(basis.azimuth), problem.bearing.rings, problem.bearing.balls
+    rings, balls, shape = problem.bearing.rings, problem.bearing.balls, (*problem.points, len(basis.azimuth))
 
-    def both(a: float | np.ndarray, b: float | np.ndarray) -> np.ndarray:
-        return np.concatenate([np.broadcast_to(value, z) for value in (a, b)]).astype(float)
+    def both(a: Number, b: Number) -> np.ndarray:
+        halves = [np.broadcast_to(per_ball(value) if problem.points else value, shape) for value in (a, b)]
+        return np.concatenate(halves, axis=-1).astype(float).ravel()
 
-    def every(value: float) -> np.ndarray:
-        return np.full(2 * z, value)
+    def every(value: Number) -> np.ndarray:
+        return both(value, value)
 
     return ContactPairs(
         curvature_a=both(inner.curvatures[0], outer.curvatures[0]),
@@ -160,15 +165,15 @@ def changing_speed(problem: Problem) -> ChangingSpeed | None:
 
 
 def gyroscopic(problem: Problem) -> np.ndarray:
-    """(5, 5) part of the damping that the spinning ring and rotor make [N m s/rad].
+    """(..., 5, 5) part of the damping that the spinning ring and rotor make [N m s/rad].
 
     Notes
     -----
     dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
     """
-    moments = np.zeros((5, 5))
-    moments[3, 4] = problem.inertia.polar * problem.spin_speed
-    moments[4, 3] = -moments[3, 4]
+    moments = np.zeros((*problem.points, 5, 5))
+    moments[..., 3, 4] = problem.inertia.polar * problem.spin_speed
+    moments[..., 4, 3] = -moments[..., 3, 4]
     return moments
 
 

@@ -12,6 +12,7 @@ from raceway.bodies.contacts import against_hertz
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.contact_laws.hertz import Hertz
+from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.kernels import layout as ring
@@ -22,6 +23,7 @@ from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
@@ -60,19 +62,27 @@ def with_hertz(problem: Problem) -> Problem:
 
 def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
     """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
-    kernel, base = _bodies_kernels(plan)
     return System(
-        kernel=kernel,
-        base_kernel=base,
-        law=plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
-        law_params=law_params(problem.contact.law, contact_pairs(problem, basis)),
         law_state=np.zeros((2 * len(basis.azimuth), problem.contact.law.state_size)),
-        scalars=_scalars(problem, plan, basis),
-        table=_ball_table(problem, plan, basis),
+        **contact_parts(problem, plan, basis),
         **linear_parts(problem, plan),
         **excitation(problem),
         spin=changing_speed(problem),
     )
+
+
+def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
+    """Kernels of balls and law, and their numbers, with a first axis of n operating points where these have columns."""
+    kernel, base = _bodies_kernels(plan)
+    params = law_params(problem.contact.law, contact_pairs(problem, basis))
+    return {
+        "kernel": kernel,
+        "base_kernel": base,
+        "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
+        "law_params": params.reshape(*problem.points, -1, params.shape[1]),
+        "scalars": _scalars(problem, plan, basis),
+        "table": _ball_table(problem, plan, basis),
+    }
 
 
 def probe(problem: Problem, basis: Basis, system: System) -> None:
@@ -104,23 +114,24 @@ def _bodies_kernels(plan: ScenePlan) -> tuple[Kernel, Kernel]:
 
 
 def _grooves(problem: Problem, geometry: BallBearing) -> np.ndarray:
-    """(5,) of the scalars REST_AXIAL to TILT_ARM of a row's geometry, before anything grows [m]."""
+    """(..., 5) of the scalars REST_AXIAL to TILT_ARM of a row's geometry, before anything grows [m]."""
     arm = geometry.inner_centre_radius if problem.bearing.tilt_arm == "groove" else 0.5 * geometry.pitch_diameter
-    return np.array([*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm])
+    numbers = (*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm)
+    return np.stack(np.broadcast_arrays(*numbers), axis=-1)
 
 
 def _scalars(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
-    out, growth = np.zeros(ring.SCALARS), basis.growth
-    out[ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
-    out[ring.REST_AXIAL : ring.TILT_ARM + 1] += growth.common
-    out[ring.DAMPING], out[ring.TIME_CONSTANT] = problem.contact.dashpot, problem.time_constant
+    out = np.zeros((*problem.points, ring.SCALARS))
+    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
+    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common
+    out[..., ring.DAMPING], out[..., ring.TIME_CONSTANT] = problem.contact.dashpot, problem.time_constant
     if problem.kinematics.orbiting:
-        out[ring.CAGE] = geometry.cage_speed(problem.spin_speed)
-    out[ring.DIAMETER] = geometry.ball_diameter
+        out[..., ring.CAGE] = geometry.cage_speed(problem.spin_speed)
+    out[..., ring.DIAMETER] = geometry.ball_diameter
     if problem.contact.friction > 0.0:
-        out[ring.FRICTION] = problem.contact.friction
-        out[ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
+        out[..., ring.FRICTION] = problem.contact.friction
+        out[..., ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
     if plan.gyroscopic:
         add_moments(out, problem, geometry)
     return out
@@ -128,10 +139,10 @@ def _scalars(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
 
 def add_moments(scalars: np.ndarray, problem: Problem, geometry: BallBearing) -> None:
     """The balls' gyroscopic moments, by the scene's hypothesis."""
-    scalars[[ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[problem.kinematics.gyroscopic]
-    scalars[ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
+    scalars[..., [ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[problem.kinematics.gyroscopic]
+    scalars[..., ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
     moment_of_inertia = geometry.ball_mass(problem.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
-    scalars[ring.GYROSCOPIC] = moment_of_inertia * problem.spin_speed * geometry.cage_speed(problem.spin_speed)
+    scalars[..., ring.GYROSCOPIC] = moment_of_inertia * problem.spin_speed * geometry.cage_speed(problem.spin_speed)
 
 
 def _stick_stiffness(problem: Problem, inner: Ellipse, outer: Ellipse, load: float) -> float:
@@ -141,24 +152,23 @@ def _stick_stiffness(problem: Problem, inner: Ellipse, outer: Ellipse, load: flo
 
 
 def _ball_table(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
-    inner, outer, azimuth, row = basis.inner, basis.outer, basis.azimuth, basis.row
-    z, centrifugal = len(azimuth), np.zeros(len(basis.geometries))
+    """(..., Z, k); numbers of balls are columns of the table, those of points have their axis before the balls'."""
+    inner, outer, azimuth, row, several = basis.inner, basis.outer, basis.azimuth, basis.row, not problem.bearing.equal_rows
+
+    def spread(value: Number) -> Number:
+        return value if several else per_ball(value)
+
+    table = np.zeros((*problem.points, len(azimuth), ring.COLUMNS))
     if plan.centrifugal:
         for k, geometry in enumerate(basis.geometries):
-            cage = geometry.cage_speed(problem.spin_speed)
-            centrifugal[k] = geometry.ball_mass(problem.bearing.balls.density) * 0.5 * geometry.pitch_diameter * cage**2
+            cage, mass = geometry.cage_speed(problem.spin_speed), geometry.ball_mass(problem.bearing.balls.density)
+            table[..., row == k, ring.CENTRIFUGAL] = per_ball(mass * 0.5 * geometry.pitch_diameter * cage**2)
     softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
-    share = softness[1] / sum(softness)
-    table = np.zeros((z, ring.COLUMNS))
-    table[:, ring.COSINE], table[:, ring.SINE] = np.cos(azimuth), np.sin(azimuth)
-    table[:, ring.CENTRIFUGAL], table[:, ring.OUTER_SHARE], table[:, ring.OUTER_FACTOR] = (
-        centrifugal[row],
-        share,
-        outer.factor,
-    )
-    table[:, [ring.SIDE, ring.LEVER]] = np.array(problem.bearing.rows)[row]
-    if not problem.bearing.equal_rows:
+    table[..., ring.COSINE], table[..., ring.SINE] = np.cos(azimuth), np.sin(azimuth)
+    table[..., ring.OUTER_SHARE], table[..., ring.OUTER_FACTOR] = spread(softness[1] / sum(softness)), spread(outer.factor)
+    table[..., [ring.SIDE, ring.LEVER]] = np.array(problem.bearing.rows)[row]
+    if several:
         grooves = np.array([_grooves(problem, geometry) for geometry in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
-    table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
+    table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
     return table

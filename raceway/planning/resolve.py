@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from functools import cached_property
-from math import ceil, cos, log, pi, sin, sqrt
+from math import ceil, pi
 
 import attrs
 
+from raceway.core.columns import Number, cos, is_column, largest, log, sin, some, sqrt, where
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.scene import Scene, SceneTables
-from raceway.scene.tables import (
-    TIME_CONSTANTS,
-)
+from raceway.scene.tables import TIME_CONSTANTS
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
@@ -45,6 +44,7 @@ class Problem(SceneTables):
     Attributes
     ----------
     scene : what the user said, for messages and results
+    points : (n,) where numbers are columns of n operating points, () of one
 
     Notes
     -----
@@ -52,6 +52,7 @@ class Problem(SceneTables):
     """
 
     scene: Scene
+    points: tuple[int, ...] = ()
 
     def says(self, key: str) -> bool:
         """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
@@ -77,8 +78,8 @@ class Problem(SceneTables):
         """Speed of the inner ring [rad/s]."""
         rpm = self.kinematics.spin_speed_rpm
         if rpm is None:
-            rpm = speed_rpm(self.excitation) or 0.0
-        return rpm * pi / 30.0
+            rpm = speed_rpm(self.excitation)
+        return 0.0 if rpm is None else rpm * pi / 30.0
 
     @cached_property
     def time_constant(self) -> float:
@@ -320,29 +321,31 @@ def series_factor(b: Bearing) -> float:
     return softness**-1.5
 
 
-def axial_approach(b: Bearing, axial: float) -> tuple[float, float]:
+def axial_approach(b: Bearing, axial: Number) -> tuple[Number, Number]:
     """(x [m], load of a ball [N]) under an axial load [N] alone, by Newton's iteration on the axial displacement."""
     factor, alpha = series_factor(b), b.contact_angle
     distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
-    target = abs(axial)
+    along, across, target = distance * sin(alpha), distance * cos(alpha), abs(axial)
 
-    def state(x: float) -> tuple[float, float]:
-        a, r = distance * sin(alpha) + x, distance * cos(alpha)
-        s = sqrt(a * a + r * r)
-        load = factor * max(s - distance, 0.0) ** 1.5
-        return b.ball_count * load * a / s, load
+    def state(x: Number) -> tuple[Number, Number, Number, Number]:
+        a = along + x
+        s = sqrt(a * a + across * across)
+        load = factor * largest(s - distance, 0.0) ** 1.5
+        return b.ball_count * load * a / s, load, a, s
 
-    high = distance
-    while state(high)[0] < target and high < 100.0 * distance:
-        high *= 2.0
+    high = distance if not is_column(factor * target) else distance + 0.0 * (factor * target)
     # The force grows faster than the displacement: Newton's iteration stays above and falls, until rounding ends it.
     for _ in range(_ITERATIONS):
-        force, load = state(high)
-        a, r = distance * sin(alpha) + high, distance * cos(alpha)
-        s = sqrt(a * a + r * r)
-        slope = b.ball_count * (1.5 * factor * sqrt(max(s - distance, 0.0)) * (a / s) ** 2 + load * r * r / s**3)
-        step = (force - target) / slope if slope > 0.0 else 0.0
-        if not 0.0 < step <= high or step <= 1e-15 * high:
+        low = (state(high)[0] < target) & (high < 100.0 * distance)
+        if not some(low):
             break
-        high -= step
+        high = high * where(low, 2.0, 1.0)
+    for _ in range(_ITERATIONS):
+        force, load, a, s = state(high)
+        slope = b.ball_count * (1.5 * factor * sqrt(largest(s - distance, 0.0)) * (a / s) ** 2 + load * across**2 / s**3)
+        step = where(slope > 0.0, (force - target) / largest(slope, 1e-300), 0.0)
+        going = (step > 1e-15 * high) & (step <= high)
+        if not some(going):
+            break
+        high = high - where(going, step, 0.0)
     return high, state(high)[1]

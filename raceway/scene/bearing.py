@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import acos, asin, cos, degrees, pi, radians, sin
+from math import asin, degrees, pi, radians
 
 import attrs
 
+from raceway.core.columns import acos, cos, has_columns, is_column, sin, some, with_columns
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import (
     at_least,
@@ -44,10 +45,10 @@ class Material:
 
     def strain(self, path: str, kelvin: float) -> float:
         """Thermal strain; ``path`` of the table, for a ``SceneError`` where it is warm and has no thermal expansion."""
-        if kelvin and self.thermal_expansion is None:
+        if some(kelvin) and self.thermal_expansion is None:
             rule = f"is required: {kelvin:g} K act on a body of {1e-9 * self.young:.4g} GPa, which is not steel (204 to 214 GPa)"
             raise SceneError.at(f"{path}.thermal_expansion", None, f"{rule}. Give it, or `material` by its name")
-        return kelvin * (self.thermal_expansion or 0.0)
+        return kelvin * (0.0 if self.thermal_expansion is None else self.thermal_expansion)
 
 
 @attrs.frozen
@@ -195,6 +196,9 @@ class Bearing:
     @property
     def of_rows(self) -> tuple[Bearing, ...]:
         """The bearing of each row by itself."""
+        if has_columns(self):  # has no tables of rows
+            plain = {"arrangement": "single", "preload": 0.0, "second_preload": None, "row_distance": None}
+            return (with_columns(self, **plain),) * len(signs_of(self.arrangement))
         return _of_rows(self)
 
     @property
@@ -245,10 +249,11 @@ class Bearing:
     @property
     def contact_angle(self) -> float:
         """Free contact angle [rad]: given, or from the radial clearance."""
-        if self.radial_clearance and not self.contact_angle_deg:
+        clearance, angle = self.radial_clearance, self.contact_angle_deg
+        if clearance is not None and some(clearance) and (angle is None or not some(angle)):
             distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
-            return acos(1.0 - self.radial_clearance / (2.0 * distance))
-        return radians(self.contact_angle_deg or 0.0)
+            return acos(1.0 - clearance / (2.0 * distance))
+        return angle * (pi / 180.0) if is_column(angle) else radians(angle or 0.0)
 
 
 @lru_cache(maxsize=256)

@@ -5,17 +5,20 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from raceway.core.columns import with_columns
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.tables import TABLES
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from raceway.scene.scene import Scene
 
 
@@ -160,6 +163,12 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     return changed
 
 
+def with_column(scene: Scene, path: str, column: np.ndarray) -> Scene:
+    """The scene with a column (n,) at a continuous key, which no rule looks at: one scene of n operating points."""
+    changed: Scene = _replaced(scene, _steps(path), column, with_columns)
+    return changed
+
+
 def _steps(path: str) -> list[str | int]:
     return [name or int(index) for name, index in _STEP.findall(path)]
 
@@ -198,13 +207,13 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
             yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
-def _replaced(part: Any, steps: list[str | int], value: float) -> Any:
+def _replaced(part: Any, steps: list[str | int], value: object, replace: Callable[..., Any] = attrs.evolve) -> Any:
     if not steps:
         return value
     step, further = steps[0], steps[1:]
     if isinstance(step, int):
-        return (*part[:step], _replaced(part[step], further, value), *part[step + 1 :])
+        return (*part[:step], _replaced(part[step], further, value, replace), *part[step + 1 :])
     fields = attrs.fields_dict(type(part))
     if step not in fields:  # a key of the plug-in that the table names
         step, further = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
-    return attrs.evolve(part, **{step: _replaced(getattr(part, step), further, value)})
+    return replace(part, **{step: _replaced(getattr(part, step), further, value, replace)})

@@ -6,12 +6,13 @@ Temperatures are given numbers: nothing here knows where the heat comes from.
 from __future__ import annotations
 
 from functools import cache, cached_property
-from math import acos, cos, degrees, inf, pi, sin
+from math import degrees, inf, pi
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
+from raceway.core.columns import Number, acos, at_row, cos, has_columns, largest, least, length, sin, some, where
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.tables import Kinematics, Mounting
 
@@ -20,14 +21,17 @@ if TYPE_CHECKING:
     from raceway.scene.bearing import Bearing
 
 
-def ring_inertia(bearing: Bearing) -> tuple[float, float, float]:
+def ring_inertia(bearing: Bearing) -> tuple[Number, Number, Number]:
     """Mass [kg], transverse and polar inertia [kg m2] of the inner rings of all rows; zeros when bore or width are not known.
 
     Notes
     -----
     Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
-    is cut out exactly.
+    is cut out exactly.  Of a bearing with columns they are columns: each section is integrated over by itself.
     """
+    if has_columns(bearing):
+        each = np.array([ring_inertia(at_row(bearing, point)) for point in range(length(bearing))]).T
+        return each[0], each[1], each[2]
     total = np.zeros(3)
     for (_, position), row in zip(bearing.rows, bearing.of_rows, strict=True):
         moments = _moments(row, groove_depth(row))
@@ -71,7 +75,7 @@ def groove_depth(bearing: Bearing) -> float:
 
 def groove_edge(bearing: Bearing) -> float:
     """Angle from a groove's bottom to its edge, seen from the ball's centre [rad]."""
-    return float(np.arccos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter)))
+    return acos(1.0 - groove_depth(bearing) / (0.5 * bearing.ball_diameter))
 
 
 def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:
@@ -124,7 +128,7 @@ def ball_growth(bearing: Bearing, spin_speed: float) -> float:
     speed = spin_speed * (0.5 * dm / d * (1.0 - g**2) - 0.5 * (1.0 - g))
     nu = ball.poisson
     shape = 2.0 * (1.0 - 2.0 * nu) / 15.0 + (1.0 + nu) * (2.0 + nu) / (3.0 * (7.0 + 5.0 * nu))
-    return float(shape * ball.density * speed**2 * (0.5 * d) ** 3 / ball.young)
+    return shape * ball.density * speed**2 * (0.5 * d) ** 3 / ball.young
 
 
 @attrs.frozen
@@ -176,7 +180,7 @@ class RunningBearing:
     def free_angle(self, row: int) -> float:
         """Free contact angle of a row [rad]; 0 where nothing is left of its clearance."""
         distance, radial = self.centre_distance(row)
-        return acos(min(max(radial / distance, -1.0), 1.0))
+        return acos(least(largest(radial / distance, -1.0), 1.0))
 
     def least_interference(self, seat: str) -> float:
         """Of all rows on shaft or in housing, at speed and temperature, on the diameter [m]."""
@@ -195,8 +199,8 @@ class RunningBearing:
         Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
         """
         growth = self.kinematics.radial_expansion
-        if self.kinematics.ring_growth and b.bore is not None and self.spin_speed != 0.0:
-            growth += b.rings.density * self.spin_speed**2 * _growth(b, groove_depth(b))
+        if self.kinematics.ring_growth and b.bore is not None and some(self.spin_speed):
+            growth = growth + b.rings.density * self.spin_speed**2 * _growth(b, groove_depth(b))
         return growth
 
     def inner_fit(self, b: Bearing) -> float:
@@ -230,13 +234,13 @@ class RunningBearing:
         (Timoshenko & Goodier, section 28)."""
         warm, rings, sign = self.mounting, b.rings, 1.0 if seat == "shaft" else -1.0
         d, far = (b.bore, warm.shaft_bore) if seat == "shaft" else (b.outer_diameter, warm.housing_diameter)
-        if interference <= 0.0 or d is None:
+        if d is None or not some(interference > 0.0):
             return 0.0
         core, race = getattr(warm, f"{seat}_material") or rings, b.pitch_diameter - sign * b.ball_diameter
         around = 1.0 if far is None else abs((far**2 + d**2) / (far**2 - d**2))
         softness = (abs((race**2 + d**2) / (race**2 - d**2)) + sign * rings.poisson) / rings.young
         softness += (around - sign * core.poisson) / core.young
-        return interference * d * race / (softness * rings.young * (race**2 - d**2))
+        return where(interference > 0.0, interference, 0.0) * d * race / (softness * rings.young * (race**2 - d**2))
 
     def interference_at_standstill(self, b: Bearing, seat: str = "shaft") -> float:
         """Interference of shaft or housing with its ring at their temperature, at standstill, on the diameter [m]."""
@@ -244,9 +248,9 @@ class RunningBearing:
         d, kelvin = (b.bore, warm.inner_temperature) if inside else (b.outer_diameter, warm.outer_temperature)
         cold, material = (getattr(warm, f"{seat}_{word}") for word in ("interference", "material"))
         if material is None or d is None:
-            return float(cold)
+            return cold
         expands = material.strain(f"mounting.{seat}_material", kelvin) - rings.strain("bearing.rings", kelvin)
-        return float(cold + (expands if inside else -expands) * d)
+        return cold + (expands if inside else -expands) * d
 
     def interference(self, b: Bearing, seat: str = "shaft") -> float:
         """Interference of shaft or housing with its ring at speed and temperature, on the diameter [m].
@@ -269,7 +273,7 @@ class RunningBearing:
             body.density / (4.0 * body.young) * ((1.0 - body.poisson) * bore**2 + (3.0 + body.poisson) * far**2)
             for body, far in ((rings, land), (self.mounting.shaft_material or rings, hole))
         )
-        return float(at_rest - 2.0 * self.spin_speed**2 * bore * (ring - core))
+        return at_rest - 2.0 * self.spin_speed**2 * bore * (ring - core)
 
 
 def _widths(b: RunningBearing, dimension: str) -> list[float]:

@@ -13,16 +13,17 @@ Harris & Kotzalas, Essential Concepts of Bearing Technology, chapters 2 and 6; I
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import pi
 
 import attrs
 
+from raceway.core.columns import cos, sin
 from raceway.core.contact.hertz import Ellipse, ellipse
 
 
 @attrs.frozen
 class BallBearing:
-    """Geometry of one row, all in metres and radians."""
+    """Geometry of one row, all in metres and radians; numbers may be columns."""
 
     ball_diameter: float
     pitch_diameter: float

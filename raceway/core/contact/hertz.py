@@ -22,12 +22,17 @@ import attrs
 import numpy as np
 from scipy.special import ellipe, ellipkm1, elliprd
 
+from raceway.core.columns import Number, is_column
 from raceway.errors import RacewayError
 
 
 def contact_modulus(young_a: float, poisson_a: float, young_b: float, poisson_b: float) -> float:
     """E* [Pa] with 1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b (lubrication's E' is twice this)."""
     return 1.0 / ((1.0 - poisson_a**2) / young_a + (1.0 - poisson_b**2) / young_b)
+
+
+#: Steps of Newton's method for a column; five do.
+_NEWTON = 12
 
 
 def _difference(log_chi: float) -> float:
@@ -61,8 +66,8 @@ def regula_falsi(function: Callable[[float], float], low: float, high: float) ->
     below, above, last = function(low), function(high), 0
     for _ in range(200):
         middle = (low * above - high * below) / (above - below)
-        if not low < middle < high:
-            break
+        if not low < middle < high:  # rounded to the end that the zero is next to, however far the other one stayed
+            return min(max(middle, low), high)
         value = function(middle)
         if value == 0.0:
             return middle
@@ -148,15 +153,49 @@ def every(contacts: Sequence[Ellipse], indices: np.ndarray) -> Ellipse:
     return Ellipse(*columns)
 
 
-@lru_cache(maxsize=256)
-def ellipse(curvature_sum: float, curvature_difference: float, modulus: float) -> Ellipse:
-    """Hertz contact from curvature sum [1/m], curvature difference and E* [Pa]."""
-    chi = ellipticity(curvature_difference)
+def ellipse(curvature_sum: Number, curvature_difference: Number, modulus: Number) -> Ellipse:
+    """Hertz contact from curvature sum [1/m], curvature difference and E* [Pa]; of columns all numbers are columns."""
+    chi, a_star, delta_star = (_ellipses if is_column(curvature_difference) else _ellipse)(curvature_difference)
+    return Ellipse(curvature_sum, curvature_difference, modulus, a_star, a_star / chi, delta_star)
+
+
+def _shape(chi: Number) -> tuple[Number, Number, Number]:
+    """chi, a* and delta*."""
     m1 = 1.0 / chi**2
-    first, second = float(ellipkm1(m1)), float(ellipe(1.0 - m1))
+    first, second = ellipkm1(m1), ellipe(1.0 - m1)
     a_star = (2.0 * chi**2 * second / np.pi) ** (1.0 / 3.0)
-    delta_star = 2.0 * first / np.pi * (np.pi / (2.0 * chi**2 * second)) ** (1.0 / 3.0)
-    return Ellipse(curvature_sum, curvature_difference, modulus, float(a_star), float(a_star / chi), float(delta_star))
+    return chi, a_star, 2.0 * first / np.pi * (np.pi / (2.0 * chi**2 * second)) ** (1.0 / 3.0)
+
+
+@lru_cache(maxsize=256)
+def _ellipse(curvature_difference: float) -> tuple[float, float, float]:
+    chi, a_star, delta_star = _shape(ellipticity(curvature_difference))
+    return chi, float(a_star), float(delta_star)
+
+
+def _ellipses(curvature_difference: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same of a column: Newton's method in log chi, from the formula of Hamrock and Brewe; nan where there is no ellipse.
+
+    Notes
+    -----
+    With K and E of m = 1 - 1/chi^2, dK/dm = (E/(1-m) - K) / (2 m) and dE/dm = (E - K) / (2 m).
+    """
+    inside = (curvature_difference > 1e-12) & (curvature_difference < 1.0)
+    wanted = np.where(inside, curvature_difference, 0.5)
+    log_chi = 0.636 * np.log((1.0 + wanted) / (1.0 - wanted))
+    for _ in range(_NEWTON):
+        excess, m1 = np.expm1(2.0 * log_chi), np.exp(-2.0 * log_chi)
+        m, first, second = -np.expm1(-2.0 * log_chi), ellipkm1(m1), ellipe(-np.expm1(-2.0 * log_chi))
+        ratio = first / second
+        slope = ((second / m1 - first) * second - first * (second - first)) / (2.0 * m * second**2) * 2.0 * m1
+        value = 1.0 - 2.0 / excess * (ratio - 1.0)
+        by_log = 4.0 * (excess + 1.0) / excess**2 * (ratio - 1.0) - 2.0 / excess * slope
+        step = (value - wanted) / by_log
+        log_chi = np.maximum(log_chi - step, 0.1 * log_chi)
+        if np.abs(step).max() < 1e-15 * log_chi.max():
+            break
+    chi = np.exp(log_chi)
+    return _shape(np.where(inside, chi, np.where(np.abs(curvature_difference) <= 1e-12, 1.0, np.nan)))
 
 
 def normal_displacement(depth: np.ndarray, away: np.ndarray, young: float, poisson: float) -> np.ndarray:

@@ -1,0 +1,318 @@
+"""A bearing with rigid bodies at n operating points at once: its numbers as columns, for the compiled loops over points.
+
+The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.rigid_bearing``): arrays have a first axis more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
+
+import attrs
+import numpy as np
+
+from raceway.bodies.basis import Basis, gyroscopic, make_basis
+from raceway.bodies.rigid_bearing import contact_parts
+from raceway.core.columns import Number, per_ball, some
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.jit import address_of
+from raceway.core.periodic.collocation import one_pitch
+from raceway.core.periodic.orbits import Orbits, Turning, orbits
+from raceway.core.ring.equilibria import Kernels, Points, States, equilibria
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.system import System
+from raceway.core.signatures import FORCE, FORCE_POINTER, LAW_POINTER, SYSTEM_POINTER, Linear
+from raceway.framework.contracts import Excitation
+from raceway.framework.duties import force_params, renews
+from raceway.framework.probe import plugin_kernel
+from raceway.planning.plan import ScenePlan
+from raceway.planning.resolve import Problem, resolve
+from raceway.scene.changes import with_column
+from raceway.scene.scene import Scene
+
+#: Continuous keys whose numbers may be columns; beside them those of the excitation.
+KEYS = frozenset(
+    [
+        "load.axial",
+        "load.radial[0]",
+        "load.radial[1]",
+        "load.moment[0]",
+        "load.moment[1]",
+        "kinematics.spin_speed_rpm",
+        "kinematics.radial_expansion",
+        "supports.tilt",
+        "rotor.mass",
+        "rotor.damping",
+        "rotor.transverse_inertia",
+        "rotor.polar_inertia",
+        "bearing.ball_diameter",
+        "bearing.pitch_diameter",
+        "bearing.conformity_inner",
+        "bearing.conformity_outer",
+        "bearing.contact_angle_deg",
+        "bearing.radial_clearance",
+        "bearing.preload",
+        "bearing.second_preload",
+        "bearing.rings.young",
+        "bearing.rings.poisson",
+        "bearing.rings.density",
+        "bearing.balls.young",
+        "bearing.balls.poisson",
+        "bearing.balls.density",
+        "mounting.inner_temperature",
+        "mounting.outer_temperature",
+        "mounting.ball_temperature",
+        "mounting.shaft_interference",
+        "mounting.housing_interference",
+    ]
+)
+T, R = TypeVar("T"), TypeVar("R", bound=Any)
+#: Samples of a span at most.
+MOST_SAMPLES = 128
+_AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+
+
+def why_not(scene: Scene, moving: bool) -> str:
+    """Why the points of a scene are computed one by one; empty where the compiled loops do.
+
+    Parameters
+    ----------
+    moving : whether their motions are asked for
+    """
+    bearing, law = scene.bearing, scene.contact.law
+    reasons = {
+        "bodies deform": scene.bodies.name != "rigid",
+        "the contact law has a memory": law.state_size > 0,
+        "the contact law follows the running state": renews(law),
+        "contacts rub": scene.contact.friction > 0.0,
+        "dashpots are given as a band": scene.contact.in_a_band,
+        "an axial displacement is held": scene.supports.axial == "displacement",
+        "rows are on a spring, or ground one by one": bearing.preloaded
+        and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
+        "balls orbit": moving and scene.kinematics.orbiting,
+        "the speed changes": resolve(scene).spin_changes,
+        "the motion is integrated over time": moving and scene.integrator.kind != "periodic",
+        "the identifier is not fft_1x": moving and scene.identifier.kind != "fft_1x",
+    }
+    return next((reason for reason, holds in reasons.items() if holds), "")
+
+
+def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:
+    """What a scene asks for at n points, from the columns (n,) of its keys."""
+    for key, column in columns.items():
+        scene = with_column(scene, key, column)
+    return attrs.evolve(resolve(scene), points=(len(next(iter(columns.values()))),))
+
+
+def conspicuous(problem: Problem) -> np.ndarray:
+    """(n,) whether numbers of a point contradict each other, or leave no bearing: the rules of a scene then say what is wrong."""
+    b, n = problem.bearing, problem.points[0]
+    d, dm = b.ball_diameter, b.pitch_diameter
+    distance = (b.conformity_inner + b.conformity_outer - 1.0) * d
+    wrong = np.zeros(n, dtype=bool) | (d >= dm) | (np.sin(np.pi / b.ball_count) * dm < d) & (b.ball_count > 1)
+    wrong |= False if b.bore is None else b.bore >= dm - d
+    wrong |= False if b.outer_diameter is None else b.outer_diameter <= dm + d
+    wrong |= False if b.shoulder_height is None else b.shoulder_height >= 0.5 * d
+    wrong |= False if b.radial_clearance is None else b.radial_clearance >= 2.0 * distance
+    rows = range(len(b.rows))
+    edge = np.arccos(1.0 - (b.shoulder_height or 0.2 * d) / (0.5 * d))
+    for row in rows:
+        room, radial = problem.running.centre_distance(row)
+        wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
+    loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
+    loaded = sum(np.abs(load) for load in loads) + b.preload
+    wrong |= ~(loaded > 0.0)
+    return wrong
+
+
+@attrs.frozen(eq=False)
+class ColumnBearing:
+    """The bearing at n points.
+
+    Attributes
+    ----------
+    linear : what all points share;  points : numbers of each;  kernels : of balls and law
+    faults : (n,) status of the preload's own equilibria, 0 where it is built in
+    """
+
+    problem: Problem
+    plan: ScenePlan
+    basis: Basis
+    linear: Linear
+    points: Points
+    kernels: Kernels
+    faults: np.ndarray
+
+    def equilibria(self) -> States:
+        """The static state of each point."""
+        columns = self.kernels.columns + (2 if self.plan.balls == "tangential" else 0)
+        states = _empty_states(len(self.faults), self.points.table.shape[1], columns)
+        equilibria(self.kernels, self.linear, self.points, states)
+        states.status[self.faults != 0] = self.faults[self.faults != 0]
+        return states
+
+    def orbits(self, states: States, excitations: Sequence[Excitation], which: np.ndarray, tolerance: float) -> Orbits:
+        """The steady orbit of each point about its equilibrium.
+
+        Parameters
+        ----------
+        excitations : periodic ones;  which : (n,) the one that acts at each point;  tolerance : of the 1x line, relative
+        """
+        z, n, inertia = self.points.table.shape[1], len(which), self.problem.inertia
+        out = _empty_orbits(n)
+        rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
+        mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
+        moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
+        params = np.array([force_params(excitation) for excitation in excitations])[which]
+        speed = np.array([2.0 * np.pi / float(excitation.period_s) for excitation in excitations])[which]
+        force = address_of(plugin_kernel(excitations[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
+        turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, MOST_SAMPLES, tolerance)
+        across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
+        for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
+            if not len(chosen):
+                continue
+            symmetry = (
+                None
+                if across[chosen[0]]
+                else one_pitch(self._system(chosen[0], turning), speed[chosen[0]], states.q[chosen[0]])
+            )
+            if symmetry is not None:
+                sense = float(np.sign(symmetry.angle))
+                turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)
+            parts = [_rows(record, chosen, n) for record in (self.points, states, turning, out)]
+            orbits(self.kernels, self.linear, *parts)
+            for column, part in zip(out, parts[3], strict=True):
+                column[chosen] = part
+        return out
+
+    def _system(self, row: int, turning: Turning) -> System:
+        """The bearing at one point."""
+        scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
+        kernel, base, _, law = self.kernels
+        return System(
+            kernel=kernel, base_kernel=base, law=law, law_params=params, law_state=np.zeros((len(params), 0)), scalars=scalars,
+            table=table, load=load, stiffness=np.diag([0.0, 0.0, 0.0, shaft, shaft]), mass=np.diag(turning.mass[row]),
+            damping=turning.damping[row], free=self.linear.free, force=turning.force, force_params=turning.params[row],
+        )  # fmt: skip
+
+    def _preloaded(self) -> ColumnBearing:
+        """With the preload of a set built in: the axial approach of the rows of either direction under it, at standstill."""
+        bearing, points, basis = self.problem.bearing, self.points, self.basis
+        scalars, table, sides = points.scalars.copy(), points.table.copy(), np.array(bearing.rows)[basis.row, 0]
+        scalars[:, ring.GYROSCOPIC] = 0.0
+        scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] -= basis.growth.common
+        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] -= basis.growth.by_ball
+        table[..., ring.CENTRIFUGAL], table[..., [ring.SIDE, ring.LEVER]] = 0.0, (1.0, 0.0)
+        n, faults = len(self.faults), self.faults.copy()
+        none = np.zeros((n, 5))
+        for side, force in ((sides[0], bearing.preload), (-sides[0], bearing.other_preload)):
+            balls = np.flatnonzero(sides == side)
+            guess, load = none.copy(), none.copy()
+            guess[:, 0], load[:, 0] = 0.05 * basis.geometry.centre_distance, force
+            contacts = np.concatenate([balls, balls + len(sides)])
+            rows = Points(scalars, table[:, balls].copy(), points.params[:, contacts].copy(), load, np.zeros(n), guess)
+            states = _empty_states(n, len(balls), 2)
+            equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
+            points.table[:, balls, ring.SHIFT] = states.q[:, :1]
+            faults = np.where(states.status != 0, states.status, faults)
+        return attrs.evolve(self, faults=faults)
+
+    def contact_angles(self, states: States) -> tuple[np.ndarray, np.ndarray]:
+        """Inner and outer (n, Z) [rad]; nan where a contact is open."""
+        scalars, table, q = self.points.scalars, self.points.table, states.q
+        cosine, sine, side, lever = (table[..., k] for k in (ring.COSINE, ring.SINE, ring.SIDE, ring.LEVER))
+        turned = q[:, 3:4] * sine - q[:, 4:5] * cosine
+        reach = scalars[:, ring.TILT_ARM, None] + table[..., ring.OWN_TILT_ARM]
+        axial = scalars[:, ring.REST_AXIAL, None] + table[..., ring.OWN_REST_AXIAL] + table[..., ring.SHIFT]
+        axial = axial + side * (q[:, :1] + reach * turned)
+        radial = scalars[:, ring.REST_RADIAL, None] + table[..., ring.OWN_REST_RADIAL]
+        radial = radial + q[:, 1:2] * cosine + q[:, 2:3] * sine - lever * turned
+        z = table.shape[1]
+        inner = outer = np.arctan2(axial, radial)
+        if self.plan.balls != "weightless":
+            inner = np.arctan2(axial - states.ball[..., 0], radial - states.ball[..., 1])
+            outer = np.arctan2(states.ball[..., 0], states.ball[..., 1])
+        return np.where(states.force[:, :z] > 0.0, inner, np.nan), np.where(states.force[:, z:] > 0.0, outer, np.nan)
+
+    def pressures(self, force: np.ndarray) -> np.ndarray:
+        """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""
+        halves = np.split(force, 2, axis=1)
+        return np.concatenate([e.peak_pressure(half) for e, half in zip(self._ellipses, halves, strict=True)], axis=1)
+
+    def impossible(self, force: np.ndarray) -> np.ndarray:
+        """(n,) whether any contact would be longer than half the ball's circumference."""
+        radius, halves = 0.5 * per_ball(self.basis.geometry.ball_diameter), np.split(force, 2, axis=1)
+        if not self.problem.bearing.equal_rows:
+            radius = self.basis.ball_radius
+        pairs = zip(self._ellipses, halves, strict=True)
+        return np.any([(e.semi_axes(half)[0] / radius).max(axis=1) >= 0.5 * np.pi for e, half in pairs], axis=0)
+
+    @property
+    def _ellipses(self) -> tuple[Ellipse, Ellipse]:
+        """Of the inner and outer contacts, with numbers that spread over points and balls."""
+        pair = self.basis.inner, self.basis.outer
+        if not self.problem.bearing.equal_rows:
+            return pair
+        inner, outer = (Ellipse(*map(per_ball, attrs.astuple(ellipse))) for ellipse in pair)
+        return inner, outer
+
+
+def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
+    """The bearing of ``column_problem``; ``plan`` is that of a scene with the numbers of one point."""
+    n, basis = problem.points[0], make_basis(problem)
+    parts = contact_parts(problem, plan, basis)
+    parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
+    kernel, base = (address_of(parts[name], SYSTEM_POINTER) for name in ("kernel", "base_kernel"))
+    kernels = Kernels(kernel, base, 2, address_of(parts["law"], LAW_POINTER))
+    load = _columns(n, problem.load.axial, *problem.load.radial, *problem.load.moment)
+    tilt = problem.supports.tilt
+    shaft = np.broadcast_to(0.0 if isinstance(tilt, str) else tilt, n).astype(float)
+    none = np.zeros((5, 5))
+    linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
+    points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
+    bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, np.zeros(n, dtype=np.int64))
+    if some(problem.bearing.preload):
+        return bearing._preloaded()
+    points.guess[:] = _first_guess(problem, basis, load)
+    return bearing
+
+
+def _columns(n: int, *numbers: Number) -> np.ndarray:
+    """(n, k) of k numbers."""
+    return np.stack([np.broadcast_to(number, n) for number in numbers], axis=1).astype(float)
+
+
+def _first_guess(problem: Problem, basis: Basis, load: np.ndarray) -> np.ndarray:
+    """(n, 5) displacement to look for the equilibrium from [m, rad], see ``raceway.bodies.basis.first_guess``."""
+    geometry, size = basis.geometry, np.hypot(load[:, 1], load[:, 2])
+    rest_axial, rest_radial = geometry.rest
+    x, axial, guess = basis.axial, load[:, 0], np.zeros_like(load)
+    guess[:, 0] = np.where(
+        axial > 0.0, x, np.where(axial < 0.0, -2.0 * rest_axial - x, np.where(size > 0.0, -rest_axial, 0.0))
+    )
+    reach = (1.0 + 1e-3) * geometry.centre_distance - rest_radial
+    share = np.where((axial == 0.0) & (size > 0.0), reach / np.where(size > 0.0, size, 1.0), 0.0)
+    guess[:, 1:3] = load[:, 1:3] * share[:, None]
+    return guess
+
+
+def _rows(record: R, chosen: np.ndarray, n: int) -> R:
+    """Rows of the columns (n, ...) of a record."""
+    fields = record._asdict()
+    shared = ("order",)
+    columns = {
+        name: np.ascontiguousarray(value[chosen]) if isinstance(value, np.ndarray) and name not in shared else value
+        for name, value in fields.items()
+    }
+    return type(record)(**columns)
+
+
+def _empty_states(n: int, z: int, columns: int) -> States:
+    return States(
+        np.empty((n, 5)), np.empty((n, z, columns)), np.empty((n, 5, 5)), np.zeros((n, 2 * z)), np.empty(n, dtype=np.int64)
+    )
+
+
+def _empty_orbits(n: int) -> Orbits:
+    lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
+    return Orbits(*lines, np.full(n, np.nan), np.zeros(n), np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64))

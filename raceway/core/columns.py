@@ -1,0 +1,82 @@
+"""Numbers that may be columns: one number, or an array (n,) with that of each of n operating points.
+
+A function of numbers is then one of columns, if it takes its elementary functions from here and branches on what all points share.
+A number alone goes through ``math``, as ever.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import attrs
+
+if TYPE_CHECKING:
+    pass
+
+T = TypeVar("T")
+#: A number, or a column of them.
+Number = Any
+
+
+def is_column(value: object) -> bool:
+    """Whether a number is one of each point."""
+    return bool(getattr(value, "ndim", 0))
+
+
+def _either(number: Callable[..., float], column: str) -> Callable[..., Any]:
+    """A function of numbers, numpy's of that name where any of them is a column."""
+
+    def function(*values: Number) -> Number:
+        if not any(map(is_column, values)):
+            return number(*values)
+        import numpy
+
+        return getattr(numpy, column)(*values)
+
+    return function
+
+
+cos, sin, acos = _either(math.cos, "cos"), _either(math.sin, "sin"), _either(math.acos, "arccos")
+sqrt, log = _either(math.sqrt, "sqrt"), _either(math.log, "log")
+least, largest = _either(min, "minimum"), _either(max, "maximum")
+#: Whether a number is not 0, of a column any.
+some = _either(bool, "any")
+#: The second where the first is true, else the third.
+where = _either(lambda condition, value, other: value if condition else other, "where")
+
+
+def has_columns(part: Any) -> bool:
+    """Whether any number of a table, or of a table in it, is a column."""
+    values = (getattr(part, field.name) for field in attrs.fields(type(part)))
+    return any(is_column(value) or (attrs.has(type(value)) and has_columns(value)) for value in values)
+
+
+def with_columns(part: T, **changes: object) -> T:
+    """A copy of a table with other values, which no rule of the table looks at: columns obey them point by point."""
+    kind: Any = type(part)
+    copy = object.__new__(kind)
+    for field in attrs.fields(kind):
+        object.__setattr__(copy, field.name, changes.get(field.name, getattr(part, field.name)))
+    return copy
+
+
+def per_ball(value: Number) -> Number:
+    """A number, or a column as (n, 1), to be spread over balls."""
+    return value[:, None] if is_column(value) else value
+
+
+def at_row(part: T, row: int) -> T:
+    """A table with the numbers of one point."""
+    values = {field.name: getattr(part, field.name) for field in attrs.fields(type(part))}  # type: ignore[arg-type]
+    numbers = {name: float(value[row]) for name, value in values.items() if is_column(value)}
+    tables = {name: at_row(value, row) for name, value in values.items() if attrs.has(type(value)) and has_columns(value)}
+    return with_columns(part, **numbers, **tables)
+
+
+def length(part: Any) -> int:
+    """Points of a table that has columns."""
+    values = [getattr(part, field.name) for field in attrs.fields(type(part))]
+    sizes = (len(value) if is_column(value) else length(value) if attrs.has(type(value)) else 0 for value in values)
+    return max(sizes, default=0)

@@ -1,0 +1,159 @@
+"""Quantities of many operating points, from what the compiled loops leave; each for itself, so that only what is asked for costs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.columns import ColumnBearing
+from raceway.core.periodic.orbits import Orbits
+from raceway.core.ring.equilibria import States
+from raceway.core.ring.ring import COORDINATES
+from raceway.out.quantities import COLUMNS, DIFFERENTIABLE, IDENTIFIED, named
+from raceway.pipeline.result import Result
+
+#: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
+#: exist, which a run looks for.
+_MILD = 0.5
+#: Labels of the dimensions of arrays.
+DIMENSIONS: dict[str, Any] = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
+
+
+@attrs.frozen(eq=False, slots=False)
+class Computed:
+    """Equilibria, and orbits where a motion is asked for, of n points."""
+
+    bearing: ColumnBearing
+    states: States
+    orbits: Orbits | None
+    speed: np.ndarray
+
+    @classmethod
+    def of(
+        cls, bearing: ColumnBearing, moving: bool, excitations: Callable[[], tuple[list[Any], np.ndarray]], tolerance: float
+    ) -> Computed:
+        """Solve for them."""
+        states = bearing.equilibria()
+        if not moving:
+            return cls(bearing, states, None, np.zeros(0))
+        several, which = excitations()
+        speed = np.array([2.0 * np.pi / float(excitation.period_s) for excitation in several])[which]
+        return cls(bearing, states, bearing.orbits(states, several, which, tolerance), speed)
+
+    @cached_property
+    def fine(self) -> np.ndarray:
+        """(n,) whether the loop's answer is that of a run."""
+        fine = (self.states.status == 0) & ~self.bearing.impossible(self.states.force)
+        if self.orbits is not None:
+            fine &= (self.orbits.status == 0) & (self.orbits.change < _MILD)
+        return np.asarray(fine)
+
+    @cached_property
+    def line(self) -> np.ndarray:
+        """(n, 5) 1x line of the displacement."""
+        return self._complex("line")
+
+    @cached_property
+    def force(self) -> np.ndarray:
+        """(n, 5) 1x line of the force."""
+        return self._complex("force")
+
+    def _complex(self, name: str) -> np.ndarray:
+        assert self.orbits is not None, "a motion was asked for"
+        parts = getattr(self.orbits, name)
+        return np.asarray(parts[:, :5] + 1j * parts[:, 5:])
+
+    @cached_property
+    def impedance(self) -> np.ndarray:
+        """(n,) Z = (F^H F) / (F^H x), see ``raceway.core.signals``."""
+        force, line = self.force[:, :3], self.line[:, :3]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
+
+    @cached_property
+    def mass(self) -> np.ndarray:
+        """(n,) of K = Re Z + m w^2."""
+        return np.broadcast_to(self.bearing.problem.inertia.mass, len(self.states.status)).astype(float)
+
+    @cached_property
+    def parts(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) forward and backward amplitude of the 1x orbit [m]."""
+        y, z = self.line[:, 1], self.line[:, 2]
+        return 0.5 * np.abs(y + 1j * z), 0.5 * np.abs(y - 1j * z)
+
+
+def _force_amplitude(c: Computed) -> np.ndarray:
+    """The larger semi-axis of the force's ellipse."""
+    turning = np.stack([c.force[:, :3].real, c.force[:, :3].imag], axis=1)
+    return np.linalg.svd(turning, compute_uv=False)[:, 0]
+
+
+def _tilts_follow(c: Computed) -> np.ndarray:
+    """Condensation of the tilts, see ``raceway.bodies.model.tilts_follow``."""
+    K, shaft = c.states.stiffness, c.bearing.points.shaft
+    a, b, e, d = K[:, 3, 3] + shaft, K[:, 3, 4], K[:, 4, 3], K[:, 4, 4] + shaft
+    det = a * d - b * e
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first = (d * K[:, 3, 1] - b * K[:, 4, 1]) / det
+        second = (a * K[:, 4, 1] - e * K[:, 3, 1]) / det
+    follows = K[:, 1, 1] - K[:, 1, 3] * first - K[:, 1, 4] * second
+    return np.where(det != 0.0, follows, K[:, 1, 1])
+
+
+def _races(values: np.ndarray) -> np.ndarray:
+    """(n, 2, Z) of (n, 2 Z)."""
+    return values.reshape(len(values), 2, -1)
+
+
+_STATIC: dict[str, Callable[[Computed], np.ndarray]] = {
+    "displacement": lambda c: c.states.q,
+    "stiffness": lambda c: c.states.stiffness,
+    "x": lambda c: c.states.q[:, 0],
+    "kxx": lambda c: c.states.stiffness[:, 0, 0],
+    "kyy": lambda c: c.states.stiffness[:, 1, 1],
+    "kyy_tilts_follow": _tilts_follow,
+    "largest_ball_load": lambda c: c.states.force.max(axis=1),
+    "ball_load": lambda c: _races(c.states.force),
+    "contact_angle": lambda c: _races(np.degrees(np.concatenate(c.bearing.contact_angles(c.states), axis=1))),
+}
+_LOADED: dict[str, Callable[[Computed], np.ndarray]] = {
+    "peak_ball_load": lambda c: c.states.force.max(axis=1),
+    "p0": lambda c: c.bearing.pressures(c.states.force).max(axis=1),
+}
+_MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
+    "equivalent_stiffness": lambda c: c.impedance.real + c.mass * c.speed**2,
+    "equivalent_damping": lambda c: c.impedance.imag / c.speed,
+    "z_real": lambda c: c.impedance.real,
+    "z_imag": lambda c: c.impedance.imag,
+    "dynamic_stiffness": lambda c: np.abs(c.impedance),
+    "phase_lag": lambda c: np.degrees(np.angle(c.impedance)),
+    "force_amplitude": _force_amplitude,
+    "mass": lambda c: c.mass,
+    "speed_rpm": lambda c: c.speed * 30.0 / np.pi,
+    "frequency": lambda c: c.speed / (2.0 * np.pi),
+    "forward_amplitude": lambda c: c.parts[0],
+    "backward_amplitude": lambda c: c.parts[1],
+    "orbit_major": lambda c: c.parts[0] + c.parts[1],
+    "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
+    "axial_displacement": lambda c: c.orbits.mean[:, 0],  # type: ignore[union-attr]
+    "error_total": lambda c: c.orbits.error,  # type: ignore[union-attr]
+}
+#: Quantities of a motion, those of loads along one, and all that a function has.
+MOVING, LOADED = frozenset(_MOVING), frozenset(_LOADED)
+QUANTITIES = _STATIC | _LOADED | _MOVING
+
+
+def of_result(name: str, result: Result) -> Any:
+    """One of them of a run."""
+    if name == "ball_load":
+        return result.equilibrium.contact_force.reshape(2, -1)
+    if name == "largest_ball_load":
+        return result.equilibrium.contact_force.max()
+    if name == "contact_angle":
+        return np.degrees([result.equilibrium.angle_inner, result.equilibrium.angle_outer])
+    known = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
+    return known[name].of(result)

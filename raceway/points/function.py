@@ -1,0 +1,491 @@
+"""The bearing as a function of its numbers: arrays of keys in, arrays of quantities out, a compiled loop over the points between."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from enum import IntEnum
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.bodies.columns import KEYS, build_columns, column_problem, conspicuous, why_not
+from raceway.core.threads import ThreadPool, usable_cores
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.doors import door
+from raceway.framework.options import nearest
+from raceway.framework.registry import default_registry
+from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
+from raceway.plugins.labelled import labelled_dataset
+from raceway.points.column_quantities import DIMENSIONS, LOADED, MOVING, QUANTITIES, Computed, of_result
+from raceway.scene.changes import key_of, with_column, with_number
+from raceway.scene.inputs import SceneSource, as_scene
+from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
+
+#: Points of a block: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the cache of the second level.
+_STATIC, _MOVING = 8192, 2048
+#: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
+_LIMIT_S = 120.0
+#: Share of the memory that is free which inputs and outputs may take.
+_MEMORY = 0.8
+#: Rows without the reason of a run of their own, which is asked for a few only.
+_REASONS = 200
+#: Relative step of differences, of fourth order.
+_STEP = 1e-3
+
+
+class PointStatus(IntEnum):
+    """How a point was computed."""
+
+    COMPUTED = 0  # in the compiled loop
+    RUN = 1  # by a run of its own
+    REFUSED = 2  # a rule of the scene
+    FAILED = 3  # no equilibrium or no motion, or not tried
+
+
+@attrs.frozen(eq=False)
+class Function:
+    """Quantities of a scene as a function of its keys; see ``raceway.function``.
+
+    Attributes
+    ----------
+    scene : what is the same at all points;  inputs : keys;  outputs : names of quantities
+    tolerance : of steady orbits;  force : whether points that need runs of their own are run however long that takes
+    threads : that share the points
+    """
+
+    scene: Scene
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    tolerance: float = 1e-8
+    force: bool = False
+    threads: int = 1
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in attrs.fields(Function)} | {"scene": self.scene.to_dict()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        scene = scene_from_dict(state.pop("scene"), default_registry())
+        for name, value in {**state, "scene": scene}.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def moving(self) -> bool:
+        """Whether a motion has to be solved for."""
+        return any(name in MOVING for name in self.outputs)
+
+    @property
+    def why_slow(self) -> str:
+        """Why every point needs a run of its own; empty where a compiled loop computes them."""
+        if self.scene.excitation is not None and any(name in LOADED for name in self.outputs):
+            return "loads along a motion are asked for"
+        strange = [key for key in self.inputs if key not in KEYS and not key.startswith("excitation.")]
+        return f"{strange[0]} changes more than numbers" if strange else why_not(self.scene, self.moving)
+
+    def __call__(self, *columns: Any, **by_name: Any) -> Any:
+        """The outputs at points.
+
+        Parameters
+        ----------
+        columns, by_name : of all inputs, in their order or by their keys: numbers, arrays that broadcast, columns of a table, or
+            xarray.DataArrays, which broadcast by the names of their dimensions
+
+        Returns
+        -------
+        dict of arrays, by the names of the outputs, with ``status`` (``PointStatus``) and ``reason`` beside them, in the shape of the
+        inputs; an xarray.Dataset with the dimensions of the inputs where any of these is a DataArray.  What a point has not is nan,
+        and its reason says why.
+
+        Raises
+        ------
+        SceneError
+            Inputs that are missing, unknown, of shapes that do not broadcast, or empty.
+        RacewayError
+            More points than the memory holds, or that need runs of their own for longer than two minutes.
+        """
+        values = self._named(columns, by_name)
+        if any(hasattr(value, "dims") for value in values.values()):
+            return self._labelled(values)
+        shape, flat = self._flat(values)
+        return {name: column.reshape((*shape, *column.shape[1:])) for name, column in self.columns(flat).items()}
+
+    def arrays(self, *columns: Any) -> Any:
+        """The outputs alone, a tuple of arrays, or the array of a single output: for ``scipy`` and ``xarray.apply_ufunc``."""
+        answer = self(*map(np.asarray, columns))
+        values = tuple(answer[name] for name in self.outputs)
+        return values[0] if len(values) == 1 else values
+
+    def jacobian(self, *columns: Any, **by_name: Any) -> dict[str, dict[str, np.ndarray]]:
+        """Derivatives of each output by each input: ``jacobian(...)[output][input]``, in the shape of the inputs.
+
+        Notes
+        -----
+        Central differences of fourth order, all of them columns of one computation: with steps h of a thousandth of a number they are
+        off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0, of a thousandth of its largest
+        absolute value, or of 1.
+        """
+        shape, flat = self._flat(self._named(columns, by_name))
+        n, shifts, weights = len(next(iter(flat.values()))), (-2, -1, 1, 2), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
+        steps = {}
+        for key, value in flat.items():
+            size = np.abs(value)
+            steps[key] = _STEP * np.where(size > 0.0, size, size.max() or 1.0)
+        moved = {
+            key: np.concatenate(
+                [value + (steps[key] * shift if other == key else 0.0) for other in flat for shift in shifts]
+            )
+            for key, value in flat.items()
+        }
+        answer, out = self.columns(moved), {}
+        for name in self.outputs:
+            parts = answer[name].reshape(len(flat), len(shifts), n, *answer[name].shape[1:])
+            slopes = np.tensordot(weights, parts, axes=(0, 1))
+            out[name] = {
+                key: (slopes[k].T / steps[key]).T.reshape((*shape, *answer[name].shape[1:])) for k, key in enumerate(flat)
+            }
+        return out
+
+    def columns(self, flat: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""
+        n = len(next(iter(flat.values())))
+        if self.why_slow:
+            self._refuse_time(n, self.why_slow)
+            return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
+        size = _MOVING if self.moving else _STATIC
+        blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
+        answers: list[dict[str, np.ndarray]] = [{}] * len(blocks)
+
+        def job(number: int) -> None:
+            answers[number] = self._block(blocks[number])
+
+        with ThreadPool(min(self.threads, len(blocks))) as pool:
+            pool.do(len(blocks), job)
+        return self._completed(flat, _joined(answers, self.outputs))
+
+    def scene_at(self, point: Mapping[str, float]) -> Scene:
+        """The scene at one point, every rule looked at.
+
+        Raises
+        ------
+        SceneError
+            A number that is refused.
+        """
+        scene = self.scene
+        for key, number in point.items():
+            scene = with_column(scene, key, float(number))  # type: ignore[arg-type]
+        return scene_from_dict(scene.to_dict(), default_registry())
+
+    def _named(self, columns: Sequence[Any], by_name: Mapping[str, Any]) -> dict[str, Any]:
+        """All inputs by their keys."""
+        if len(columns) > len(self.inputs):
+            raise SceneError.at(
+                "inputs", len(columns), f"are more columns than the {len(self.inputs)} inputs of this function"
+            )
+        values = dict(zip(self.inputs, columns, strict=False))
+        for key, value in by_name.items():
+            if key not in self.inputs:
+                raise SceneError.at(key, None, f"is no input of this function{nearest(key, self.inputs)}")
+            if key in values:
+                raise SceneError.at(key, None, "is given twice")
+            values[key] = value
+        if missing := [key for key in self.inputs if key not in values]:
+            raise SceneError.at(missing[0], None, "is an input of this function and is missing")
+        return {key: values[key] for key in self.inputs}
+
+    def _flat(self, values: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, np.ndarray]]:
+        """Common shape of arrays, and their columns (n,), refused before they are made."""
+        arrays = {key: _numbers(key, value) for key, value in values.items()}
+        try:
+            shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        except ValueError:
+            sizes = ", ".join(f"{key} {array.shape}" for key, array in arrays.items())
+            raise SceneError.at("inputs", None, f"do not broadcast: {sizes}") from None
+        if 0 in shape:
+            raise SceneError.at("inputs", None, f"are empty: their common shape is {shape}")
+        self._refuse_size(math.prod(shape))
+        return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}
+
+    def _labelled(self, values: Mapping[str, Any]) -> Any:
+        """The data set of inputs some of which are DataArrays."""
+        import xarray
+
+        arrays = [value if hasattr(value, "dims") else xarray.DataArray(value) for value in values.values()]
+        same = xarray.broadcast(*arrays)
+        shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
+        answer, dims, known = self.columns(flat), same[0].dims, _known()
+        variables: dict[str, Any] = {}
+        for name, column in answer.items():
+            further, labels = ((), {}) if name not in known else (known[name].dims, known[name].labels)
+            variables[name] = ((*dims, *further), column.reshape((*shape, *column.shape[1:])), labels)
+        meanings = {
+            "flag_values": [int(s) for s in PointStatus],
+            "flag_meanings": " ".join(s.name.lower() for s in PointStatus),
+        }
+        variables["status"] = (*variables["status"][:2], meanings)
+        coordinates = dict(same[0].coords) | {
+            k: v for k, v in DIMENSIONS.items() if any(k in part[0] for part in variables.values())
+        }
+        return labelled_dataset(variables, coordinates, {"title": self.scene.title})
+
+    def _block(self, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """One block of points in the compiled loop; rows that it cannot do have the status FAILED and no values."""
+        n = len(next(iter(columns.values())))
+        status, refused = np.full(n, PointStatus.FAILED), self._refused(columns)
+        fit = np.flatnonzero(~refused)
+        status[refused] = PointStatus.REFUSED
+        values: dict[str, np.ndarray] = {}
+        for rows in self._alike(columns, fit):
+            start = next((scene for row in rows[:5] if (scene := self._fitting(columns, int(row))) is not None), None)
+            if start is None:
+                continue
+            chosen = {key: column[rows] for key, column in columns.items()}
+            with np.errstate(all="ignore"):  # of points that contradict themselves
+                problem = column_problem(self.scene, chosen)
+                bearing = build_columns(problem, make_plan(start))
+            computed = Computed.of(bearing, self.moving, partial(self._excitations, chosen), self.tolerance)
+            fine = ~conspicuous(problem) & computed.fine
+            status[rows[fine]] = PointStatus.COMPUTED
+            for name in self.outputs:
+                part = QUANTITIES[name](computed)
+                values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
+        return {**values, "status": status}
+
+    def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(n,) whether a number is none, or a rule of its key alone refuses it."""
+        refused = ~np.all([np.isfinite(column) for column in columns.values()], axis=0)
+        for key, column in columns.items():
+            fit = column[~refused]
+            if len(fit) and not all(self._allowed(key, float(end)) for end in (fit.min(), fit.max())):
+                # Rules are intervals: a few numbers beyond them are looked at one by one.
+                numbers, place = np.unique(column, return_inverse=True)
+                refused |= ~np.array([np.isfinite(number) and self._allowed(key, float(number)) for number in numbers])[
+                    place
+                ]
+        return refused
+
+    def _allowed(self, key: str, number: float) -> bool:
+        try:
+            with_number(self.scene, key, number)
+        except (ValueError, RacewayError):
+            # Another input may make room for it: what contradicts is seen where all are known.
+            return len(self.inputs) > 1 and key.startswith("bearing.") and number > 0.0
+        return True
+
+    def _fitting(self, columns: Mapping[str, np.ndarray], row: int) -> Scene | None:
+        """The scene at a row, where no rule refuses it."""
+        try:
+            scene = self.scene_at({key: column[row] for key, column in columns.items()})
+            make_plan(scene)
+        except RacewayError:
+            return None
+        return scene
+
+    def _alike(self, columns: Mapping[str, np.ndarray], rows: np.ndarray) -> list[np.ndarray]:
+        """Rows whose balls a plan decides alike: they turn, or stand."""
+        turning = np.full(len(rows), resolve(self.scene).spin_speed > 0.0)
+        for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
+            if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
+                turning = columns[key][rows] > 0.0
+        return [part for part in (rows[turning], rows[~turning]) if len(part)]
+
+    def _excitations(self, columns: Mapping[str, np.ndarray]) -> tuple[list[Any], np.ndarray]:
+        """The excitations that differ, and which of them acts at each row."""
+        keys = [key for key in columns if key.startswith("excitation.")]
+        n = len(next(iter(columns.values())))
+        if not keys:
+            return [self.scene.excitation], np.zeros(n, dtype=int)
+        numbers, which = np.unique(np.stack([columns[key] for key in keys], axis=1), axis=0, return_inverse=True)
+        names = [key.partition(".")[2] for key in keys]
+        return [
+            attrs.evolve(self.scene.excitation, **dict(zip(names, row, strict=True))) for row in numbers.tolist()
+        ], which.ravel()
+
+    def _completed(self, flat: Mapping[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """With runs of the points that the loop has left."""
+        left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
+        refused = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
+        for row in refused:
+            answer["reason"][row] = (
+                self._reason(flat, row) if row in refused[:_REASONS] else "a rule of the scene refuses its numbers"
+            )
+        if len(left) and not self.force and self._seconds(len(left)) > _LIMIT_S:
+            answer["reason"][left] = (
+                f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
+                f"{self._seconds(len(left)):.3g} s: they are made with force = True"
+            )
+            return answer
+        return self._run_all(flat, left, answer)
+
+    def _reason(self, flat: Mapping[str, np.ndarray], row: int) -> str:
+        point = {key: float(column[row]) for key, column in flat.items()}
+        if strange := [key for key, number in point.items() if not np.isfinite(number)]:
+            return f"{strange[0]} is {point[strange[0]]}, no number"
+        try:
+            make_plan(self.scene_at(point))
+        except RacewayError as why:
+            return str(why)
+        return "a rule of the scene refuses its numbers"
+
+    def _run_all(
+        self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: dict[str, np.ndarray]
+    ) -> dict[str, np.ndarray]:
+        """Runs of some rows, their values put into the answer."""
+        n = len(next(iter(flat.values())))
+        answer.setdefault("status", np.full(n, PointStatus.FAILED))
+        answer.setdefault("reason", np.full(n, "", dtype=object))
+        for row in rows:
+            try:
+                point = {key: float(column[row]) for key, column in flat.items()}
+                if strange := [key for key, number in point.items() if not np.isfinite(number)]:
+                    raise SceneError.at(strange[0], point[strange[0]], "is no number")
+                result = run(self.scene_at(point))
+            except SceneError as why:
+                answer["status"][row], answer["reason"][row] = PointStatus.REFUSED, str(why)
+                continue
+            except RacewayError as why:
+                answer["status"][row], answer["reason"][row] = PointStatus.FAILED, str(why)
+                continue
+            answer["status"][row] = PointStatus.RUN
+            for name in self.outputs:
+                value = of_result(name, result)
+                if name not in answer:
+                    answer[name] = np.full((n, *np.shape(value)), np.nan)
+                answer[name][row] = np.nan if value is None else value
+                if value is None:
+                    answer["reason"][row] = f"this scene has no {name}"
+        for name in self.outputs:
+            answer.setdefault(name, np.full(n, np.nan))
+        return answer
+
+    def _seconds(self, count: int) -> float:
+        return count * max(make_plan(self.scene).predicted_wall_s, 2e-3)
+
+    def _refuse_time(self, n: int, why: str) -> None:
+        seconds = self._seconds(n)
+        if seconds > _LIMIT_S and not self.force:
+            raise RacewayError(
+                f"{n} points would take about {seconds:.3g} s, one run after another, because {why}: give fewer points, or force = True. "
+                "`raceway sweep` shares such points among processes and goes on where it was stopped"
+            )
+
+    def _refuse_size(self, n: int) -> None:
+        z = self.scene.bearing.balls_in_all
+        sizes = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
+        needed = 8.0 * n * (len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs))
+        free = _free_bytes()
+        if needed > _MEMORY * free:
+            raise RacewayError(
+                f"{n} points need {needed:.4g} bytes for their inputs and outputs, of {free:.4g} that are free: compute them block by "
+                "block, for instance by xarray.apply_ufunc over dask arrays"
+            )
+
+
+def _free_bytes() -> float:
+    """Memory that is free [B]."""
+    pages = "SC_AVPHYS_PAGES" if "SC_AVPHYS_PAGES" in os.sysconf_names else "SC_PHYS_PAGES"
+    return float(os.sysconf(pages)) * os.sysconf("SC_PAGE_SIZE")
+
+
+def _numbers(key: str, value: Any) -> np.ndarray:
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise SceneError.at(key, None, "must be numbers") from None
+
+
+def _joined(answers: Sequence[dict[str, np.ndarray]], outputs: Iterable[str]) -> dict[str, np.ndarray]:
+    """Answers of blocks one after another; blocks without values have nan."""
+    out = {}
+    for name in outputs:
+        form = next((answer[name].shape[1:] for answer in answers if name in answer), ())
+        out[name] = np.concatenate([answer.get(name, np.full((len(answer["status"]), *form), np.nan)) for answer in answers])
+    out["status"] = np.concatenate([answer["status"] for answer in answers])
+    out["reason"] = np.concatenate(
+        [answer.get("reason", np.full(len(answer["status"]), "", dtype=object)) for answer in answers]
+    )
+    return out
+
+
+def _known() -> dict[str, Quantity]:
+    return COLUMNS | named(*IDENTIFIED)
+
+
+@door
+def function(
+    scene: SceneSource,
+    inputs: Iterable[str],
+    outputs: Iterable[str],
+    *,
+    plugins: Iterable[str | Path] = (),
+    tolerance: float = 1e-8,
+    force: bool = False,
+    threads: int | None = None,
+) -> Function:
+    """The bearing as a function of its numbers, for millions of points.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables: what is the same at all points, with a number at every input
+    inputs : continuous keys, such as "load.axial", "excitation.speed_rpm", "bearing.contact_angle_deg"
+    outputs : quantities by their names, such as "equivalent_stiffness", "kyy", "stiffness", "contact_angle", or symbols, "K", "C"
+    plugins : files of one-off plug-ins that the scene uses
+    tolerance : of the 1x line of steady orbits, relative
+    force : also run, one after another, points that a compiled loop cannot do, however long that takes
+    threads : that share the points; None: as many as there are cores
+
+    Returns
+    -------
+    Function : called with arrays of the inputs, which broadcast
+
+    Raises
+    ------
+    SceneError
+        An input that is no continuous key of the scene, an output that is not known.
+
+    Notes
+    -----
+    Rigid bodies with laws without memory are computed in compiled loops: equilibria, and steady orbits where
+    ``integrator.kind = "periodic"``.  That an orbit is stable and the only one is not looked at there, as ``raceway.run`` does.  Points
+    at which the loop finds no regular solution are run one by one: ``status`` says which.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> f = rw.function({"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}}, ["load.axial"], ["kyy"])
+    >>> (f([400.0, 1000.0])["kyy"] * 1e-6).round(1)  # [N/um]
+    array([157.2, 212.6])
+    """
+    read = as_scene(scene, plugins=plugins)
+    keys, names = tuple(inputs), tuple(_name(output) for output in outputs)
+    if not keys:
+        raise SceneError.at("inputs", None, "are none: a function has at least one, such as 'load.axial'")
+    if doubled := [key for key in keys if keys.count(key) > 1]:
+        raise SceneError.at(doubled[0], None, "is an input twice")
+    for key in keys:
+        key_of(read, key)
+    result = Function(read, keys, names, tolerance, force, threads or usable_cores())
+    if result.moving and read.excitation is None:
+        raise SceneError.at("excitation", None, f"is missing: {next(n for n in names if n in MOVING)} is of a motion")
+    if "kyy_tilts_follow" in names and read.supports.tilt == "locked":
+        raise SceneError.at("supports.tilt", "locked", "kyy_tilts_follow needs tilts that follow")
+    return result
+
+
+def _name(output: str) -> str:
+    """The name of a quantity that is asked for by its name or symbol."""
+    known = {name: name for name in QUANTITIES}
+    symbols = {quantity.symbol: name for name, quantity in _known().items() if name in QUANTITIES}
+    name = {**symbols, **known}.get(output)
+    if name is None:
+        raise SceneError.at(
+            "outputs", output, f"is no quantity of a function{nearest(output, [*known, *symbols])}: {', '.join(known)}"
+        )
+    return name

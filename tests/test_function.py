@@ -1,0 +1,183 @@
+"""The bearing as a function of columns: the same numbers as runs of their own, in the shape of the inputs."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from validation.columns import case, difference
+
+STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
+TURNING = {
+    "bearing": {"preset": "B7206C"},
+    "load": {"axial": 1000.0},
+    "supports": {"tilt": "free"},
+    "rotor": {"mass": 1.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-5},
+    "integrator": {"kind": "periodic", "tolerance": 1e-11},
+}
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_points_are_what_runs_give(seed: int) -> None:
+    """1e-9 of every number; equilibria are solved for to a residual of 1e-12, which soft tilts turn into 1e-8 of a displacement."""
+    worst, moved, status = difference(seed)
+    assert worst < 1e-9
+    assert moved < 1e-8
+    assert status.count("COMPUTED") >= 3
+
+
+def test_sets_and_gyroscopic_moments_are_among_the_cases() -> None:
+    cases = [case(seed) for seed in range(24)]
+    assert {"DB", "DF", "DT", "single"} <= {c.scene.bearing.arrangement for c in cases}
+    assert any(c.scene.kinematics.gyroscopic != "none" for c in cases)
+    assert {"hertz", "penalty"} <= {c.scene.contact.kind for c in cases}
+    assert {"unidirectional", "bidirectional"} <= {c.scene.excitation.name for c in cases if c.scene.excitation}
+
+
+def test_the_stated_error_of_an_orbit_bounds_the_true_one() -> None:
+    """The change by the last doubling is the error of the samples before."""
+    scene = TURNING | {"excitation": {"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 3e-4}}
+    outputs = ["z_real", "z_imag", "error_total"]
+    loads = np.linspace(500.0, 1500.0, 5)
+    rough = rw.function(scene, ["load.axial"], outputs, tolerance=1e-3)(loads)
+    exact = rw.function(scene, ["load.axial"], outputs, tolerance=1e-12)(loads)
+    z, z_exact = (answer["z_real"] + 1j * answer["z_imag"] for answer in (rough, exact))
+    true = np.abs(z / z_exact - 1.0)
+    assert (true <= 3.0 * rough["error_total"] + 1e-12).all()
+    assert (rough["error_total"] > exact["error_total"]).all()
+
+
+def test_inputs_broadcast_and_arrays_keep_their_further_axes() -> None:
+    f = rw.function(STATIC, ["load.axial", "load.radial[0]"], ["kyy", "stiffness", "contact_angle"])
+    answer = f([[400.0], [900.0]], [0.0, 10.0, 20.0])
+    assert answer["kyy"].shape == (2, 3)
+    assert answer["stiffness"].shape == (2, 3, 5, 5)
+    assert answer["contact_angle"].shape == (2, 3, 2, 12)
+    assert np.array_equal(answer["kyy"], answer["stiffness"][..., 1, 1])
+    assert (answer["status"] == rw.PointStatus.COMPUTED).all()
+    by_name = f(**{"load.radial[0]": [0.0, 10.0, 20.0], "load.axial": [[400.0], [900.0]]})
+    assert np.array_equal(by_name["kyy"], answer["kyy"])
+
+
+def test_a_point_does_not_depend_on_its_neighbours() -> None:
+    f = rw.function(STATIC, ["load.axial"], ["stiffness"])
+    loads = np.linspace(300.0, 2000.0, 40)
+    together = f(loads)["stiffness"]
+    assert np.array_equal(together[17], f(loads[17])["stiffness"])
+    assert np.array_equal(together[::-1], f(loads[::-1])["stiffness"])
+
+
+def test_threads_change_nothing() -> None:
+    loads = np.linspace(300.0, 2000.0, 20_000)
+    alone, shared = (rw.function(STATIC, ["load.axial"], ["kyy"], threads=count)(loads) for count in (1, 2))
+    assert np.array_equal(alone["kyy"], shared["kyy"])
+
+
+def test_the_jacobian_is_the_compliance() -> None:
+    f = rw.function(STATIC, ["load.axial", "load.radial[0]"], ["displacement", "stiffness"])
+    point = (800.0, 40.0)
+    slopes, stiffness = f.jacobian(*point)["displacement"], f(*point)["stiffness"]
+    compliance = np.linalg.inv(stiffness)
+    np.testing.assert_allclose(slopes["load.axial"], compliance[:, 0], rtol=0, atol=1e-8 * abs(compliance[:, 0]).max())
+    np.testing.assert_allclose(slopes["load.radial[0]"], compliance[:, 1], rtol=0, atol=1e-8 * abs(compliance[:, 1]).max())
+
+
+def test_it_is_pickled_with_its_scene() -> None:
+    f = rw.function(TURNING, ["load.axial"], ["K"])
+    again = pickle.loads(pickle.dumps(f))
+    assert np.array_equal(f([800.0])["equivalent_stiffness"], again([800.0])["equivalent_stiffness"])
+
+
+def test_data_arrays_keep_their_dimensions() -> None:
+    xarray = pytest.importorskip("xarray")
+    f = rw.function(TURNING, ["load.axial", "excitation.speed_rpm"], ["K", "stiffness"])
+    loads = xarray.DataArray([600.0, 900.0], dims="load", coords={"load": [600.0, 900.0]})
+    speeds = xarray.DataArray([3000.0, 6000.0, 9000.0], dims="speed")
+    answer = f(loads, speeds)
+    assert answer["equivalent_stiffness"].dims == ("load", "speed")
+    assert answer["equivalent_stiffness"].attrs["units"] == "N/m"
+    assert answer["stiffness"].dims == ("load", "speed", "dof", "dof2")
+    assert list(answer["load"].values) == [600.0, 900.0]
+    assert answer["status"].attrs["flag_meanings"].split()[0] == "computed"
+
+
+def test_other_libraries_call_it() -> None:
+    xarray, optimize = pytest.importorskip("xarray"), pytest.importorskip("scipy.optimize")
+    f = rw.function(STATIC, ["load.axial"], ["kyy"])
+    load = optimize.brentq(lambda axial: float(f.arrays(axial)) - 180e6, 100.0, 3000.0)
+    assert rw.run({**STATIC, "load": {"axial": load}}).stiffness[1, 1] == pytest.approx(180e6, rel=1e-9)
+    pytest.importorskip("dask")
+    loads = xarray.DataArray(np.linspace(300.0, 900.0, 12), dims="load").chunk(load=5)
+    lazy = xarray.apply_ufunc(f.arrays, loads, dask="parallelized", output_dtypes=[float])
+    assert np.array_equal(lazy.values, f.arrays(loads.values))
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({"load.axial": [400.0, 800.0]})
+    assert list(f(**frame)["kyy"]) == list(f([400.0, 800.0])["kyy"])
+
+
+def test_rows_that_are_refused_have_a_reason() -> None:
+    f = rw.function({**STATIC, "bearing": {"preset": "B7206C"}}, ["load.axial", "bearing.conformity_inner"], ["kyy"])
+    answer = f([400.0, np.nan, 400.0, 0.0], [0.52, 0.52, 0.4, 0.52])
+    assert answer["status"].tolist() == [
+        rw.PointStatus.COMPUTED,
+        rw.PointStatus.REFUSED,
+        rw.PointStatus.REFUSED,
+        rw.PointStatus.FAILED,
+    ]
+    assert np.isnan(answer["kyy"][1:]).all()
+    assert np.isfinite(answer["kyy"][0])
+    assert "no number" in answer["reason"][1]
+    assert "greater than 0.5" in answer["reason"][2]
+    assert "load" in answer["reason"][3]
+    assert answer["reason"][0] == ""
+
+
+def test_what_the_loop_cannot_do_is_run() -> None:
+    f = rw.function(
+        {**STATIC, "contact": {"friction": 0.1}, "kinematics": {"spin_speed_rpm": 3000.0}}, ["load.axial"], ["kyy"]
+    )
+    assert "rub" in f.why_slow
+    answer = f([400.0, 900.0])
+    assert (answer["status"] == rw.PointStatus.RUN).all()
+    assert answer["kyy"][1] == rw.run(f.scene_at({"load.axial": 900.0})).stiffness[1, 1]
+    with pytest.raises(rw.RacewayError, match=r"would take about .* s, one run after another, because contacts rub"):
+        f(np.full(1_000_000, 400.0))
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs", "words"),
+    [
+        (["load.axail"], ["kyy"], r"did you mean 'load\.axial'"),
+        (["bearing.ball_count"], ["kyy"], "whole numbers only"),
+        (["supports.tilt"], ["kyy"], "takes a word or a switch"),
+        (["integrator.turns"], ["kyy"], "setting of a method"),
+        (["load.axial", "load.axial"], ["kyy"], "is an input twice"),
+        ([], ["kyy"], "are none"),
+        (["load.axial"], ["kyyy"], "did you mean 'kyy'"),
+        (["load.axial"], ["K"], "is of a motion"),
+    ],
+)
+def test_functions_that_are_refused(inputs: list[str], outputs: list[str], words: str) -> None:
+    with pytest.raises(rw.SceneError, match=words):
+        rw.function(STATIC, inputs, outputs)
+
+
+def test_calls_that_are_refused() -> None:
+    f = rw.function(STATIC, ["load.axial", "load.radial[0]"], ["kyy"])
+    for columns, words in (
+        (([400.0, 500.0], [1.0, 2.0, 3.0]), "do not broadcast"),
+        (([], []), "are empty"),
+        (([400.0],), "is missing"),
+        (([400.0], [0.0], [1.0]), "more columns"),
+        ((["many"], [0.0]), "must be numbers"),
+    ):
+        with pytest.raises(rw.SceneError, match=words):
+            f(*columns)
+    with pytest.raises(rw.SceneError, match="is no input"):
+        f([400.0], [0.0], **{"load.axail": 1.0})
+    with pytest.raises(rw.RacewayError, match=r"need \S+ bytes"):
+        f(np.broadcast_to(400.0, 10**11), 0.0)
