@@ -6,6 +6,7 @@ signals               commands that are asked to end, or killed
 dask                  workers that are killed, unfit or silent
 pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
+points                time of a point of ``raceway.function``, and equality with runs
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 

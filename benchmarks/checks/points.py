@@ -1,0 +1,115 @@
+"""Millions of points: processor time of a point in the compiled loops, and the same numbers by runs of their own."""
+
+from __future__ import annotations
+
+import resource
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import raceway as rw
+from benchmarks.checks import Row, below
+from validation.columns import difference
+
+TITLE = "The bearing as a function: time of a point, and equality with runs"
+COMMAND = "python -m benchmarks.checks points"
+TEST = "python -m pytest tests/test_function.py"
+_CASES = 100
+_STATIC: dict[str, Any] = {
+    "bearing": {"preset": "B7206C"},
+    "load": {"axial": 1.0, "radial": [0.0, 0.0]},
+    "supports": {"tilt": "free"},
+    "kinematics": {"spin_speed_rpm": 12000.0},
+}
+_PAIR = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}
+_SET = _STATIC | {"bearing": _PAIR}
+
+
+Times = tuple[float, float]
+
+
+def _turning(kind: str, damping: float = 0.0) -> dict[str, Any]:
+    force = {"kind": kind, "speed_rpm": 9000.0, "unbalance": 1e-5}
+    return _STATIC | {
+        "rotor": {"mass": 1.0}, "kinematics": {}, "contact": {"damping": damping}, "excitation": force,
+        "integrator": {"kind": "periodic"},
+    }  # fmt: skip
+
+
+def _time(
+    scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[float, float]], n: int, threads: int = 1
+) -> Times:
+    """Processor and wall time [s] of n random points, kernels compiled."""
+    rng, f = np.random.default_rng(1), rw.function(scene, ranges, outputs, threads=threads)
+    columns = [rng.uniform(*ends, size=n) for ends in ranges.values()]
+    f(*(column[:20] for column in columns))
+    wall, cpu = time.perf_counter(), time.process_time()
+    answer = f(*columns)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    assert (answer["status"] == rw.PointStatus.COMPUTED).mean() > 0.99, "the loop computes the points"
+    return cpu, wall
+
+
+def _run_time(scene: dict[str, Any]) -> float:
+    """Processor time [s] of a run of one point, kernels compiled."""
+
+    def once() -> float:
+        start = time.process_time()
+        rw.run(scene)
+        return time.process_time() - start
+
+    return min(once() for _ in range(9))
+
+
+def rows() -> list[Row]:
+    loads = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
+    geometry = {
+        "bearing.contact_angle_deg": (12.0, 30.0), "bearing.conformity_inner": (0.51, 0.54), "bearing.conformity_outer": (0.51, 0.54),
+        "bearing.preload": (100.0, 900.0), "load.axial": (0.0, 300.0),
+    }  # fmt: skip
+    motion = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
+    out = [_equality()]
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    one = _time(_STATIC, ["displacement", "stiffness"], loads, 10**6)
+    memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+    two = _time(_STATIC, ["displacement", "stiffness"], loads, 10**6, threads=2)
+    cases: list[tuple[str, Callable[[], float], float]] = [
+        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: one[0], 25.0),
+        ("memory they take beyond the program's [GB]", lambda: 1e-9 * memory, 1.0),
+        ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: _time(_SET, ["stiffness"], geometry, 10**5)[0], 10.0),
+        ("1e5 steady orbits, rotating force [CPU-s]", lambda: _time(_turning("bidirectional"), ["K", "C"], motion, 10**5)[0], 25.0),
+        ("the same with dashpots at the contacts [CPU-s]", lambda: _time(_turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5)[0], 25.0),
+        ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: _time(_turning("unidirectional"), ["K"], motion, 10**4)[0] / 10, 1.0),
+    ]  # fmt: skip
+    out += [below(quantity, round(measure(), 3), bound, COMMAND) for quantity, measure, bound in cases]
+    ratio = one[1] / two[1]
+    out.append(Row("two threads over one, 1e6 points", round(ratio, 2), "at least 1.8", ratio >= 1.8, COMMAND, "wall time"))
+    point = _run_time(_STATIC | {"load": {"axial": 800.0}}) / (1e-6 * one[0])
+    out.append(
+        Row(
+            "a run of one point over a point of a million",
+            round(point),
+            "told",
+            True,
+            COMMAND,
+            "processor time, same machine",
+        )
+    )
+    return out
+
+
+def _equality() -> Row:
+    differences = [difference(seed) for seed in range(1000, 1000 + _CASES)]
+    worst = max(worst for worst, _, _ in differences)
+    status = [word for _, _, words in differences for word in words]
+    computed = status.count("COMPUTED")
+    note = f"{computed} of {len(status)} points in the loop; displacements {max(moved for _, moved, _ in differences):.1e}"
+    return below(
+        "largest difference from runs, bearings, sets, laws, tilts, growth, moments",
+        float(f"{worst:.1e}"),
+        1e-9,
+        COMMAND,
+        note,
+    )
