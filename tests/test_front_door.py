@@ -171,7 +171,7 @@ def test_a_static_result_has_no_stiffness_of_a_motion(static):
 
 def test_a_folder_that_cannot_be_written_is_told_before_the_run(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr("raceway.pipeline.front.compute", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr("raceway.pipeline.run.run", lambda *_, **__: pytest.fail("computed"))
     with pytest.raises(rw.RacewayError, match="cannot be"):
         rw.run(STATIC, out=tmp_path / "file")
 
