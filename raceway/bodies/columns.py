@@ -6,7 +6,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import attrs
 import numpy as np
@@ -66,7 +66,7 @@ KEYS = frozenset(
         "mounting.housing_interference",
     ]
 )
-T, R = TypeVar("T"), TypeVar("R", bound=Any)
+R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
 MOST_SAMPLES = 128
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
@@ -164,7 +164,7 @@ class ColumnBearing:
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
         params = np.array([force_params(excitation) for excitation in excitations])[which]
-        speed = np.array([2.0 * np.pi / float(excitation.period_s) for excitation in excitations])[which]
+        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in excitations])[which]
         force = address_of(plugin_kernel(excitations[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
@@ -179,9 +179,11 @@ class ColumnBearing:
             if symmetry is not None:
                 sense = float(np.sign(symmetry.angle))
                 turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)
-            parts = [_rows(record, chosen, n) for record in (self.points, states, turning, out)]
-            orbits(self.kernels, self.linear, *parts)
-            for column, part in zip(out, parts[3], strict=True):
+            here = _rows(out, chosen)
+            orbits(
+                self.kernels, self.linear, _rows(self.points, chosen), _rows(states, chosen), _rows(turning, chosen), here
+            )  # fmt: skip
+            for column, part in zip(out, here, strict=True):
                 column[chosen] = part
         return out
 
@@ -296,15 +298,14 @@ def _first_guess(problem: Problem, basis: Basis, load: np.ndarray) -> np.ndarray
     return guess
 
 
-def _rows(record: R, chosen: np.ndarray, n: int) -> R:
-    """Rows of the columns (n, ...) of a record."""
-    fields = record._asdict()
-    shared = ("order",)
+def _rows(record: R, chosen: np.ndarray) -> R:
+    """Rows of the columns (n, ...) of a record; what all points share stays."""
     columns = {
-        name: np.ascontiguousarray(value[chosen]) if isinstance(value, np.ndarray) and name not in shared else value
-        for name, value in fields.items()
+        name: np.ascontiguousarray(value[chosen])
+        for name, value in record._asdict().items()
+        if isinstance(value, np.ndarray) and name != "order"
     }
-    return type(record)(**columns)
+    return record._replace(**columns)
 
 
 def _empty_states(n: int, z: int, columns: int) -> States:

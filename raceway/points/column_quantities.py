@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -13,14 +13,17 @@ from raceway.bodies.columns import ColumnBearing
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
-from raceway.out.quantities import COLUMNS, DIFFERENTIABLE, IDENTIFIED, named
+from raceway.out.quantities import COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
 from raceway.pipeline.result import Result
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Excitation
 
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
 #: exist, which a run looks for.
 _MILD = 0.5
 #: Labels of the dimensions of arrays.
-DIMENSIONS: dict[str, Any] = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
+DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -34,14 +37,18 @@ class Computed:
 
     @classmethod
     def of(
-        cls, bearing: ColumnBearing, moving: bool, excitations: Callable[[], tuple[list[Any], np.ndarray]], tolerance: float
+        cls,
+        bearing: ColumnBearing,
+        moving: bool,
+        excitations: Callable[[], tuple[list[Excitation], np.ndarray]],
+        tolerance: float,
     ) -> Computed:
         """Solve for them."""
         states = bearing.equilibria()
         if not moving:
             return cls(bearing, states, None, np.zeros(0))
         several, which = excitations()
-        speed = np.array([2.0 * np.pi / float(excitation.period_s) for excitation in several])[which]
+        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
         return cls(bearing, states, bearing.orbits(states, several, which, tolerance), speed)
 
     @cached_property
@@ -125,10 +132,10 @@ _LOADED: dict[str, Callable[[Computed], np.ndarray]] = {
     "p0": lambda c: c.bearing.pressures(c.states.force).max(axis=1),
 }
 _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
-    "equivalent_stiffness": lambda c: c.impedance.real + c.mass * c.speed**2,
-    "equivalent_damping": lambda c: c.impedance.imag / c.speed,
-    "z_real": lambda c: c.impedance.real,
-    "z_imag": lambda c: c.impedance.imag,
+    K.name: lambda c: c.impedance.real + c.mass * c.speed**2,
+    C.name: lambda c: c.impedance.imag / c.speed,
+    Z_REAL.name: lambda c: c.impedance.real,
+    Z_IMAG.name: lambda c: c.impedance.imag,
     "dynamic_stiffness": lambda c: np.abs(c.impedance),
     "phase_lag": lambda c: np.degrees(np.angle(c.impedance)),
     "force_amplitude": _force_amplitude,
@@ -147,7 +154,7 @@ MOVING, LOADED = frozenset(_MOVING), frozenset(_LOADED)
 QUANTITIES = _STATIC | _LOADED | _MOVING
 
 
-def of_result(name: str, result: Result) -> Any:
+def of_result(name: str, result: Result) -> np.ndarray | float | None:
     """One of them of a run."""
     if name == "ball_load":
         return result.equilibrium.contact_force.reshape(2, -1)

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from raceway.bodies.columns import KEYS, build_columns, column_problem, conspicuous, why_not
 from raceway.core.threads import ThreadPool, usable_cores
@@ -29,6 +30,15 @@ from raceway.scene.changes import key_of, with_column, with_number
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    import xarray
+
+    from raceway.framework.contracts import Excitation
+
+#: Values by the names of outputs.
+Columns: TypeAlias = dict[str, np.ndarray]
 
 #: Points of a block: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the cache of the second level.
 _STATIC, _MOVING = 8192, 2048
@@ -69,11 +79,11 @@ class Function:
     force: bool = False
     threads: int = 1
 
-    def __getstate__(self) -> dict[str, Any]:
+    def __getstate__(self) -> dict[str, object]:
         return {field.name: getattr(self, field.name) for field in attrs.fields(Function)} | {"scene": self.scene.to_dict()}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        scene = scene_from_dict(state.pop("scene"), default_registry())
+    def __setstate__(self, state: Tables) -> None:
+        scene = scene_from_dict(state["scene"], default_registry())
         for name, value in {**state, "scene": scene}.items():
             object.__setattr__(self, name, value)
 
@@ -90,7 +100,7 @@ class Function:
         strange = [key for key in self.inputs if key not in KEYS and not key.startswith("excitation.")]
         return f"{strange[0]} changes more than numbers" if strange else why_not(self.scene, self.moving)
 
-    def __call__(self, *columns: Any, **by_name: Any) -> Any:
+    def __call__(self, *columns: ArrayLike, **by_name: ArrayLike) -> Columns | xarray.Dataset:
         """The outputs at points.
 
         Parameters
@@ -117,13 +127,13 @@ class Function:
         shape, flat = self._flat(values)
         return {name: column.reshape((*shape, *column.shape[1:])) for name, column in self.columns(flat).items()}
 
-    def arrays(self, *columns: Any) -> Any:
+    def arrays(self, *columns: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
         """The outputs alone, a tuple of arrays, or the array of a single output: for ``scipy`` and ``xarray.apply_ufunc``."""
         answer = self(*map(np.asarray, columns))
-        values = tuple(answer[name] for name in self.outputs)
+        values = tuple(np.asarray(answer[name]) for name in self.outputs)
         return values[0] if len(values) == 1 else values
 
-    def jacobian(self, *columns: Any, **by_name: Any) -> dict[str, dict[str, np.ndarray]]:
+    def jacobian(self, *columns: ArrayLike, **by_name: ArrayLike) -> dict[str, Columns]:
         """Derivatives of each output by each input: ``jacobian(...)[output][input]``, in the shape of the inputs.
 
         Notes
@@ -153,7 +163,7 @@ class Function:
             }
         return out
 
-    def columns(self, flat: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def columns(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""
         n = len(next(iter(flat.values())))
         if self.why_slow:
@@ -161,7 +171,7 @@ class Function:
             return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
         size = _MOVING if self.moving else _STATIC
         blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
-        answers: list[dict[str, np.ndarray]] = [{}] * len(blocks)
+        answers: list[Columns] = [{}] * len(blocks)
 
         def job(number: int) -> None:
             answers[number] = self._block(blocks[number])
@@ -183,7 +193,7 @@ class Function:
             scene = with_column(scene, key, float(number))  # type: ignore[arg-type]
         return scene_from_dict(scene.to_dict(), default_registry())
 
-    def _named(self, columns: Sequence[Any], by_name: Mapping[str, Any]) -> dict[str, Any]:
+    def _named(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
         """All inputs by their keys."""
         if len(columns) > len(self.inputs):
             raise SceneError.at(
@@ -200,7 +210,7 @@ class Function:
             raise SceneError.at(missing[0], None, "is an input of this function and is missing")
         return {key: values[key] for key in self.inputs}
 
-    def _flat(self, values: Mapping[str, Any]) -> tuple[tuple[int, ...], dict[str, np.ndarray]]:
+    def _flat(self, values: Mapping[str, ArrayLike]) -> tuple[tuple[int, ...], Columns]:
         """Common shape of arrays, and their columns (n,), refused before they are made."""
         arrays = {key: _numbers(key, value) for key, value in values.items()}
         try:
@@ -213,15 +223,18 @@ class Function:
         self._refuse_size(math.prod(shape))
         return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}
 
-    def _labelled(self, values: Mapping[str, Any]) -> Any:
+    def _labelled(self, values: Mapping[str, ArrayLike]) -> xarray.Dataset:
         """The data set of inputs some of which are DataArrays."""
         import xarray
 
-        arrays = [value if hasattr(value, "dims") else xarray.DataArray(value) for value in values.values()]
+        arrays = [
+            value if isinstance(value, xarray.DataArray) else xarray.DataArray(np.asarray(value))
+            for value in values.values()
+        ]
         same = xarray.broadcast(*arrays)
         shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
         answer, dims, known = self.columns(flat), same[0].dims, _known()
-        variables: dict[str, Any] = {}
+        variables: Tables = {}
         for name, column in answer.items():
             further, labels = ((), {}) if name not in known else (known[name].dims, known[name].labels)
             variables[name] = ((*dims, *further), column.reshape((*shape, *column.shape[1:])), labels)
@@ -235,13 +248,13 @@ class Function:
         }
         return labelled_dataset(variables, coordinates, {"title": self.scene.title})
 
-    def _block(self, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _block(self, columns: Columns) -> Columns:
         """One block of points in the compiled loop; rows that it cannot do have the status FAILED and no values."""
         n = len(next(iter(columns.values())))
         status, refused = np.full(n, PointStatus.FAILED), self._refused(columns)
         fit = np.flatnonzero(~refused)
         status[refused] = PointStatus.REFUSED
-        values: dict[str, np.ndarray] = {}
+        values: Columns = {}
         for rows in self._alike(columns, fit):
             start = next((scene for row in rows[:5] if (scene := self._fitting(columns, int(row))) is not None), None)
             if start is None:
@@ -296,7 +309,7 @@ class Function:
                 turning = columns[key][rows] > 0.0
         return [part for part in (rows[turning], rows[~turning]) if len(part)]
 
-    def _excitations(self, columns: Mapping[str, np.ndarray]) -> tuple[list[Any], np.ndarray]:
+    def _excitations(self, columns: Mapping[str, np.ndarray]) -> tuple[list[Excitation], np.ndarray]:
         """The excitations that differ, and which of them acts at each row."""
         keys = [key for key in columns if key.startswith("excitation.")]
         n = len(next(iter(columns.values())))
@@ -308,13 +321,13 @@ class Function:
             attrs.evolve(self.scene.excitation, **dict(zip(names, row, strict=True))) for row in numbers.tolist()
         ], which.ravel()
 
-    def _completed(self, flat: Mapping[str, np.ndarray], answer: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """With runs of the points that the loop has left."""
         left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
         refused = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
         for row in refused:
             answer["reason"][row] = (
-                self._reason(flat, row) if row in refused[:_REASONS] else "a rule of the scene refuses its numbers"
+                self._reason(flat, int(row)) if row in refused[:_REASONS] else "a rule of the scene refuses its numbers"
             )
         if len(left) and not self.force and self._seconds(len(left)) > _LIMIT_S:
             answer["reason"][left] = (
@@ -334,9 +347,7 @@ class Function:
             return str(why)
         return "a rule of the scene refuses its numbers"
 
-    def _run_all(
-        self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: dict[str, np.ndarray]
-    ) -> dict[str, np.ndarray]:
+    def _run_all(self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: Columns) -> Columns:
         """Runs of some rows, their values put into the answer."""
         n = len(next(iter(flat.values())))
         answer.setdefault("status", np.full(n, PointStatus.FAILED))
@@ -357,7 +368,7 @@ class Function:
             for name in self.outputs:
                 value = of_result(name, result)
                 if name not in answer:
-                    answer[name] = np.full((n, *np.shape(value)), np.nan)
+                    answer[name] = np.full((n, *np.asarray(value).shape), np.nan)
                 answer[name][row] = np.nan if value is None else value
                 if value is None:
                     answer["reason"][row] = f"this scene has no {name}"
@@ -394,14 +405,14 @@ def _free_bytes() -> float:
     return float(os.sysconf(pages)) * os.sysconf("SC_PAGE_SIZE")
 
 
-def _numbers(key: str, value: Any) -> np.ndarray:
+def _numbers(key: str, value: ArrayLike) -> np.ndarray:
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         raise SceneError.at(key, None, "must be numbers") from None
 
 
-def _joined(answers: Sequence[dict[str, np.ndarray]], outputs: Iterable[str]) -> dict[str, np.ndarray]:
+def _joined(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
     """Answers of blocks one after another; blocks without values have nan."""
     out = {}
     for name in outputs:
@@ -435,7 +446,7 @@ def function(
     ----------
     scene : Scene, path, TOML text or dict of tables: what is the same at all points, with a number at every input
     inputs : continuous keys, such as "load.axial", "excitation.speed_rpm", "bearing.contact_angle_deg"
-    outputs : quantities by their names, such as "equivalent_stiffness", "kyy", "stiffness", "contact_angle", or symbols, "K", "C"
+    outputs : quantities by their names, such as "kyy", "stiffness", "contact_angle", or symbols, "K", "C"
     plugins : files of one-off plug-ins that the scene uses
     tolerance : of the 1x line of steady orbits, relative
     force : also run, one after another, points that a compiled loop cannot do, however long that takes

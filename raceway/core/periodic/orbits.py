@@ -179,7 +179,8 @@ class Level(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """Of one point: ``constants`` and law's ``params``, load (5,), mass (5,), damping (5, 5), stiffness against tilts, speed of the force and its ``force_params``; whether contacts are damped."""
+    """Of one point: ``constants`` and law's ``params``, load (5,), mass (5,), damping (5, 5), stiffness against tilts, speed of the force and its ``force_params``; whether contacts are
+    damped; its equilibrium ``centre`` (5,), and ``weight`` (5,) that makes lengths of coordinates."""
 
     constants: Constants
     params: np.ndarray
@@ -190,10 +191,12 @@ class Numbers(NamedTuple):
     speed: float
     force_params: np.ndarray
     damped: bool
+    centre: np.ndarray
+    weight: np.ndarray
 
 
 LEVEL = record(Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, VECTOR, VECTOR, VECTOR, MATRIX)
-NUMBERS = record(Numbers, CONSTANTS, MATRIX, VECTOR, VECTOR, MATRIX, float64, float64, VECTOR, boolean)
+NUMBERS = record(Numbers, CONSTANTS, MATRIX, VECTOR, VECTOR, MATRIX, float64, float64, VECTOR, boolean, VECTOR, VECTOR)
 
 
 @jit(void(MATRIX, VECTOR, MATRIX))
@@ -359,9 +362,10 @@ def _level(u, ball, spans, span, dense, d):
     return level
 
 
-@jit(types.UniTuple(float64, 2)(LEVEL, VECTOR, TURNING, VECTOR))
-def _moved(level, centre, turning, weight):
-    """Add the step in r to u; size of the step, and of the motion about an equilibrium ``centre`` (5,); weight (5,) of coordinates."""
+@jit(types.UniTuple(float64, 2)(LEVEL, TURNING, NUMBERS))
+def _moved(level, turning, numbers):
+    """Add the step in r to u; size of the step, and of the motion about the equilibrium."""
+    centre, weight = numbers.centre, numbers.weight
     n, step, size = level.u.shape[0], 0.0, 0.0
     for j in range(n):
         angle = -turning.sense * turning.span * j / n
@@ -376,10 +380,10 @@ def _moved(level, centre, turning, weight):
 
 
 @jit(
-    types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, VECTOR, VECTOR, int64[::1]),
+    types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, int64[::1]),
     allocates=True,
 )
-def _solve(kernels, turning, numbers, level, work, centre, weight, dofs):
+def _solve(kernels, turning, numbers, level, work, dofs):
     """Status, last step over the motion, and the motion's size [m], of the orbit with a level's samples."""
     dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
     wave = 2.0 * np.pi / turning.span
@@ -390,7 +394,7 @@ def _solve(kernels, turning, numbers, level, work, centre, weight, dofs):
             fine = _newton_step(level, numbers.mass, numbers.speed, dofs)
         else:
             fine = _harmonic_step(level, numbers.mass, numbers.speed, wave, dofs)
-        step, size = _moved(level, centre, turning, weight)
+        step, size = _moved(level, turning, numbers)
         if not fine or not step < 1e-2 or not size < 1e-2:
             return NOT_SOLVED, np.inf, size
         if numbers.damped:
@@ -502,11 +506,11 @@ def orbits(kernels, linear, points, states, turning, out):
         if states.status[p] != 0:
             continue
         constants = Constants(points.scalars[p], points.table[p])
+        weight[3] = weight[4] = constants.scalars[TILT_ARM]
         numbers = Numbers(
             constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
-            turning.params[p], constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0,
+            turning.params[p], constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0, states.q[p], weight,
         )  # fmt: skip
-        weight[3] = weight[4] = constants.scalars[TILT_ARM]
         _force_line(turning, numbers, push, force)
         _linear_response(states.stiffness[p], numbers, linear.free, push, line)
         n, u, error = turning.least, np.empty((turning.least, 5)), np.inf
@@ -516,11 +520,11 @@ def orbits(kernels, linear, points, states, turning, out):
         while True:
             start, dense = u.copy(), n * d <= _DENSE
             level = _level(u, states.ball[p], spans, turning.span, dense, d)
-            status, step, size = _solve(kernels, turning, numbers, level, work, states.q[p], weight, dofs)
+            status, step, size = _solve(kernels, turning, numbers, level, work, dofs)
             if status != SOLVED and not dense and n * d <= 4 * _DENSE:
                 copy_matrix(start, u)
                 level = _level(u, states.ball[p], spans, turning.span, True, d)
-                status, step, size = _solve(kernels, turning, numbers, level, work, states.q[p], weight, dofs)
+                status, step, size = _solve(kernels, turning, numbers, level, work, dofs)
             if status != SOLVED:
                 break
             _lines(level.u, turning.sense, mean, line)
