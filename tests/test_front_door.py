@@ -7,6 +7,7 @@ import doctest
 import inspect
 import json
 import re
+from functools import wraps
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -315,6 +316,7 @@ def test_the_command_line_calls_the_same_function(command, module, monkeypatch, 
     called = []
     real = getattr(rw, command)
 
+    @wraps(real)
     def watched(scene, **options):
         called.append(scene.title)
         return real(scene, **options)

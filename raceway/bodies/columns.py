@@ -6,7 +6,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import attrs
 import numpy as np
@@ -300,7 +300,7 @@ def _first_guess(problem: Problem, basis: Basis, load: np.ndarray) -> np.ndarray
 
 def _rows(record: R, chosen: np.ndarray) -> R:
     """Rows of the columns (n, ...) of a record; what all points share stays."""
-    columns = {
+    columns: dict[str, Any] = {
         name: np.ascontiguousarray(value[chosen])
         for name, value in record._asdict().items()
         if isinstance(value, np.ndarray) and name != "order"

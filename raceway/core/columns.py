@@ -39,7 +39,7 @@ def _either(number: Callable[..., float], column: str) -> Callable[..., Any]:
 
 
 cos, sin, acos = _either(math.cos, "cos"), _either(math.sin, "sin"), _either(math.acos, "arccos")
-sqrt, log = _either(math.sqrt, "sqrt"), _either(math.log, "log")
+sqrt, log, radians = _either(math.sqrt, "sqrt"), _either(math.log, "log"), _either(math.radians, "radians")
 least, largest = _either(min, "minimum"), _either(max, "maximum")
 #: Whether a number is not 0, of a column any.
 some = _either(bool, "any")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import asin, degrees, pi, radians
+from math import asin, degrees, pi
 
 import attrs
 
-from raceway.core.columns import acos, cos, has_columns, is_column, sin, some, with_columns
+from raceway.core.columns import acos, cos, has_columns, radians, sin, some, with_columns
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import (
     at_least,
@@ -253,7 +253,7 @@ class Bearing:
         if clearance is not None and some(clearance) and (angle is None or not some(angle)):
             distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
             return acos(1.0 - clearance / (2.0 * distance))
-        return angle * (pi / 180.0) if is_column(angle) else radians(angle or 0.0)
+        return radians(angle) if angle is not None else 0.0
 
 
 @lru_cache(maxsize=256)

@@ -92,12 +92,12 @@ class Ellipse:
     a_star, b_star, delta_star : float, dimensionless
     """
 
-    curvature_sum: float
-    curvature_difference: float
-    contact_modulus: float
-    a_star: float
-    b_star: float
-    delta_star: float
+    curvature_sum: Number
+    curvature_difference: Number
+    contact_modulus: Number
+    a_star: Number
+    b_star: Number
+    delta_star: Number
 
     @property
     def factor(self) -> float:
