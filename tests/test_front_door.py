@@ -310,21 +310,22 @@ def test_a_missing_library_is_one_message(static, monkeypatch, module, call):
 
 
 @pytest.mark.parametrize(
-    ("command", "module"), [("run", "pipeline.front"), ("plan", "planning.plan"), ("check", "planning.plan")]
+    ("command", "called", "module"),
+    [("run", "run", "pipeline.front"), ("plan", "check", "cli.plan"), ("check", "check", "cli.plan")],
 )
-def test_the_command_line_calls_the_same_function(command, module, monkeypatch, tmp_path):
-    called = []
-    real = getattr(rw, command)
+def test_the_command_line_calls_the_same_function(command, called, module, monkeypatch, tmp_path):
+    titles = []
+    real = getattr(rw, called)
 
     @wraps(real)
     def watched(scene, **options):
-        called.append(scene.title)
+        titles.append(scene.title)
         return real(scene, **options)
 
-    monkeypatch.setattr(f"raceway.{module}.{command}", watched)
+    monkeypatch.setattr(f"raceway.{module}.{called}", watched)
     words = ["--out", str(tmp_path)] if command == "run" else []
     assert invoke(command, SCENE, "--set", "excitation.speed_rpm=6000 rpm", *words).exit_code == 0
-    assert called == [rw.load_scene(SCENE, ["excitation.speed_rpm=6000"]).title]
+    assert titles == [rw.load_scene(SCENE, ["excitation.speed_rpm=6000"]).title]
 
 
 # --- names
