@@ -54,6 +54,12 @@ class Option(NamedTuple):
     flag : without the dashes
     metavar : of the value;  help, default : instead of the docstring's and the signature's
     choices : values that are taken;  positional : an argument
+
+    Examples
+    --------
+    >>> from raceway import Option
+    >>> Option(metavar="RPM", help="Speed of the shaft.").flag
+    ''
     """
 
     flag: str = ""

@@ -53,7 +53,14 @@ _STEP = 1e-3
 
 
 class PointStatus(IntEnum):
-    """How a point was computed."""
+    """How a point was computed.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.PointStatus(0).name
+    'COMPUTED'
+    """
 
     COMPUTED = 0  # in the compiled loop
     RUN = 1  # by a run of its own
@@ -70,6 +77,14 @@ class Function:
     scene : what is the same at all points;  inputs : keys;  outputs : names of quantities
     tolerance : of steady orbits;  force : whether points that need runs of their own are run however long that takes
     threads : that share the points
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> f = rw.function({"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}}, ["load.axial"], ["x"])
+    >>> slope = f.jacobian(1000.0)["x"]["load.axial"]  # [m/N]
+    >>> round(1e-6 / float(slope), 1)  # axial stiffness [N/um]
+    62.1
     """
 
     scene: Scene
@@ -472,7 +487,7 @@ def function(
     >>> import raceway as rw
     >>> f = rw.function({"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}}, ["load.axial"], ["kyy"])
     >>> (f([400.0, 1000.0])["kyy"] * 1e-6).round(1)  # [N/um]
-    array([157.2, 212.6])
+    array([183.4, 238.2])
     """
     read = as_scene(scene, plugins=plugins)
     keys, names = tuple(inputs), tuple(_name(output) for output in outputs)
