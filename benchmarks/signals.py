@@ -36,7 +36,7 @@ _COMPARE = (
 COMMANDS = {
     "run": ("run", str(SCENE), "--pictures"),
     "sweep, serial": _SWEEP,
-    "sweep, joblib": (*_SWEEP, "--executor", "joblib"),
+    "sweep, processes": (*_SWEEP, "--executor", "processes"),
     "sweep, dask": (*_SWEEP, "--executor", "dask"),
     "view": ("view", str(SCENE), "--html"),
     "compare": _COMPARE,
@@ -194,11 +194,11 @@ def asked(count: int = 100, seed: int = 17) -> dict[str, Any]:
 
 
 def killed(count: int = 30, seed: int = 18) -> dict[str, int]:
-    """SIGKILL to the main process of sweeps with joblib, 2 to 3 s after the start: processes left 5 s later."""
+    """SIGKILL to the main process of sweeps in processes, 2 to 3 s after the start: processes left 5 s later."""
 
     def one(k: int) -> int:
         process = started(
-            (*COMMANDS["sweep, joblib"][:-3], "excitation.speed_rpm=10980:15000:1600", "--executor", "joblib"),
+            (*COMMANDS["sweep, processes"][:-3], "excitation.speed_rpm=10980:15000:1600", "--executor", "processes"),
             folder / str(k),
         )
         time.sleep(random.Random(1000 * seed + k).uniform(2.0, 3.0))

@@ -431,7 +431,7 @@ SLIPS = {
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),
     "unknown format": (["view", "--mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, vtu", ""),
     "format that only reads": (["view", "--mesh", MINIMAL, "--format", "msh"], "'msh' only reads; files are written as abaqus, vtu", ""),
-    "unknown executor": (["sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"], "dask, joblib, processes, serial", ""),
+    "unknown executor": (["sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"], "dask, processes, serial", ""),
     "unknown mesher": (["check", MINIMAL, "--set", "mesh.kind=moon"], "installed: file, gmsh, structured", ""),
     "size of no mesh": (["view", "--mesh", MINIMAL, *COARSE, "--set", "mesh.element_size=1.0"], "element_size", ""),
     "coefficients without a load": (["export", "STORE", "--ross", "b.toml"], "choose one with --at load.axial=400", ""),

@@ -17,7 +17,7 @@ import pytest
 from raceway.cli.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
-from raceway.plugins.joblib import Joblib
+from raceway.plugins.processes import Processes
 from raceway.points.dataset import open_store
 from raceway.points.store import Store, connected, exists
 from validation.command_line import ARTICLE, MINIMAL, python, raceway
@@ -233,8 +233,8 @@ def threads(_points):
     return [thread.name for thread in threading.enumerate()]
 
 
-def test_workers_of_joblib_watch_their_parent_from_the_start():
-    assert all(WATCH in names for _, names in Joblib(workers=2).compute(threads, [(0, []), (1, [])]))
+def test_workers_watch_their_parent_from_the_start():
+    assert all(WATCH in names for _, names in Processes(workers=2).compute(threads, [(0, []), (1, [])]))
 
 
 class Deaf:
@@ -248,7 +248,7 @@ class Deaf:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["processes", "joblib", "dask"])
+@pytest.mark.parametrize("name", ["processes", "dask"])
 def test_workers_do_not_hear_a_terminal_from_their_start(name):
     """In a process of its own: what clears up behind the first worker is started with it."""
     code = f"""
@@ -286,11 +286,11 @@ def test_what_is_started_deaf_to_terminals_stays_so_and_nothing_is_lost():
         signal.signal(signal.SIGHUP, before)
 
 
-def test_what_clears_up_behind_joblibs_workers_outlives_a_closed_terminal():
+def test_what_clears_up_behind_workers_outlives_a_closed_terminal():
     """It would be started again, with a traceback for everything that it is told of and does not know."""
     from joblib.externals.loky.backend.resource_tracker import _resource_tracker
 
-    list(Joblib(workers=1).compute(threads, [(0, [])]))
+    list(Processes(workers=1).compute(threads, [(0, [])]))
     assert signal.SIGHUP in blocked(_resource_tracker._pid)
 
 

@@ -181,7 +181,7 @@ def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     cases = [case("hang"), case("die"), case("answer", value="near"), case("answer", value="far")]
     with written(None) as store:
         hung, died, *answered = measured(cases, 2, REGISTRY, store, patience=6.0)[0]
-    assert "it hangs" in hung.note and "exit code 7" in died.note and hung.verdict == died.verdict == FAILED
+    assert "it hangs" in hung.note and "EXIT(7)" in died.note and hung.verdict == died.verdict == FAILED
     assert [row.verdict for row in answered] == [AS_EXPECTED, FAILED]
 
 

@@ -21,8 +21,7 @@ from raceway import PluginError, RacewayError, SceneError, scene_from_dict
 from raceway import sweep as front
 from raceway.framework.contracts import Lost, Refused
 from raceway.plugins.dask import Dask
-from raceway.plugins.joblib import Joblib
-from raceway.plugins.processes import Serial
+from raceway.plugins.processes import Processes, Serial
 from raceway.points.axes import Design, design_file, grid, parse_axes, point_list, points, tables_at
 from raceway.points.dataset import open_store, values_of
 from raceway.points.engine import Work
@@ -461,20 +460,19 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
 
 def test_processes_give_the_same_rows(tmp_path):
     design = grid(["excitation.speed_rpm=10980:15000:16"])
-    assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Joblib(workers=2))
+    assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Processes(workers=2))
 
 
 def test_a_process_that_dies_costs_its_batch_only():
-    answers = dict(Joblib(workers=2).compute(Deadly(), ((n, [n]) for n in (3, 4))))
+    answers = dict(Processes(workers=2).compute(Deadly(), ((n, [n]) for n in (3, 4))))
     assert isinstance(answers.pop(3), Lost)
     assert answers == {4: [40]}
 
 
 def test_executors_say_what_is_missing(monkeypatch):
-    for name, executor in (("joblib.externals.loky", Joblib()), ("distributed", Dask())):
-        monkeypatch.setitem(sys.modules, name, None)
-        with pytest.raises(PluginError, match=r"pip install '\.\[sweep\]'"):
-            list(executor.compute(Deadly(), []))
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(PluginError, match=r"pip install '\.\[sweep\]'"):
+        list(Dask().compute(Deadly(), []))
 
 
 def test_the_command(tmp_path):

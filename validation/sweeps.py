@@ -124,7 +124,7 @@ def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
         wanted = rows_of(whole)
         for number in range(times):
             store = Path(folder) / f"s{number}"
-            more = ("--executor", "joblib") if number % 4 == 3 else ()
+            more = ("--executor", "processes") if number % 4 == 3 else ()
             with _running(words(count, store, *more)) as process:
                 seen = _until(store, process, draw.randint(1, count - 1))
                 process.kill()
@@ -145,7 +145,7 @@ def worker_killed(count: int = 200) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         whole, store = Path(folder) / "whole", Path(folder) / "s"
         _finish(words(count, whole))
-        with _running(words(count, store, "--executor", "joblib")) as process:
+        with _running(words(count, store, "--executor", "processes")) as process:
             _until(store, process, count // 3)
             with open_store(store) as there:
                 worker = int(next(row["cost"]["worker"] for row in there.rows() if row["cost"]).rpartition(":")[2])
@@ -182,7 +182,7 @@ def interrupted(count: int = 600) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         whole, store = Path(folder) / "whole", Path(folder) / "s"
         _finish(words(count, whole))
-        with _running(words(count, store, "--executor", "joblib")) as process:
+        with _running(words(count, store, "--executor", "processes")) as process:
             _until(store, process, count // 10)
             os.killpg(process.pid, signal.SIGINT)
             code = process.wait(120)

@@ -39,7 +39,7 @@ def _asked() -> list[Row]:
 def _killed() -> list[Row]:
     command = f"{_COMMAND} killed"
     found = signals.killed(_KILLED)
-    words = f"sweeps with joblib killed (SIGKILL) 2 to 3 s after the start, {found['killed']} of {_KILLED}: processes left 5 s later"
+    words = f"sweeps in processes killed (SIGKILL) 2 to 3 s after the start, {found['killed']} of {_KILLED}: processes left 5 s later"
     good = found["left"] == 0 and found["killed"] == _KILLED
     return [
         Row(words, found["left"], f"at most 0, all {_KILLED} killed", good, command, f"{found['sweeps']} sweeps left some")

@@ -63,7 +63,7 @@ ANSWERS: tuple[Command | Later, ...] = (
         "    --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200\n"
         "raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200\n"
         "raceway sweep examples/steady_orbit.toml --list points.csv \\\n"
-        "    --executor joblib --workers 4",
+        "    --executor processes --workers 4",
         {
             "source": Option(metavar="SCENE|STORE", positional=True),
             "axes": Option("grid", "A.B=X,Y"),

@@ -200,7 +200,7 @@ def sweep(
     points : points, .csv, .json or .toml
     design : a table [grid], or tables [[points]]
     settings : change a key of the scene
-    executor : by name: serial, processes, joblib, dask, or a plug-in
+    executor : by name: serial, processes, dask, or a plug-in
     workers : processes of these; None: 2
     scheduler : running dask scheduler, tcp://HOST:8786
     store : folder; None: raceway-out/TITLE-sweep

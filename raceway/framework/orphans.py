@@ -45,7 +45,7 @@ def deaf_to_terminals() -> Iterator[None]:
 
 
 def start_tracker() -> None:
-    """Start what clears up behind processes of ``multiprocessing``, before the first of them.
+    """Start what clears up behind processes of Python, before the first of them.
 
     Notes
     -----

@@ -4,7 +4,7 @@ excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
-processes, joblib, dask          executors
+processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
 system_libraries                 system libraries that packages for meshes and pictures need
 """
@@ -18,7 +18,6 @@ from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
-from raceway.plugins.joblib import Joblib
 from raceway.plugins.measured_force import Measured
 from raceway.plugins.mesh_files import File
 from raceway.plugins.order_tracking import OrderTracking
@@ -54,4 +53,4 @@ def raceway_reports() -> list[type]:
 
 @hookimpl
 def raceway_executors() -> list[type]:
-    return [Serial, Processes, Joblib, Dask]
+    return [Serial, Processes, Dask]

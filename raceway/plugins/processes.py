@@ -1,16 +1,15 @@
-"""Executors on this machine by Python alone: in this process, and in processes of their own.
+"""Executors on this machine: in this process, and in processes by joblib's loky.
 
-A batch that hangs or kills its process costs that batch only.
+A batch that hangs or kills its process costs that batch only: each process is a pool of its own.
 """
 
 from __future__ import annotations
 
 import os
-import signal
 import time
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
-from typing import TYPE_CHECKING, Any, ClassVar
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
@@ -20,8 +19,6 @@ from raceway.framework.options import between, option
 from raceway.framework.orphans import deaf_to_terminals, end_with, start_tracker
 
 if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-
     from raceway.framework.contracts import Batch
 
 
@@ -38,11 +35,13 @@ class Serial:
 
 #: What a process may take to import the program, beyond the patience with its first batch [s].
 _START_S = 120.0
+#: Numbers of threads of libraries, 1 where the user says nothing: the cores are the processes' already.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @attrs.frozen
 class Processes:
-    """Processes on this machine, without further packages; one that dies is replaced, one that hangs is ended."""
+    """Processes on this machine, each with one thread; one that dies is replaced, one that hangs is ended."""
 
     name: ClassVar[str] = "processes"
 
@@ -50,33 +49,30 @@ class Processes:
     patience: float = option(1e7, unit="s", help="a batch that takes longer hangs: it is given up", rule=between(0.1, 1e9))
 
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
-        waiting, again, tried = iter(batches), list[Any](), set[int]()
-        crew: list[_Worker] = []
-
-        from multiprocessing.connection import wait
+        waiting, tried = iter(batches), set[int]()
+        again: list[Batch] = []
+        idle: list[_Worker] = []
+        busy: dict[Future[object], tuple[_Worker, Batch]] = {}
 
         def following() -> Batch | None:
             return again.pop() if again else next(waiting, None)
 
         batch = following()
         try:
-            while batch is not None or any(worker.batch for worker in crew):
-                while batch is not None:
-                    free = next((worker for worker in crew if worker.batch is None), None)
-                    if free is None:
-                        if len(crew) == self.workers:
-                            break
-                        crew.append(free := _Worker(work))
-                    free.give(batch)
+            while batch is not None or busy:
+                while batch is not None and len(busy) < self.workers:
+                    worker = idle.pop() if idle else _Worker(work)
+                    busy[worker.begin(work, batch)] = worker, batch
                     batch = following()
-                arrived = wait([worker.pipe for worker in crew if worker.batch], timeout=1.0)
-                for worker in [worker for worker in crew if worker.batch]:
-                    sent, answer = worker.batch, worker.answer(worker.pipe in arrived, self.patience)
-                    if answer is None or sent is None:
-                        continue
+                done, _ = wait(busy, timeout=1.0, return_when=FIRST_COMPLETED)
+                late = {future for future, (worker, _) in busy.items() if time.monotonic() - worker.begun > self.patience}
+                for future in done | late:
+                    worker, sent = busy.pop(future)
+                    idle.append(worker)
+                    answer = worker.answer(future, self.patience)
                     if isinstance(answer, Lost):
+                        idle.remove(worker)
                         worker.end()
-                        crew.remove(worker)
                         if worker.died and sent[0] not in tried:
                             tried.add(sent[0])
                             again.append(sent)
@@ -84,71 +80,55 @@ class Processes:
                     yield sent[0], answer
                 batch = batch or following()
         finally:
-            for worker in crew:
+            for worker in [*idle, *(worker for worker, _ in busy.values())]:
                 worker.end()
 
 
 class _Worker:
-    """One process and the batch that it works at."""
+    """One process, the only one of its pool."""
 
     def __init__(self, work: Work) -> None:
-        import multiprocessing
+        from joblib.externals.loky import ProcessPoolExecutor
+        from joblib.externals.loky.backend.resource_tracker import ensure_running
 
-        context = multiprocessing.get_context("spawn")  # a fork would copy the progress bar's threads
-        self.pipe, child = context.Pipe()
-        self.process = context.Process(target=_serve, args=(child, work, os.getpid()), daemon=True)
+        environment = {name: os.environ.get(name, "1") for name in _THREADS}
+        with deaf_to_terminals():
+            ensure_running()  # it clears up behind the workers, and must outlive them
         with deaf_to_terminals():
             start_tracker()
-            self.process.start()
-        child.close()
-        self.batch: Batch | None = None
-        self.begun, self.ready, self.died = 0.0, False, False
+            self.pool = ProcessPoolExecutor(1, initializer=end_with, initargs=(os.getpid(),), env=environment)
+            self.ready = self.pool.submit(type, work)  # imports the program
+        self.begun, self.died = time.monotonic() + _START_S, False
+        self.ready.add_done_callback(self._start)
 
-    def give(self, batch: Batch) -> None:
-        self.batch, self.begun = batch, time.monotonic() + (0.0 if self.ready else _START_S)
-        with suppress(OSError):  # it is dead, which is seen when its answer is waited for
-            self.pipe.send(batch[1])
+    def _start(self, *_: object) -> None:
+        """The time of its batch begins."""
+        self.begun = time.monotonic()
 
-    def answer(self, arrived: bool, patience: float) -> object:
-        """What it has to say of its batch, which it is then done with; None where nothing yet."""
-        if not arrived:
-            return Lost(f"no answer within {patience:g} s: it hangs") if time.monotonic() - self.begun > patience else None
+    def begin(self, work: Work, batch: Batch) -> Future[object]:
+        from joblib.externals.loky.process_executor import BrokenProcessPool
+
+        if self.ready.done():
+            self._start()
         try:
-            message = self.pipe.recv()
-        except (EOFError, OSError):
-            self.process.join()
-            if not self.ready:
-                raise PluginError(
-                    f"processes do not start here: the first ended at once (exit code {self.process.exitcode})"
-                ) from None
+            return self.pool.submit(work, batch[1])
+        except BrokenProcessPool as why:  # it died while it had nothing to do
+            future = Future[object]()
+            future.set_exception(why)
+            return future
+
+    def answer(self, future: Future[object], patience: float) -> object:
+        from joblib.externals.loky.process_executor import BrokenProcessPool
+
+        if not future.done():
+            return Lost(f"no answer within {patience:g} s: it hangs")
+        try:
+            return future.result()
+        except BrokenProcessPool as why:
+            if self.ready.exception() is not None:
+                raise PluginError(f"processes do not start here: {why}") from None
             self.died = True
-            return Lost(f"its process died (exit code {self.process.exitcode})")
-        if message is None:  # the program is imported: the time of its batch begins here
-            self.begun, self.ready = time.monotonic(), True
-            return None
-        self.batch = None
-        fine, answer = message
-        if not fine:
-            raise answer
-        return answer
+            return Lost(f"its process died ({str(why).partition('{')[2].partition('}')[0]})")
 
     def end(self) -> None:
-        self.process.kill()
-        self.process.join()
-        self.pipe.close()
-
-
-def _serve(pipe: Connection, work: Work, parent: int) -> None:
-    """What a process does: answer batches until it is ended."""
-    end_with(parent)
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # the cores are the processes' already
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business
-    pipe.send(None)
-    with suppress(EOFError, OSError):  # the parent is gone
-        while True:
-            points = pipe.recv()
-            try:
-                answer = True, work(points)
-            except Exception as why:
-                answer = False, why
-            pipe.send(answer)
+        self.pool.shutdown(kill_workers=True)

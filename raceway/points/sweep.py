@@ -263,7 +263,7 @@ def sweep(
     scene : Scene, path, TOML text or dict of tables
     axes : key of the scene -> its values (array (n,), list, or the text "start:stop:count"), all combinations of which are computed;
         or a list of points, each key -> value
-    executor : "serial", "processes", "joblib", "dask" or a plug-in's name, or an executor
+    executor : "serial", "processes", "dask" or a plug-in's name, or an executor
     workers : processes of these, by default 2
     store : folder in which every finished point is kept; None: a temporary one, removed when the results are loaded
     resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
@@ -287,7 +287,7 @@ def sweep(
 
     Notes
     -----
-    Worker processes import the program that calls: outside notebooks it keeps what it does below ``if __name__ == "__main__":``.
+    Workers of "dask" import the program that calls: outside notebooks it keeps what it does below ``if __name__ == "__main__":``.
 
     Examples
     --------

@@ -16,7 +16,7 @@ KEPT = {"basis": "own other method", "source": "the undisturbed sweep; a finishe
 def test_two_workers_over_one(claim):
     quiet = sweeps.quiet()
     one, two = (
-        sweeps.timed(2000, "--executor", "joblib", "--workers", workers, bodies="condensed")["wall_s"] for workers in "12"
+        sweeps.timed(2000, "--executor", "processes", "--workers", workers, bodies="condensed")["wall_s"] for workers in "12"
     )
     # Other programs on the machine are no fault of the sweep's.
     misses = "" if quiet or one / two >= 1.7 else f"other programs work here: load average {os.getloadavg()[0]:.1f}"
@@ -26,7 +26,7 @@ def test_two_workers_over_one(claim):
 
 @pytest.mark.parametrize(("bodies", "limit"), [("rigid", 60.0), ("condensed", 120.0)])
 def test_time_of_a_thousand_points(claim, bodies, limit):
-    wall = sweeps.timed(1000, "--executor", "joblib", "--workers", "2", bodies=bodies)["wall_s"]
+    wall = sweeps.timed(1000, "--executor", "processes", "--workers", "2", bodies=bodies)["wall_s"]
     quantity, source = f"1000 points, {bodies}, periodic, two workers: wall time", "a minute or two, as one waits"
     claim(quantity, wall, at_most=limit, unit="s", basis="regression", source=source)
 
