@@ -17,6 +17,7 @@ TITLE = "The bearing as a function: time of a point, and equality with runs"
 COMMAND = "python -m benchmarks.checks points"
 TEST = "python -m pytest tests/test_function.py"
 _CASES = 100
+_MANY, _BLOCK = 10**7, 100_000
 _STATIC: dict[str, Any] = {
     "bearing": {"preset": "B7206C"},
     "load": {"axial": 1.0, "radial": [0.0, 0.0]},
@@ -63,6 +64,32 @@ def _run_time(scene: dict[str, Any]) -> float:
     return min(once() for _ in range(9))
 
 
+def _by_dask(point: float) -> list[Row]:
+    """1e7 points in blocks on a local cluster of two processes, against ``point`` seconds each in one process."""
+    import dask.array as da
+    from distributed import Client, LocalCluster
+
+    ranges = {"load.axial": (300.0, 2000.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
+    f, rng = rw.function(_STATIC, ranges, ["kyy"], threads=1), da.random.default_rng(1)
+    columns = [rng.uniform(*ends, size=_MANY, chunks=_BLOCK) for ends in ranges.values()]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster):
+        stiffness = da.map_blocks(f.arrays, *columns, dtype=float)
+        count, mean = da.compute(stiffness.size, stiffness.mean())
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    assert count == _MANY and 1e7 < mean < 1e9, "a mean stiffness of all points"
+    return [
+        below(
+            "1e7 points by dask on two processes: processor time over that of one process",
+            round(cpu / (_MANY * point), 3),
+            1.1,
+            COMMAND,
+        ),
+        below("memory of a worker [GB]", round(1024e-9 * after.ru_maxrss, 3), 2.0, COMMAND),
+    ]
+
+
 def rows() -> list[Row]:
     loads = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
     geometry = {
@@ -85,6 +112,8 @@ def rows() -> list[Row]:
     ]  # fmt: skip
     out += [below(quantity, round(measure(), 3), bound, COMMAND) for quantity, measure, bound in cases]
     ratio = one[1] / two[1]
+    two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}
+    out += _by_dask(_time(_STATIC, ["kyy"], two_columns, 10**6)[0] / 10**6)
     out.append(Row("two threads over one, 1e6 points", round(ratio, 2), "at least 1.8", ratio >= 1.8, COMMAND, "wall time"))
     point = _run_time(_STATIC | {"load": {"axial": 800.0}}) / (1e-6 * one[0])
     out.append(
