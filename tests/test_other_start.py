@@ -63,7 +63,7 @@ def test_the_next_start_stands_in_for_one_that_fails(monkeypatch):
     tried = []
 
     def some(model, *args, **words):
-        tried.append(model.scene.integrator.start)
+        tried.append(model.problem.integrator.start)
         if tried[-1] == "orbit":
             raise ConvergenceError("no step is found")
         return simulate(model, *args, **words)

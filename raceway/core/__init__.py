@@ -1,6 +1,7 @@
 """Numerics only: arrays in, arrays out.
 
 jit            the one decorator for compiled kernels
+columns        numbers that may be columns, one of each operating point
 signatures     types of the kernels that are passed as function pointers
 threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws

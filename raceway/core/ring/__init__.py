@@ -4,6 +4,7 @@ ring          five coordinates on balls, however their forces are computed
 system        a ring whose forces are compiled: parts that follow a changing speed, kernels as addresses, steps from Python
 kernels       internal force and tangents
 equilibrium   static state: by a trust region on the total potential, by a root where there is none; linear algebra in kernels
+equilibria    compiled: the static state of many points
 orbit         steady orbit by Fourier collocation, and the initial state of a time integration
 energy        balance of a recorded motion; energy stored and lost by Coulomb friction
 viscous_stiffness   of damped contacts against small harmonic motions
