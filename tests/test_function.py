@@ -86,6 +86,24 @@ def test_the_jacobian_is_the_compliance() -> None:
     np.testing.assert_allclose(slopes["load.radial[0]"], compliance[:, 1], rtol=0, atol=1e-8 * abs(compliance[:, 1]).max())
 
 
+def test_derivatives_at_the_end_of_a_range_are_one_sided() -> None:
+    """An interference is not negative; the tangent of the secants is met to their curvature, 1e-4 of it over 10 nm."""
+    f = rw.function(STATIC, ["load.axial", "mounting.shaft_interference", "load.radial[1]"], ["kyy", "x"])
+    slopes = f.jacobian(800.0, 0.0, 0.0)
+    ends = f(800.0, [0.0, 1e-8], 0.0)
+    secant = float(np.diff(ends["kyy"])[0]) / 1e-8
+    assert slopes["kyy"]["mounting.shaft_interference"] == pytest.approx(secant, rel=1e-3)
+    assert abs(slopes["x"]["load.radial[1]"]) < 1e-6 * slopes["x"]["load.axial"]  # by symmetry
+
+
+def test_a_preload_that_nothing_braces_is_refused_alone() -> None:
+    f = rw.function(STATIC, ["load.axial", "bearing.preload"], ["kyy"])
+    answer = f(800.0, [0.0, 100.0])
+    assert answer["status"].tolist() == [rw.PointStatus.COMPUTED, rw.PointStatus.REFUSED]
+    alone = rw.run({**STATIC, "load": {"axial": 800.0}}).stiffness[1, 1]
+    assert answer["kyy"][0] == pytest.approx(alone, rel=1e-11)  # another first guess: the residual of the equilibrium
+
+
 def test_it_is_pickled_with_its_scene() -> None:
     f = rw.function(TURNING, ["load.axial"], ["K"])
     again = pickle.loads(pickle.dumps(f))

@@ -121,7 +121,7 @@ def conspicuous(problem: Problem) -> np.ndarray:
         wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
     loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
     loaded = sum(np.abs(load) for load in loads) + b.preload
-    wrong |= ~(loaded > 0.0)
+    wrong |= ~(loaded > 0.0) | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
     return wrong
 
 
@@ -208,15 +208,17 @@ class ColumnBearing:
         n, faults = len(self.faults), self.faults.copy()
         none = np.zeros((n, 5))
         for side, force in ((sides[0], bearing.preload), (-sides[0], bearing.other_preload)):
-            balls = np.flatnonzero(sides == side)
+            balls, pressed = np.flatnonzero(sides == side), np.broadcast_to(force, n) > 0.0
+            if not len(balls):
+                continue
             guess, load = none.copy(), none.copy()
             guess[:, 0], load[:, 0] = 0.05 * basis.geometry.centre_distance, force
             contacts = np.concatenate([balls, balls + len(sides)])
             rows = Points(scalars, table[:, balls].copy(), points.params[:, contacts].copy(), load, np.zeros(n), guess)
             states = _empty_states(n, len(balls), 2)
             equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
-            points.table[:, balls, ring.SHIFT] = states.q[:, :1]
-            faults = np.where(states.status != 0, states.status, faults)
+            points.table[:, balls, ring.SHIFT] = np.where(pressed[:, None], states.q[:, :1], 0.0)
+            faults = np.where(pressed & (states.status != 0), states.status, faults)
         return attrs.evolve(self, faults=faults)
 
     def contact_angles(self, states: States) -> tuple[np.ndarray, np.ndarray]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
@@ -22,11 +23,11 @@ from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
 from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
+from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, LOADED, MOVING, QUANTITIES, Computed, of_result
-from raceway.scene.changes import key_of, with_column, with_number
+from raceway.scene.changes import continuous_keys, key_of, with_column, with_number
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -50,6 +51,11 @@ _MEMORY = 0.8
 _REASONS = 200
 #: Relative step of differences, of fourth order.
 _STEP = 1e-3
+#: Weights of values at shifts by so many steps: their sum over the step is the derivative.
+_CENTRAL = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
+_FORWARD = {0: -25.0 / 12.0, 1: 4.0, 2: -3.0, 3: 4.0 / 3.0, 4: -0.25}
+#: What numbers that are 0 are taken for in such a step, by their units; 1 otherwise.
+_LEAST = {"m": 1e-6}
 
 
 class PointStatus(IntEnum):
@@ -93,9 +99,11 @@ class Function:
     tolerance: float = 1e-8
     force: bool = False
     threads: int = 1
+    _plans: dict[bool, ScenePlan] = attrs.field(factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, object]:
-        return {field.name: getattr(self, field.name) for field in attrs.fields(Function)} | {"scene": self.scene.to_dict()}
+        numbers = {field.name: getattr(self, field.name) for field in attrs.fields(Function)}
+        return numbers | {"scene": self.scene.to_dict(), "_plans": {}}
 
     def __setstate__(self, state: Tables) -> None:
         scene = scene_from_dict(state["scene"], default_registry())
@@ -153,29 +161,29 @@ class Function:
 
         Notes
         -----
-        Central differences of fourth order, all of them columns of one computation: with steps h of a thousandth of a number they are
-        off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0, of a thousandth of its largest
-        absolute value, or of 1.
+        Differences of fourth order, central where a key's rule lets them be, all of them columns of one computation: with steps h of a thousandth of a number they are
+        off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0 everywhere the
+        steps are 1e-3 of its unit, 1e-9 m of lengths.
         """
         shape, flat = self._flat(self._named(columns, by_name))
-        n, shifts, weights = len(next(iter(flat.values()))), (-2, -1, 1, 2), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
-        steps = {}
+        units = {key.path: key.unit for key in continuous_keys(self.scene)}
+        stencils, steps = {}, {}
         for key, value in flat.items():
-            size = np.abs(value)
-            steps[key] = _STEP * np.where(size > 0.0, size, size.max() or 1.0)
+            size, least = np.abs(value), _LEAST.get(units[key], 1.0)
+            steps[key] = _STEP * np.where(size > 0.0, size, size.max() or least)
+            stencils[key] = _CENTRAL if self._allowed(key, float((value - 2.0 * steps[key]).min())) else _FORWARD
         moved = {
-            key: np.concatenate(
-                [value + (steps[key] * shift if other == key else 0.0) for other in flat for shift in shifts]
-            )
+            key: np.concatenate([value + steps[key] * shift * (other == key) for other in flat for shift in stencils[other]])
             for key, value in flat.items()
         }
-        answer, out = self.columns(moved), {}
+        answer, out = self.columns(moved), dict[str, Columns]()
         for name in self.outputs:
-            parts = answer[name].reshape(len(flat), len(shifts), n, *answer[name].shape[1:])
-            slopes = np.tensordot(weights, parts, axes=(0, 1))
-            out[name] = {
-                key: (slopes[k].T / steps[key]).T.reshape((*shape, *answer[name].shape[1:])) for k, key in enumerate(flat)
-            }
+            parts, first = answer[name].reshape((-1, len(size), *answer[name].shape[1:])), 0
+            out[name] = {}
+            for key, stencil in stencils.items():
+                slope = np.tensordot(list(stencil.values()), parts[first : first + len(stencil)], axes=1)
+                out[name][key] = (slope.T / steps[key]).T.reshape((*shape, *answer[name].shape[1:]))
+                first += len(stencil)
         return out
 
     def columns(self, flat: Mapping[str, np.ndarray]) -> Columns:
@@ -270,14 +278,14 @@ class Function:
         fit = np.flatnonzero(~refused)
         status[refused] = PointStatus.REFUSED
         values: Columns = {}
-        for rows in self._alike(columns, fit):
-            start = next((scene for row in rows[:5] if (scene := self._fitting(columns, int(row))) is not None), None)
-            if start is None:
+        for turning, rows in self._alike(columns, fit):
+            plan = self._plan(columns, rows, turning)
+            if plan is None:
                 continue
             chosen = {key: column[rows] for key, column in columns.items()}
             with np.errstate(all="ignore"):  # of points that contradict themselves
                 problem = column_problem(self.scene, chosen)
-                bearing = build_columns(problem, make_plan(start))
+                bearing = build_columns(problem, plan)
             computed = Computed.of(bearing, self.moving, partial(self._excitations, chosen), self.tolerance)
             fine = ~conspicuous(problem) & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
@@ -307,22 +315,21 @@ class Function:
             return len(self.inputs) > 1 and key.startswith("bearing.") and number > 0.0
         return True
 
-    def _fitting(self, columns: Mapping[str, np.ndarray], row: int) -> Scene | None:
-        """The scene at a row, where no rule refuses it."""
-        try:
-            scene = self.scene_at({key: column[row] for key, column in columns.items()})
-            make_plan(scene)
-        except RacewayError:
-            return None
-        return scene
+    def _plan(self, columns: Mapping[str, np.ndarray], rows: np.ndarray, turning: bool) -> ScenePlan | None:
+        """That of the first row which no rule refuses, once for points whose balls turn, once for the others: it decides about parts."""
+        for row in rows[:5] if turning not in self._plans else ():
+            with suppress(RacewayError):
+                self._plans[turning] = make_plan(self.scene_at({key: column[row] for key, column in columns.items()}))
+                break
+        return self._plans.get(turning)
 
-    def _alike(self, columns: Mapping[str, np.ndarray], rows: np.ndarray) -> list[np.ndarray]:
+    def _alike(self, columns: Mapping[str, np.ndarray], rows: np.ndarray) -> list[tuple[bool, np.ndarray]]:
         """Rows whose balls a plan decides alike: they turn, or stand."""
         turning = np.full(len(rows), resolve(self.scene).spin_speed > 0.0)
         for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
             if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
                 turning = columns[key][rows] > 0.0
-        return [part for part in (rows[turning], rows[~turning]) if len(part)]
+        return [(turns, part) for turns, part in ((True, rows[turning]), (False, rows[~turning])) if len(part)]
 
     def _excitations(self, columns: Mapping[str, np.ndarray]) -> tuple[list[Excitation], np.ndarray]:
         """The excitations that differ, and which of them acts at each row."""
