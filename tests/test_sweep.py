@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
 import resource
 import signal
 import sqlite3
@@ -467,6 +468,21 @@ def test_a_process_that_dies_costs_its_batch_only():
     answers = dict(Processes(workers=2).compute(Deadly(), ((n, [n]) for n in (3, 4))))
     assert isinstance(answers.pop(3), Lost)
     assert answers == {4: [40]}
+
+
+GROWN: list[bytes] = []
+
+
+def grown(_points):
+    """400 MB more, over the second that loky waits before it looks."""
+    GROWN.append(bytes([1]) * 400_000_000)
+    time.sleep(1.2)
+    return os.getpid()
+
+
+def test_a_process_that_grows_is_not_replaced():
+    answers = dict(Processes(workers=1).compute(grown, [(0, []), (1, [])]))
+    assert answers[0] == answers[1] != os.getpid()
 
 
 def test_executors_say_what_is_missing(monkeypatch):

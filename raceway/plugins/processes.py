@@ -5,6 +5,7 @@ A batch that hangs or kills its process costs that batch only: each process is a
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Iterable, Iterator
@@ -96,7 +97,7 @@ class _Worker:
             ensure_running()  # it clears up behind the workers, and must outlive them
         with deaf_to_terminals():
             start_tracker()
-            self.pool = ProcessPoolExecutor(1, initializer=end_with, initargs=(os.getpid(),), env=environment)
+            self.pool = ProcessPoolExecutor(1, initializer=_begin, initargs=(os.getpid(),), env=environment)
             self.ready = self.pool.submit(type, work)  # imports the program
         self.begun, self.died = time.monotonic() + _START_S, False
         self.ready.add_done_callback(self._start)
@@ -132,3 +133,12 @@ class _Worker:
 
     def end(self) -> None:
         self.pool.shutdown(kill_workers=True)
+
+
+def _begin(parent: int) -> None:
+    """In a process, before its first batch."""
+    from joblib.externals.loky import process_executor
+
+    # Otherwise loky replaces, with a warning, a process that grows by 300 MB, as elastic bodies make it.
+    process_executor._MAX_MEMORY_LEAK_SIZE = math.inf
+    end_with(parent)
