@@ -129,6 +129,32 @@ def test_samples_without_an_answer_are_counted_and_no_indices_told():
     assert "do not fit" in band.why and band.total == {} and band.low["kxx"] < band.high["kxx"]
 
 
+TURNING = {
+    "rotor": {"mass": 2.0, "damping": 200.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
+    "supports": {"tilt": 1e4},
+}
+TWO_WAYS = [
+    ({}, {"bearing.ball_diameter": "+2.2 mm -0.1 mm", "bearing.pitch_diameter": "+0.1 mm -2 mm"}),  # some balls do not fit
+    ({"mounting": {"shaft_interference": 4e-6}}, {"class": "P4", "load.radial[0]": "+50 N -0 N"}),
+    (TURNING, {"load.axial": "±20 %", "supports.tilt": "±10 %", "excitation.speed_rpm": "±5 %"}),
+    (TURNING | {"rotor": {"mass": 2.0, "damping": 1e-6}}, {"rotor.damping": "+200 -0"}),  # some have no C that is resolved
+]
+
+
+@pytest.mark.parametrize(("tables", "tolerances"), TWO_WAYS)
+def test_compiled_loops_give_what_samples_one_by_one_give(tables, tolerances, monkeypatch):
+    looped = rw.band(LOADED | tables, tolerances, count=16)
+    monkeypatch.setattr("raceway.points.band._looped", lambda scene, paths, numbers, nominal: [{}] * len(numbers))
+    single = rw.band(LOADED | tables, tolerances, count=16)
+    assert (looped.samples, looped.lost, looped.why) == (single.samples, single.lost, single.why)
+    for name in ("nominal", "low", "high", "first", "total"):
+        a, b = (getattr(one, name) for one in (looped, single))
+        assert list(a) == list(b)
+        for key, number in a.items():
+            assert number == pytest.approx(b[key], rel=1e-6, abs=1e-6 if name in ("first", "total") else 0.0), (name, key)
+
+
 @pytest.mark.parametrize("count", [3, 1])
 def test_counts_are_powers_of_two(count):
     with pytest.raises(SceneError, match="power of 2"):
@@ -166,8 +192,11 @@ def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_pat
 
 
 def test_the_command_goes_on_with_what_is_kept(tmp_path):
+    """Of samples that need runs of their own: contacts rub."""
     file = tmp_path / "scene.toml"
-    file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
+    file.write_text(
+        '[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[contact]\nfriction = 0.05\n[tolerances]\n"load.axial" = "±10 %"\n'
+    )
     words = ["band", str(file), "--out", str(tmp_path), "--samples", "8", "--processes", "0"]
     first = invoke(*words)
     assert first.exit_code == 0, first.output

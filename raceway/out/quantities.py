@@ -155,7 +155,7 @@ ORBIT_MAJOR = Quantity("orbit_major", "m", "major semi-axis of the 1x orbit", f"
 ORBIT_MINOR = Quantity("orbit_minor", "m", "minor semi-axis of the 1x orbit", f"{_ID}.orbit.minor_m", f"{_ID}.orbit_minor")
 RESIDUAL = Quantity("residual", "1", "motion that is not 1x, rms over rms of 1x", f"{_ID}.residual", f"{_ID}.residual")
 _SPREAD = Quantity("spread", "1", "largest deviation of a turn's Z from that of all", f"{_ID}.spread", f"{_ID}.spread")
-AMPLITUDE = Quantity("amplitude", "m", "of the 1x motion along the force")
+AMPLITUDE = Quantity("amplitude", "m", "of the 1x motion along the force", attribute=ORBIT_MAJOR.attribute)
 # At rest, under the constant loads.
 KXX = Quantity("kxx", "N/m", "axial, other motions held", "equilibrium.stiffness.0.0", "stiffness.0.0", label="tangent kxx")
 KYY = Quantity("kyy", "N/m", "radial, tilts and other motions held", "equilibrium.stiffness.1.1", "stiffness.1.1", label="tangent kyy")

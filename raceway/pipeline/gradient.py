@@ -307,12 +307,17 @@ def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) ->
     if orbit is not None:
         real, damping, stiffness, amplitude = orbit.line.tolist()
         numbers |= {K.symbol: stiffness, AMPLITUDE.symbol: amplitude}
-        if abs(damping) * orbit.solved.problem.speed > _RESOLVED * abs(real):
+        if resolved(real, damping * orbit.solved.problem.speed):
             numbers[C.symbol] = damping
     numbers |= _at_rest(equilibrium, equilibrium)
     if (follows := tilts_follow(equilibrium.stiffness, model.problem.supports.tilt)) is not None:
         numbers[KYY_TILTS_FOLLOW.symbol] = follows
     return {name: numbers[name] for name in DIFFERENTIABLE if name in numbers}
+
+
+def resolved(real: np.ndarray | float, imag: np.ndarray | float) -> np.ndarray:
+    """Whether an orbit of this Z [N/m] has a damping that is a number."""
+    return np.abs(imag) > _RESOLVED * np.abs(real)
 
 
 def described(name: str, value: float, words: dict[str, str]) -> Tables:

@@ -18,15 +18,16 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import DIFFERENTIABLE, read_in
+from raceway.out.quantities import DIFFERENTIABLE, Z_IMAG, Z_REAL, C, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradients, definitions, described, values
+from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Item, local, work_through
+from raceway.points.function import PointStatus, function
 from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import row_key, written
-from raceway.scene.changes import with_number
+from raceway.scene.changes import with_number, without
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -262,6 +263,28 @@ class Band(Answer):
         }
 
 
+def _looped(scene: Scene, paths: list[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
+    """Answers at points (n, d) as ``sampled`` gives them, from compiled loops; empty at points that these leave."""
+    outputs = [DIFFERENTIABLE[symbol].name for symbol in nominal]
+    if scene.excitation is not None:  # whatever the scene's own integrator is, samples are steady orbits
+        outputs += [Z_REAL.name, Z_IMAG.name]
+        scene = scene_from_dict(
+            {**without(scene.source, "identifier"), "integrator": {"kind": "periodic"}}, default_registry()
+        )
+    loop = function(scene, paths, outputs)
+    if loop.why_slow:
+        return [{}] * len(numbers)
+    columns = loop.looped(dict(zip(paths, numbers.T.copy(), strict=True)))
+    if C.symbol in nominal:
+        columns[C.name][~resolved(columns[Z_REAL.name], columns[Z_IMAG.name])] = np.nan
+    table = np.stack([columns[DIFFERENTIABLE[symbol].name] for symbol in nominal], axis=1)
+    fine = columns["status"] == PointStatus.COMPUTED
+    return [
+        {symbol: value for symbol, value in zip(nominal, row, strict=True) if not np.isnan(value)} if computed else {}
+        for row, computed in zip(table.tolist(), fine.tolist(), strict=True)
+    ]
+
+
 def sampled(task: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
     """Answers at some points: quantity -> number each, or the reason why there is none.
 
@@ -346,8 +369,8 @@ def band(
     tolerances : key -> text, such as {"load.axial": "±10 %", "bearing.contact_angle_deg": "±1 deg"}; or texts KEY=TEXT; none: the
         scene's table [tolerances]
     count : n, a power of 2: (d + 2) n samples for d tolerances;  seed : of the samples
-    processes : that work at a time; 0: in this one
-    kept : folder of finished samples, read and added to
+    processes : that work at a time on samples which compiled loops leave, see ``raceway.function``; 0: in this one
+    kept : folder of finished samples of those, read and added to
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
     plugins : files of one-off plug-ins that the scene uses
 
@@ -379,13 +402,17 @@ def band(
     low, high = (np.array([getattr(tolerance, end) for tolerance in varied]) for end in ("low", "high"))
     numbers = low + design(count, len(varied), seed) * (high - low)
     paths = [tolerance.key.path for tolerance in varied]
-    key = row_key(read, registry, f"band {paths} {low.tolist()} {high.tolist()} {count} {seed}")
-    chunks = [numbers[k : k + _CHUNK] for k in range(0, len(numbers), _CHUNK)]
-    items = [Item(f"{key} {k}", "samples", (read.source, paths, chunk.tolist())) for k, chunk in enumerate(chunks)]
+    rows = _looped(read, paths, numbers, nominal)
+    left = [k for k, row in enumerate(rows) if not row]
+    chunks = [numbers[left[k : k + _CHUNK]].tolist() for k in range(0, len(left), _CHUNK)]
+    items = [
+        Item(row_key(read, registry, f"band {paths} {chunk}"), "samples", (read.source, paths, chunk)) for chunk in chunks
+    ]
     files = [Path(file) for file in plugins]
     with telling(progress) as report, written(kept) as store:
         chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
-    rows = [row for chunk in chunk_rows for row in chunk["rows"]]
+    for k, row in zip(left, (row for chunk in chunk_rows for row in chunk["rows"]), strict=True):
+        rows[k] = row
     return _summary(read.title, tuple(varied), nominal, words, rows, len(varied))
 
 

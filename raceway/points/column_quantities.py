@@ -13,7 +13,7 @@ from raceway.bodies.columns import ColumnBearing
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
-from raceway.out.quantities import COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
+from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
 from raceway.pipeline.result import Result
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     "frequency": lambda c: c.speed / (2.0 * np.pi),
     "forward_amplitude": lambda c: c.parts[0],
     "backward_amplitude": lambda c: c.parts[1],
-    "orbit_major": lambda c: c.parts[0] + c.parts[1],
+    **dict.fromkeys(("orbit_major", AMPLITUDE.name), lambda c: c.parts[0] + c.parts[1]),
     "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
     "axial_displacement": lambda c: c.orbits.mean[:, 0],  # type: ignore[union-attr]
     "error_total": lambda c: c.orbits.error,  # type: ignore[union-attr]

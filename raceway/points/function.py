@@ -192,6 +192,11 @@ class Function:
         if self.why_slow:
             self._refuse_time(n, self.why_slow)
             return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
+        return self._completed(flat, self.looped(flat))
+
+    def looped(self, flat: Mapping[str, np.ndarray]) -> Columns:
+        """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
+        n = len(next(iter(flat.values())))
         size = _MOVING if self.moving else _STATIC
         blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
         answers: list[Columns] = [{}] * len(blocks)
@@ -201,7 +206,7 @@ class Function:
 
         with ThreadPool(min(self.threads, len(blocks))) as pool:
             pool.do(len(blocks), job)
-        return self._completed(flat, _joined(answers, self.outputs))
+        return _joined(answers, self.outputs)
 
     def scene_at(self, point: Mapping[str, float]) -> Scene:
         """The scene at one point, every rule looked at.
