@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, ClassVar
@@ -24,7 +24,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
 from raceway.planning.plan import make_plan
 from raceway.points.engine import Item, local, work_through
-from raceway.points.function import PointStatus, function
+from raceway.points.function import function
 from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import row_key, written
 from raceway.scene.changes import with_number, without
@@ -263,14 +263,13 @@ class Band(Answer):
         }
 
 
-def _looped(scene: Scene, paths: list[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
+def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
     """Answers at points (n, d) as ``sampled`` gives them, from compiled loops; empty at points that these leave."""
     outputs = [DIFFERENTIABLE[symbol].name for symbol in nominal]
     if scene.excitation is not None:  # whatever the scene's own integrator is, samples are steady orbits
         outputs += [Z_REAL.name, Z_IMAG.name]
-        scene = scene_from_dict(
-            {**without(scene.source, "identifier"), "integrator": {"kind": "periodic"}}, default_registry()
-        )
+        tables = {**without(scene.source, "identifier"), "integrator": {"kind": "periodic"}}
+        scene = scene_from_dict(tables, default_registry())
     loop = function(scene, paths, outputs)
     if loop.why_slow:
         return [{}] * len(numbers)
@@ -278,14 +277,10 @@ def _looped(scene: Scene, paths: list[str], numbers: np.ndarray, nominal: Mappin
     if C.symbol in nominal:
         columns[C.name][~resolved(columns[Z_REAL.name], columns[Z_IMAG.name])] = np.nan
     table = np.stack([columns[DIFFERENTIABLE[symbol].name] for symbol in nominal], axis=1)
-    fine = columns["status"] == PointStatus.COMPUTED
-    return [
-        {symbol: value for symbol, value in zip(nominal, row, strict=True) if not np.isnan(value)} if computed else {}
-        for row, computed in zip(table.tolist(), fine.tolist(), strict=True)
-    ]
+    return [{symbol: x for symbol, x in zip(nominal, row, strict=True) if not np.isnan(x)} for row in table.tolist()]
 
 
-def sampled(task: tuple[Tables, list[str], list[list[float]]], registry: Registry) -> Tables:
+def sampled(task: tuple[Tables, Sequence[str], list[list[float]]], registry: Registry) -> Tables:
     """Answers at some points: quantity -> number each, or the reason why there is none.
 
     A worker reads the scene itself: classes of one-off plug-ins can not be sent to it.
@@ -295,7 +290,7 @@ def sampled(task: tuple[Tables, list[str], list[list[float]]], registry: Registr
     return {"rows": [_row(scene, paths, point) for point in points]}
 
 
-def _row(scene: Scene, paths: list[str], point: list[float]) -> Tables:
+def _row(scene: Scene, paths: Sequence[str], point: list[float]) -> Tables:
     try:
         for path, value in zip(paths, point, strict=True):
             scene = with_number(scene, path, value)
@@ -399,21 +394,17 @@ def band(
         )
     varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _answer(read)
-    low, high = (np.array([getattr(tolerance, end) for tolerance in varied]) for end in ("low", "high"))
-    numbers = low + design(count, len(varied), seed) * (high - low)
-    paths = [tolerance.key.path for tolerance in varied]
+    paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in varied), strict=True)
+    numbers = np.array(low) + design(count, len(varied), seed) * np.subtract(high, low)
     rows = _looped(read, paths, numbers, nominal)
-    left = [k for k, row in enumerate(rows) if not row]
-    chunks = [numbers[left[k : k + _CHUNK]].tolist() for k in range(0, len(left), _CHUNK)]
-    items = [
-        Item(row_key(read, registry, f"band {paths} {chunk}"), "samples", (read.source, paths, chunk)) for chunk in chunks
-    ]
+    left = numbers[[not row for row in rows]]
+    tasks = [(read.source, paths, left[k : k + _CHUNK].tolist()) for k in range(0, len(left), _CHUNK)]
+    items = [Item(row_key(read, registry, f"band {task[1:]}"), "samples", task) for task in tasks]
     files = [Path(file) for file in plugins]
     with telling(progress) as report, written(kept) as store:
         chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
-    for k, row in zip(left, (row for chunk in chunk_rows for row in chunk["rows"]), strict=True):
-        rows[k] = row
-    return _summary(read.title, tuple(varied), nominal, words, rows, len(varied))
+    single = (row for chunk in chunk_rows for row in chunk["rows"])
+    return _summary(read.title, varied, nominal, words, [row or next(single) for row in rows], len(varied))
 
 
 @door

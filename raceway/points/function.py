@@ -196,8 +196,7 @@ class Function:
 
     def looped(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
-        n = len(next(iter(flat.values())))
-        size = _MOVING if self.moving else _STATIC
+        n, size = len(next(iter(flat.values()))), _MOVING if self.moving else _STATIC
         blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
         answers: list[Columns] = [{}] * len(blocks)
 
