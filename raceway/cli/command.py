@@ -172,9 +172,9 @@ class Command(NamedTuple):
             type=click.Choice(about.choices) if about.choices else _TYPES.get(kind, str),
             metavar=about.metavar,
             required=empty,
-            default=None if empty else default,
             show_default=not empty and default is not None,
             help=text,
+            **({} if empty else {"default": default}),  # None by name is a value to click, also of what is required
         )
 
 
@@ -187,8 +187,8 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
 def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
     required = parameter.default is inspect.Parameter.empty
     kind = PATH if "Path" in str(parameter.annotation) else None
-    default = None if required else parameter.default
-    return click.argument(parameter.name, type=kind, required=required, default=default, metavar=metavar)
+    default = {} if required else {"default": parameter.default}
+    return click.argument(parameter.name, type=kind, required=required, metavar=metavar, **default)
 
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:

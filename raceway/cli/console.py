@@ -58,7 +58,7 @@ class Commands(click.Group):
             raise _Stopped from stop
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
-        known = self.list_commands(ctx)
+        known = [name for name in self.list_commands(ctx) if " " not in name]
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             raise click.UsageError(f"no command '{args[0]}'{nearest(args[0], known)}; commands: {', '.join(known)}", ctx)
         return super().resolve_command(ctx, args)

@@ -390,7 +390,7 @@ def band(
     read = as_scene(scene, plugins=plugins)
     if count < 2 or count & (count - 1):
         raise SceneError.at(
-            "count", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
+            "samples", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
     varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _answer(read)
