@@ -75,27 +75,35 @@ def sources(tree: Path = ROOT) -> list[Source]:
 
 
 def measures(modules: list[Source]) -> Measures:
-    """The numbers of the package, and lines and files of each folder at its top."""
+    """The numbers of the package and, the first four of them, of each folder at its top."""
     nodes = [node for module in modules for node in ast.walk(module.tree)]
-    bound = Counter(name for node in nodes if (name := _bound(node)) and name not in _HIDDEN)
     functions = [node for node in nodes if isinstance(node, Function)]
     top = [node for module in modules for node in module.tree.body]
-    package: dict[str, float] = {
-        "lines": sum(module.lines for module in modules),
-        "files": len(modules),
-        "public_names": sum(isinstance(node, ast.ClassDef | Function) and not node.name.startswith("_") for node in top),
+    package = {
+        **_numbers(modules),
         "public_constants": sum(not name.startswith("_") for node in top for name in _assigned(node)),
-        "vague_percent": round(100.0 * sum(bound[name] for name in VAGUE) / max(bound.total(), 1), 2),
         "functions_over_60_lines": sum((node.end_lineno or 0) - node.lineno >= _LONG for node in functions),
         "functions_over_7_arguments": sum(_arguments(node) > _MANY for node in functions),
         "any": sum(isinstance(node, ast.Name) and node.id == "Any" for node in nodes),
         "files_with_equivalent_stiffness": sum("equivalent_stiffness" in module.text for module in modules),
     }
-    folders = {}
-    for name in sorted({module.folder for module in modules}):
-        inside = [module.lines for module in modules if module.folder == name]
-        folders[name or "beside the folders"] = {"lines": float(sum(inside)), "files": float(len(inside))}
+    folders = {
+        name or "beside the folders": _numbers([module for module in modules if module.folder == name])
+        for name in sorted({module.folder for module in modules})
+    }
     return {"package": package, **folders}
+
+
+def _numbers(modules: list[Source]) -> dict[str, float]:
+    """Lines, files, public names and percent of vague names of some modules."""
+    names = (name for module in modules for node in ast.walk(module.tree) if (name := _bound(node)) and name not in _HIDDEN)
+    bound, top = Counter(names), [node for module in modules for node in module.tree.body]
+    return {
+        "lines": sum(module.lines for module in modules),
+        "files": len(modules),
+        "public_names": sum(isinstance(node, ast.ClassDef | Function) and not node.name.startswith("_") for node in top),
+        "vague_percent": round(100.0 * sum(bound[name] for name in VAGUE) / max(bound.total(), 1), 2),
+    }
 
 
 def _bound(node: ast.AST) -> str:
