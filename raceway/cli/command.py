@@ -167,6 +167,9 @@ class Command(NamedTuple):
             several = f"{text.removesuffix('.')}; repeat for more."
             return click.option(*flags, multiple=True, required=required, metavar=about.metavar, help=several)
         empty = default is inspect.Parameter.empty
+        start: dict[str, Any] = (
+            {} if empty else {"default": default}
+        )  # None too is a value to click, also of what is required
         return click.option(
             *flags,
             type=click.Choice(about.choices) if about.choices else _TYPES.get(kind, str),
@@ -174,7 +177,7 @@ class Command(NamedTuple):
             required=empty,
             show_default=not empty and default is not None,
             help=text,
-            **({} if empty else {"default": default}),  # None by name is a value to click, also of what is required
+            **start,
         )
 
 
@@ -187,7 +190,7 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
 def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
     required = parameter.default is inspect.Parameter.empty
     kind = PATH if "Path" in str(parameter.annotation) else None
-    default = {} if required else {"default": parameter.default}
+    default: dict[str, Any] = {} if required else {"default": parameter.default}
     return click.argument(parameter.name, type=kind, required=required, metavar=metavar, **default)
 
 
