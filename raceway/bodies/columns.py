@@ -28,6 +28,7 @@ from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import with_column
+from raceway.scene.growth import groove_edge
 from raceway.scene.scene import Scene
 
 #: Continuous keys whose numbers may be columns; beside them those of the excitation.
@@ -114,9 +115,8 @@ def conspicuous(problem: Problem) -> np.ndarray:
     wrong |= False if b.outer_diameter is None else b.outer_diameter <= dm + d
     wrong |= False if b.shoulder_height is None else b.shoulder_height >= 0.5 * d
     wrong |= False if b.radial_clearance is None else b.radial_clearance >= 2.0 * distance
-    rows = range(len(b.rows))
-    edge = np.arccos(1.0 - (b.shoulder_height or 0.2 * d) / (0.5 * d))
-    for row in rows:
+    edge = groove_edge(b)
+    for row in range(len(b.rows)):
         room, radial = problem.running.centre_distance(row)
         wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
     loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
@@ -151,12 +151,15 @@ class ColumnBearing:
         states.status[self.faults != 0] = self.faults[self.faults != 0]
         return states
 
-    def orbits(self, states: States, excitations: Sequence[Excitation], which: np.ndarray, tolerance: float) -> Orbits:
+    def orbits(
+        self, states: States, excitations: Sequence[Excitation], which: np.ndarray, speed: np.ndarray, tolerance: float
+    ) -> Orbits:
         """The steady orbit of each point about its equilibrium.
 
         Parameters
         ----------
-        excitations : periodic ones;  which : (n,) the one that acts at each point;  tolerance : of the 1x line, relative
+        excitations : periodic ones;  which : (n,) the one that acts at each point;  speed : (n,) its [rad/s]
+        tolerance : of the 1x line, relative
         """
         z, n, inertia = self.points.table.shape[1], len(which), self.problem.inertia
         out = _empty_orbits(n)
@@ -164,18 +167,14 @@ class ColumnBearing:
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
         params = np.array([force_params(excitation) for excitation in excitations])[which]
-        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in excitations])[which]
         force = address_of(plugin_kernel(excitations[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
             if not len(chosen):
                 continue
-            symmetry = (
-                None
-                if across[chosen[0]]
-                else one_pitch(self._system(chosen[0], turning), speed[chosen[0]], states.q[chosen[0]])
-            )
+            first = chosen[0]
+            symmetry = None if across[first] else one_pitch(self._system(first, turning), speed[first], states.q[first])
             if symmetry is not None:
                 sense = float(np.sign(symmetry.angle))
                 turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)

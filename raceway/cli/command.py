@@ -167,9 +167,8 @@ class Command(NamedTuple):
             several = f"{text.removesuffix('.')}; repeat for more."
             return click.option(*flags, multiple=True, required=required, metavar=about.metavar, help=several)
         empty = default is inspect.Parameter.empty
-        start: dict[str, Any] = (
-            {} if empty else {"default": default}
-        )  # None too is a value to click, also of what is required
+        # None too is a value to click, also of what is required.
+        start: dict[str, Any] = {} if empty else {"default": default}
         return click.option(
             *flags,
             type=click.Choice(about.choices) if about.choices else _TYPES.get(kind, str),

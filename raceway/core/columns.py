@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import attrs
 
-T = TypeVar("T")
+T = TypeVar("T", bound=attrs.AttrsInstance)
 #: A number, or a column of them.
 Number = Any
 
@@ -44,18 +44,22 @@ some = _either(bool, "any")
 where = _either(lambda condition, value, other: value if condition else other, "where")
 
 
-def has_columns(part: Any) -> bool:
+def _values(part: attrs.AttrsInstance) -> dict[str, Any]:
+    """What stands in a table, by the names of its keys."""
+    return {field.name: getattr(part, field.name) for field in attrs.fields(type(part))}
+
+
+def has_columns(part: attrs.AttrsInstance) -> bool:
     """Whether any number of a table, or of a table in it, is a column."""
-    values = (getattr(part, field.name) for field in attrs.fields(type(part)))
-    return any(is_column(value) or (attrs.has(type(value)) and has_columns(value)) for value in values)
+    return length(part) > 0
 
 
 def with_columns(part: T, **changes: object) -> T:
     """A copy of a table with other values, which no rule of the table looks at: columns obey them point by point."""
     kind: Any = type(part)
     copy = object.__new__(kind)
-    for field in attrs.fields(kind):
-        object.__setattr__(copy, field.name, changes.get(field.name, getattr(part, field.name)))
+    for name, value in (_values(part) | changes).items():
+        object.__setattr__(copy, name, value)
     return copy
 
 
@@ -66,14 +70,14 @@ def per_ball(value: Number) -> Number:
 
 def at_row(part: T, row: int) -> T:
     """A table with the numbers of one point."""
-    values = {field.name: getattr(part, field.name) for field in attrs.fields(type(part))}  # type: ignore[arg-type]
+    values = _values(part)
     numbers = {name: float(value[row]) for name, value in values.items() if is_column(value)}
     tables = {name: at_row(value, row) for name, value in values.items() if attrs.has(type(value)) and has_columns(value)}
     return with_columns(part, **numbers, **tables)
 
 
-def length(part: Any) -> int:
-    """Points of a table that has columns."""
-    values = [getattr(part, field.name) for field in attrs.fields(type(part))]
+def length(part: attrs.AttrsInstance) -> int:
+    """Points of a table that has columns, or tables with them; 0 of one that has none."""
+    values = _values(part).values()
     sizes = (len(value) if is_column(value) else length(value) if attrs.has(type(value)) else 0 for value in values)
-    return max(sizes, default=0)
+    return next((size for size in sizes if size), 0)

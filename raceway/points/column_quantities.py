@@ -49,7 +49,7 @@ class Computed:
             return cls(bearing, states, None, np.zeros(0))
         several, which = excitations()
         speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
-        return cls(bearing, states, bearing.orbits(states, several, which, tolerance), speed)
+        return cls(bearing, states, bearing.orbits(states, several, which, speed, tolerance), speed)
 
     @cached_property
     def fine(self) -> np.ndarray:
@@ -69,9 +69,14 @@ class Computed:
         """(n, 5) 1x line of the force."""
         return self._complex("force")
 
+    @property
+    def motion(self) -> Orbits:
+        """The orbits of a motion that was asked for."""
+        assert self.orbits is not None, "quantities of a motion make one be asked for"
+        return self.orbits
+
     def _complex(self, name: str) -> np.ndarray:
-        assert self.orbits is not None, "a motion was asked for"
-        parts = getattr(self.orbits, name)
+        parts = getattr(self.motion, name)
         return np.asarray(parts[:, :5] + 1j * parts[:, 5:])
 
     @cached_property
@@ -146,8 +151,8 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     "backward_amplitude": lambda c: c.parts[1],
     **dict.fromkeys(("orbit_major", AMPLITUDE.name), lambda c: c.parts[0] + c.parts[1]),
     "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
-    "axial_displacement": lambda c: c.orbits.mean[:, 0],  # type: ignore[union-attr]
-    "error_total": lambda c: c.orbits.error,  # type: ignore[union-attr]
+    "axial_displacement": lambda c: c.motion.mean[:, 0],
+    "error_total": lambda c: c.motion.error,
 }
 #: Quantities of a motion, those of loads along one, and all that a function has.
 MOVING, LOADED = frozenset(_MOVING), frozenset(_LOADED)

@@ -48,7 +48,7 @@ _LIMIT_S = 120.0
 #: Share of the memory that is free which inputs and outputs may take.
 _MEMORY = 0.8
 #: Rows without the reason of a run of their own, which is asked for a few only.
-_REASONS = 200
+_REASONS, _REFUSED = 200, "a rule of the scene refuses its numbers"
 #: Relative step of differences, of fourth order.
 _STEP = 1e-3
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative.
@@ -161,9 +161,9 @@ class Function:
 
         Notes
         -----
-        Differences of fourth order, central where a key's rule lets them be, all of them columns of one computation: with steps h of a thousandth of a number they are
-        off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0 everywhere the
-        steps are 1e-3 of its unit, 1e-9 m of lengths.
+        Differences of fourth order, central where a key's rule lets them be, all of them columns of one computation: with steps h of a
+        thousandth of a number they are off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0
+        everywhere the steps are 1e-3 of its unit, 1e-9 m of lengths.
         """
         shape, flat = self._flat(self._named(columns, by_name))
         units = {key.path: key.unit for key in continuous_keys(self.scene)}
@@ -217,7 +217,7 @@ class Function:
         """
         scene = self.scene
         for key, number in point.items():
-            scene = with_column(scene, key, float(number))  # type: ignore[arg-type]
+            scene = with_column(scene, key, float(number))
         return scene_from_dict(scene.to_dict(), default_registry())
 
     def _named(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
@@ -306,9 +306,8 @@ class Function:
             if len(fit) and not all(self._allowed(key, float(end)) for end in (fit.min(), fit.max())):
                 # Rules are intervals: a few numbers beyond them are looked at one by one.
                 numbers, place = np.unique(column, return_inverse=True)
-                refused |= ~np.array([np.isfinite(number) and self._allowed(key, float(number)) for number in numbers])[
-                    place
-                ]
+                allowed = [np.isfinite(number) and self._allowed(key, float(number)) for number in numbers]
+                refused |= ~np.array(allowed)[place]
         return refused
 
     def _allowed(self, key: str, number: float) -> bool:
@@ -323,7 +322,7 @@ class Function:
         """That of the first row which no rule refuses, once for points whose balls turn, once for the others: it decides about parts."""
         for row in rows[:5] if turning not in self._plans else ():
             with suppress(RacewayError):
-                self._plans[turning] = make_plan(self.scene_at({key: column[row] for key, column in columns.items()}))
+                self._plans[turning] = make_plan(self._scene_of(columns, row))
                 break
         return self._plans.get(turning)
 
@@ -349,29 +348,33 @@ class Function:
 
     def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """With runs of the points that the loop has left."""
-        left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
-        refused = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
-        for row in refused:
-            answer["reason"][row] = (
-                self._reason(flat, int(row)) if row in refused[:_REASONS] else "a rule of the scene refuses its numbers"
-            )
-        if len(left) and not self.force and self._seconds(len(left)) > _LIMIT_S:
+        left, refused = (np.flatnonzero(answer["status"] == how) for how in (PointStatus.FAILED, PointStatus.REFUSED))
+        answer["reason"][refused] = _REFUSED
+        for row in refused[:_REASONS]:
+            answer["reason"][row] = self._reason(flat, int(row))
+        seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
+        if seconds > _LIMIT_S:
             answer["reason"][left] = (
                 f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
-                f"{self._seconds(len(left)):.3g} s: they are made with force = True"
+                f"{seconds:.3g} s: they are made with force = True"
             )
             return answer
         return self._run_all(flat, left, answer)
 
-    def _reason(self, flat: Mapping[str, np.ndarray], row: int) -> str:
+    def _scene_of(self, flat: Mapping[str, np.ndarray], row: int) -> Scene:
+        """The scene of one row; ``SceneError`` of what is no number, too."""
         point = {key: float(column[row]) for key, column in flat.items()}
-        if strange := [key for key, number in point.items() if not np.isfinite(number)]:
-            return f"{strange[0]} is {point[strange[0]]}, no number"
+        for key, number in point.items():
+            if not np.isfinite(number):
+                raise SceneError.at(key, number, "is no number")
+        return self.scene_at(point)
+
+    def _reason(self, flat: Mapping[str, np.ndarray], row: int) -> str:
         try:
-            make_plan(self.scene_at(point))
+            make_plan(self._scene_of(flat, row))
         except RacewayError as why:
             return str(why)
-        return "a rule of the scene refuses its numbers"
+        return _REFUSED
 
     def _run_all(self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: Columns) -> Columns:
         """Runs of some rows, their values put into the answer."""
@@ -380,15 +383,10 @@ class Function:
         answer.setdefault("reason", np.full(n, "", dtype=object))
         for row in rows:
             try:
-                point = {key: float(column[row]) for key, column in flat.items()}
-                if strange := [key for key, number in point.items() if not np.isfinite(number)]:
-                    raise SceneError.at(strange[0], point[strange[0]], "is no number")
-                result = run(self.scene_at(point))
-            except SceneError as why:
-                answer["status"][row], answer["reason"][row] = PointStatus.REFUSED, str(why)
-                continue
+                result = run(self._scene_of(flat, row))
             except RacewayError as why:
-                answer["status"][row], answer["reason"][row] = PointStatus.FAILED, str(why)
+                answer["status"][row] = PointStatus.REFUSED if isinstance(why, SceneError) else PointStatus.FAILED
+                answer["reason"][row] = str(why)
                 continue
             answer["status"][row] = PointStatus.RUN
             for name in self.outputs:

@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
-from raceway.core.columns import with_columns
+from raceway.core.columns import Number, with_columns
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.tables import TABLES
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.scene.scene import Scene
 
 
@@ -163,7 +161,7 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     return changed
 
 
-def with_column(scene: Scene, path: str, column: np.ndarray) -> Scene:
+def with_column(scene: Scene, path: str, column: Number) -> Scene:
     """The scene with a column (n,) at a continuous key, which no rule looks at: one scene of n operating points."""
     changed: Scene = _replaced(scene, _steps(path), column, with_columns)
     return changed
