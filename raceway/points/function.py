@@ -9,7 +9,7 @@ from contextlib import suppress
 from enum import IntEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -27,6 +27,7 @@ from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, LOADED, MOVING, QUANTITIES, Computed, of_result
+from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import continuous_keys, key_of, with_column, with_number
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
@@ -38,9 +39,6 @@ if TYPE_CHECKING:
 
     from raceway.framework.contracts import Excitation
 
-#: Values by the names of outputs.
-Columns: TypeAlias = dict[str, np.ndarray]
-
 #: Points of a block: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the cache of the second level.
 _STATIC, _MOVING = 8192, 2048
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
@@ -49,13 +47,6 @@ _LIMIT_S = 120.0
 _MEMORY = 0.8
 #: Rows without the reason of a run of their own, which is asked for a few only.
 _REASONS, _REFUSED = 200, "a rule of the scene refuses its numbers"
-#: Relative step of differences, of fourth order.
-_STEP = 1e-3
-#: Weights of values at shifts by so many steps: their sum over the step is the derivative.
-_CENTRAL = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
-_FORWARD = {0: -25.0 / 12.0, 1: 4.0, 2: -3.0, 3: 4.0 / 3.0, 4: -0.25}
-#: What numbers that are 0 are taken for in such a step, by their units; 1 otherwise.
-_LEAST = {"m": 1e-6}
 
 
 class PointStatus(IntEnum):
@@ -167,24 +158,11 @@ class Function:
         """
         shape, flat = self._flat(self._named(columns, by_name))
         units = {key.path: key.unit for key in continuous_keys(self.scene)}
-        stencils, steps = {}, {}
-        for key, value in flat.items():
-            size, least = np.abs(value), _LEAST.get(units[key], 1.0)
-            steps[key] = _STEP * np.where(size > 0.0, size, size.max() or least)
-            stencils[key] = _CENTRAL if self._allowed(key, float((value - 2.0 * steps[key]).min())) else _FORWARD
-        moved = {
-            key: np.concatenate([value + steps[key] * shift * (other == key) for other in flat for shift in stencils[other]])
-            for key, value in flat.items()
+        slopes = jacobian(self.columns, self._allowed, flat, units, self.outputs)
+        return {
+            name: {key: slope.reshape((*shape, *slope.shape[1:])) for key, slope in by_key.items()}
+            for name, by_key in slopes.items()
         }
-        answer, out = self.columns(moved), dict[str, Columns]()
-        for name in self.outputs:
-            parts, first = answer[name].reshape((-1, len(size), *answer[name].shape[1:])), 0
-            out[name] = {}
-            for key, stencil in stencils.items():
-                slope = np.tensordot(list(stencil.values()), parts[first : first + len(stencil)], axes=1)
-                out[name][key] = (slope.T / steps[key]).T.reshape((*shape, *answer[name].shape[1:]))
-                first += len(stencil)
-        return out
 
     def columns(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""
