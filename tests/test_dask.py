@@ -37,7 +37,7 @@ def cluster(tmp_path_factory, plugin):
 
 @pytest.mark.slow
 def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(cluster, tmp_path):
-    """Same bits as in one process: every worker runs the same chains of points with the same kernels."""
+    """Same bits as in one process: every worker runs its points with the same kernels."""
     alone = fill_store(prepared(tmp_path / "serial"), Serial())  # first, so that kernels are compiled once
     killed = []
 

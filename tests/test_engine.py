@@ -6,7 +6,7 @@ from contextlib import closing
 
 import pytest
 
-from raceway import RacewayError, SceneError, scene_from_dict
+from raceway import RacewayError
 from raceway.plugins.processes import Processes, Serial
 from raceway.points.engine import Item, work_through
 from raceway.points.store import written
@@ -82,14 +82,3 @@ def test_damaged_rows_of_a_study_are_computed_again(tmp_path):
         assert work_through(squared, ITEMS, store, Serial(), REGISTRY) == (rows, 5)
     with written(tmp_path), pytest.raises(RacewayError, match="is being written by another process"), written(tmp_path):
         pass
-
-
-def test_parts_of_scenes_are_shared_by_what_they_say_and_not_by_what_is_equal():
-    tables, parts = {"bearing": {"preset": "B7206C"}, "integrator": {"turns": 1}}, {}
-    first = scene_from_dict(tables, REGISTRY, parts)
-    second = scene_from_dict({**tables, "load": {"axial": 400.0}}, REGISTRY, parts)
-    assert second.bearing is first.bearing and second.integrator is first.integrator
-    assert (first.load.axial, second.load.axial) == (0.0, 400.0)
-    for turns in (1.0, True):
-        with pytest.raises(SceneError, match="whole number"):
-            scene_from_dict({**tables, "integrator": {"turns": turns}}, REGISTRY, parts)

@@ -27,7 +27,7 @@ from raceway.points.axes import Design, design_file, grid, parse_axes, point_lis
 from raceway.points.dataset import open_store, values_of
 from raceway.points.engine import Work
 from raceway.points.store import facts_digest, written
-from raceway.points.sweep import Chain, prepare
+from raceway.points.sweep import Point, prepare
 from raceway.points.sweep import fill_store as study
 from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry, run
@@ -42,8 +42,6 @@ SCENE: dict[str, Any] = {
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5},
     "integrator": {"kind": "periodic"},
 }
-#: Tolerance of the periodic motion, and what Newton's iteration leaves of it: its last correction is far below.
-PERIODIC = 1e-9
 
 
 def rows_of(path):
@@ -75,17 +73,11 @@ class Stopping(Serial):
             yield answer
 
 
-def test_a_grid_is_numbered_like_its_product_and_cut_into_chains_of_neighbours():
+def test_a_grid_is_numbered_like_its_product():
     texts = ["load.axial=400,800", "excitation.speed_rpm=1000:9000:9", "supports.tilt=locked,free"]
     design = grid(texts)
     assert list(design.points()) == list(points(parse_axes(texts)))
-    chains = list(design.chains(4))
-    assert sorted(n for chain in chains for n in chain) == list(range(design.size))
-    for chain in chains:
-        alike = {(design.point(n)["load.axial"], design.point(n)["supports.tilt"]) for n in chain}
-        assert len(alike) == 1 and len(chain) <= 4
     assert Design.from_dict(json.loads(json.dumps(design.to_dict()))) == design
-    assert list(grid(["a.b=x,y"]).chains(4)) == [[0, 1]]
 
 
 def test_lists_and_design_files(tmp_path):
@@ -183,35 +175,16 @@ def test_a_static_scene_and_a_list_have_what_they_have(tmp_path):
     assert float(data["displacement"].sel(dof="x")[1]) > float(data["displacement"].sel(dof="x")[0]) > 0.0
 
 
-@pytest.mark.parametrize(
-    ("speeds", "force"), [((10980.0, 15000.0), 400.0), ((60000.0, 120000.0), 20.0)], ids=["article", "resonance"]
-)
-def test_continuation_saves_work_and_changes_nothing(speeds, force):
-    """Also through a resonance of the ring, where the nonlinear part is carried over only as long as it is small."""
-    excitation = {"kind": "bidirectional", "amplitude": "constant", "force": force, "speed_rpm": 1.0}
-    tables = {**SCENE, "kinematics": {"ball_inertia": False}, "excitation": excitation}
-    registry, before, work = default_registry(), None, [0, 0]
-    for speed in np.linspace(*speeds, 25):
-        scene = scene_from_dict(tables_at(tables, {"excitation.speed_rpm": float(speed)}, registry), registry)
-        cold, warm = run(scene, registry), run(scene, registry, near=before)
-        z, other = cold.identification.dynamic_stiffness, warm.identification.dynamic_stiffness
-        assert abs(other - z) <= PERIODIC * abs(z)
-        work[0] += cold.cost["newton_iterations"]
-        work[1] += warm.cost["newton_iterations"]
-        before = warm
-    assert work[1] < work[0]
-
-
 def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
-    design = grid(["excitation.speed_rpm=10980:15000:32"])  # chains of 2
+    design = grid(["excitation.speed_rpm=10980:15000:32"])
     whole = swept(tmp_path / "whole", design)
     with pytest.raises(KeyboardInterrupt):
         swept(tmp_path / "s", design, Stopping())
     with open_store(tmp_path / "s") as store:
         states = store.status()
-    assert states == {"waiting": 26, "done": 6, "failed": 0, "total": 32}
+    assert states == {"waiting": 29, "done": 3, "failed": 0, "total": 32}
 
-    with pytest.raises(RacewayError, match=r"6 of 32 points done: go on with --resume"):
+    with pytest.raises(RacewayError, match=r"3 of 32 points done: go on with --resume"):
         prepare(SCENE, design, tmp_path / "s")
     assert swept(tmp_path / "s", design, Stopping(after=100), resume=True) == whole
 
@@ -275,15 +248,6 @@ def test_a_damaged_row_is_computed_again(statement, damaged, tmp_path):
         read = [row for row in store.rows() if row["status"] == "done"]
     assert len(read) == 4 - len(damaged), "nothing that is damaged is read as a value"
     with pytest.warns(UserWarning, match=f"{len(damaged)} rows of the store are damaged"):
-        assert swept(tmp_path / "s", design, resume=True) == whole
-
-
-def test_a_damaged_row_inside_a_chain_of_neighbours_has_the_same_bits_again(tmp_path):
-    """Computed alone it would begin from the equilibrium, not from its neighbour's motion."""
-    design = grid(["excitation.speed_rpm=10980:15000:48"])
-    whole = swept(tmp_path / "s", design)
-    altered(tmp_path, "UPDATE points SET content = replace(content, '1', '2') WHERE key % 3 = 1")
-    with pytest.warns(UserWarning, match="16 rows of the store are damaged"):
         assert swept(tmp_path / "s", design, resume=True) == whole
 
 
@@ -447,7 +411,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
         ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
         ({"program": "y"}, "under the same version"),
     ):  # fmt: skip
-        answer = Work(Chain(SCENE), (), {**wanted, **changed})([[(0, {"load.axial": 500.0})]])
+        answer = Work(Point(SCENE), (), {**wanted, **changed})([(0, {"load.axial": 500.0})])
         assert isinstance(answer, Refused) and words in answer.reason
 
     class Elsewhere(Serial):

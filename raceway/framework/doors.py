@@ -123,7 +123,7 @@ _READERS: dict[str, Reader] = {
             "a mapping of column headers to names, text both",
             lambda v: {_TEXT[1](one): _TEXT[1](name) for one, name in v.items()},
         ),
-        "tables known_parts": _reader("a mapping, such as a dict", _is(Mapping)),
+        "tables": _reader("a mapping, such as a dict", _is(Mapping)),
         "ratings": ("a mapping of angles to (C, C0)", lambda v: {float(angle): (c, c0) for angle, (c, c0) in v.items()}),
         "pairs": ("triples (angle, preload, stiffness)", lambda v: [(float(angle), load, k) for angle, load, k in v]),
         "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),

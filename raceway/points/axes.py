@@ -320,28 +320,6 @@ class Design:
     def points(self) -> Iterator[Tables]:
         return (self.point(number) for number in range(self.size))
 
-    def chains(self, length: int) -> Iterator[list[int]]:
-        """Numbers of points, cut into chains of neighbours of at most ``length``.
-
-        Notes
-        -----
-        Chains run along the axis of numbers with the most values, so that a point differs least from the one before.
-        They depend on the design alone: a sweep that is resumed computes the same ones.
-        """
-        along = self._along()
-        sizes = self.shape
-        strides = [math.prod(sizes[k + 1 :]) for k in range(len(sizes))]
-        ranges = [range(size) if k != along else range(1) for k, size in enumerate(sizes)]
-        for start_indices in itertools.product(*ranges):
-            first = sum(i * stride for i, stride in zip(start_indices, strides, strict=True))
-            for start in range(0, sizes[along], length):
-                yield [first + strides[along] * k for k in range(start, min(start + length, sizes[along]))]
-
-    def _along(self) -> int:
-        if not self.axes:
-            return 0
-        return max(range(len(self.axes)), key=lambda k: (self.axes[k].numeric, len(self.axes[k].values), k))
-
     def to_dict(self) -> Tables:
         if self.axes:
             return {"axes": [axis.to_dict() for axis in self.axes]}

@@ -102,7 +102,7 @@ class Work:
     registry : in the process that the work was made in; others have one of their own
     """
 
-    function: Callable[[Any, Registry], Tables | list[Row]]
+    function: Callable[[Any, Registry], Tables | Row]
     plugins: tuple[str, ...] = ()
     required: Tables | None = None
     registry: Registry | None = None
@@ -123,7 +123,7 @@ class Work:
                 _FAULTS[mark] = str(why)
         return _FAULTS[mark]
 
-    def __call__(self, tasks: list[object]) -> list[Tables | list[Row]] | Refused:
+    def __call__(self, tasks: list[object]) -> list[Tables | Row] | Refused:
         with _ONE:
             fault = self.fault()
             if fault is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 import time
 import warnings
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,13 +13,11 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
-from raceway.framework.contracts import Batch, Lost
+from raceway.framework.contracts import Lost
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import telling
 from raceway.pipeline.simulate import OnProgress
-from raceway.planning.cost import START_S
-from raceway.planning.plan import make_plan
 from raceway.points.axes import Design, grid, in_units, listed_points, numbers_at, tables_at
 from raceway.points.dataset import SweepStore, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
@@ -35,43 +33,27 @@ if TYPE_CHECKING:
 
     from raceway.framework.contracts import Executor
     from raceway.out.progress import ShowProgress
-    from raceway.pipeline.result import Result
 
 
 @attrs.frozen
-class Chain:
-    """Callable on ``[(number, point), ...]``, neighbours of which each begins from the one before; gives their rows.
+class Point:
+    """Callable on ``(number, point)``; the row of a run, whose content is ``{"values", "warnings"}``.
 
     Attributes
     ----------
     tables : of the scene
-
-    Notes
-    -----
-    A row's content is ``{"values", "warnings"}``.
     """
 
     tables: Tables
 
-    def __call__(self, points: list[tuple[int, Tables]], registry: Registry) -> list[Row]:
-        before: Result | None = None
-        rows, parts = [], dict[Hashable, object]()
-        for number, point in points:
-            row, before = self._row(number, point, registry, before, parts)
-            rows.append(row)
-        return rows
-
-    def _row(
-        self, number: int, point: Tables, registry: Registry, before: Result | None, parts: dict[Hashable, object]
-    ) -> tuple[Row, Result | None]:
+    def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
         from raceway.pipeline.run import run
 
+        number, point = task
         wall, cpu = time.perf_counter(), time.process_time()
         state, reason, content, cost = "failed", "", Tables(), Tables()
-        result = None
         try:
-            scene = scene_from_dict(tables_at(self.tables, point, registry), registry, parts)
-            result = run(scene, registry, near=before)
+            result = run(scene_from_dict(tables_at(self.tables, point, registry), registry), registry)
             content = {"values": values_of(result), "warnings": list(result.warnings)}
             cost = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
             state = "done"
@@ -80,23 +62,12 @@ class Chain:
         except Exception as error:  # a fault of the program or of a plug-in costs its point, not the sweep
             reason = f"unexpected {type(error).__name__}: {error or 'no message'}"
         cost |= {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu, "worker": worker()}
-        return Row(number, state, reason, content, cost), result
-
-
-#: Points of a chain at most, and the time that a chain should take [s]: it is what a killed worker loses.
-_LONGEST, _CHAIN_S = 16, 1.0
-#: Chains at least in a sweep: otherwise some of many workers have nothing to do.
-_CHAINS = 16
+        return Row(number, state, reason, content, cost)
 
 
 @attrs.frozen
 class Sweep:
-    """A sweep that was looked over: what is computed, where it goes, and what is there already.
-
-    Attributes
-    ----------
-    length : of chains [points]
-    """
+    """A sweep that was looked over: what is computed, where it goes, and what is there already."""
 
     tables: Tables
     design: Design
@@ -104,7 +75,6 @@ class Sweep:
     plugins: tuple[str, ...]
     survey: Survey
     facts: Tables
-    length: int
 
 
 def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
@@ -144,19 +114,7 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(dict(tables), design, store, files, surveyed, facts, _chain_length(surveyed, design))
-
-
-def _chain_length(surveyed: Survey, design: Design) -> int:
-    """From the design and the predicted time of a point alone, so that a sweep that is resumed computes the same chains."""
-    scene = surveyed.scene
-    try:
-        plan = make_plan(scene)
-        seconds = plan.predicted_work_s - plan.predicted_once_s - START_S
-    except RacewayError:
-        return 1
-    by_time = int(_CHAIN_S / max(seconds, 1e-3))
-    return max(1, min(_LONGEST, by_time, design.size // _CHAINS))
+    return Sweep(dict(tables), design, store, files, surveyed, facts)
 
 
 def fill_store(
@@ -177,31 +135,18 @@ def fill_store(
         A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
     design = prepared.design
-    required = prepared.facts["identity"]
-    work = Work(Chain(prepared.tables), prepared.plugins, required)
+    work = Work(Point(prepared.tables), prepared.plugins, prepared.facts["identity"])
     with written(prepared.store, prepared.facts, range(design.size)) as store:
         if retry_failed:
             store.wait(store.keys("failed"))
-        waiting = store.keys("waiting")
-        finished, total = design.size - len(waiting), design.size
-        chains = [chain for chain in design.chains(prepared.length) if not waiting.isdisjoint(chain)] if waiting else []
-
-        def batches() -> Iterator[Batch]:
-            for number, chain in enumerate(chains):
-                last = max(n for n in chain if n in waiting)
-                # Each begins from the one before it: those before the last that waits are computed too, for the same bits.
-                yield number, [[(n, design.point(n)) for n in chain[: chain.index(last) + 1]]]
-
-        with closing(answers(executor, work, batches())) as results:
+        waiting = sorted(store.keys("waiting"))
+        finished = design.size - len(waiting)
+        with closing(answers(executor, work, ((n, [(n, design.point(n))]) for n in waiting))) as results:
             for number, answer in results:
-                if isinstance(answer, Lost):
-                    rows = [Row(n, "failed", answer.reason, {}, {}) for n in chains[number] if n in waiting]
-                else:
-                    rows = [row for row in answer[0] if row.key in waiting]
-                store.put(rows)
-                finished += len(rows)
+                store.put([Row(number, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer[0]])
+                finished += 1
                 if on_progress is not None:
-                    on_progress("points", finished, total)
+                    on_progress("points", finished, design.size)
     return open_store(prepared.store)
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import copy
 import difflib
 import os
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,8 +27,6 @@ from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
-
     from packaging.specifiers import SpecifierSet
 
 
@@ -193,17 +190,13 @@ _PLACEHOLDER = {
 
 
 @door
-def scene_from_dict(
-    tables: ReadTables, registry: Registry | None = None, known_parts: dict[Hashable, Any] | None = None
-) -> Scene:
+def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
 
     Parameters
     ----------
     tables : by name, values in the keys' units or as text with one
     registry : plug-ins that the scene may use; None: those of this process
-    known_parts : of scenes that were read before with the same registry, by the tables they stood in; the parts that this
-        scene shares with them are taken from there, and its own are added
 
     Raises
     ------
@@ -225,27 +218,13 @@ def scene_from_dict(
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
     parts: Tables = {}
-    known_parts = {} if known_parts is None else known_parts
-
-    def read(name: str, table: object, make: Callable[[], object]) -> Any:
-        mark, before = (name, repr(table)), len(mistakes)  # not the table itself: 1, 1.0 and true are equal, and not alike
-        if mark in known_parts:
-            return known_parts[mark]
-        part = make()
-        if len(mistakes) == before:
-            known_parts[mark] = part
-        return part
-
     for name, cls in TABLES.items():
-        if name in PLUGIN_TABLES or (name == "bearing" and name not in plain):
-            continue
-        table = plain.get(name, {})
-        parts[name] = read(name, table, partial(structure, table, cls, name, mistakes))
+        if name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
+            parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
-            table = plain.get(name, {})
-            parts[name] = read(name, table, partial(_plugin_table, name, kind, default, table, registry, mistakes))
+            parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
     for name, cls in STUDY_TABLES.items():
         if name in plain:
             structure(plain[name], cls, name, mistakes)
