@@ -92,7 +92,7 @@ def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:
             read = [(row["point"], row["status"], row["reason"], row["values"]) for row in there.rows()]
     except RacewayError:
         read = []
-    if any(row[1] == "done" and row not in wanted and row not in foreign for row in read):
+    if any(row[1] == "run" and row not in wanted and row not in foreign for row in read):
         return "other values before it is gone on with"
     done = CliRunner().invoke(command, [*words(store), "--resume"])
     if "Traceback" in done.output or "unexpected" in done.output:

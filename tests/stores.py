@@ -71,7 +71,7 @@ def made(axes: dict[str, Any], tables: dict[str, Any] | None = None, **changed: 
     }
     spring = changed["stiffness"](at) if "stiffness" in changed else spring
     variables["stiffness"] = ([*names, "dof", "dof2"], spring, STIFFNESS.labels)
-    variables["status"] = (names, np.full(shape, "done", dtype=object))
+    variables["status"] = (names, np.full(shape, "run", dtype=object))
     coords: dict[str, Any] = {
         key: (key, list(values), {"units": UNITS.get(key, "1"), "long_name": key}) for key, values in axes.items()
     }

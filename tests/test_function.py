@@ -199,3 +199,16 @@ def test_calls_that_are_refused() -> None:
         f([400.0], [0.0], **{"load.axail": 1.0})
     with pytest.raises(rw.RacewayError, match=r"need \S+ bytes"):
         f(np.broadcast_to(400.0, 10**11), 0.0)
+
+
+def test_points_that_share_no_loop_are_run() -> None:
+    """Rings that grow by their own sections; pressures of a law that has its own."""
+    growing = rw.function(
+        {**STATIC, "kinematics": {"spin_speed_rpm": 9000.0, "ring_growth": True}}, ["bearing.contact_angle_deg"], ["kyy"]
+    )
+    answer = growing([14.0, 16.0])
+    assert "sections of their own" in growing.why_slow and (answer["status"] == rw.PointStatus.RUN).all()
+    own = rw.function({**STATIC, "contact": {"kind": "penalty"}}, ["load.axial"], ["p0"])
+    assert (
+        own([900.0])["p0"][0] == rw.run({**STATIC, "contact": {"kind": "penalty"}, "load": {"axial": 900.0}}).extremes["p0"]
+    )

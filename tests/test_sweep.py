@@ -23,7 +23,7 @@ from raceway import sweep as front
 from raceway.framework.contracts import Lost, Refused
 from raceway.plugins.dask import Dask
 from raceway.plugins.processes import Processes, Serial
-from raceway.points.axes import Design, design_file, grid, parse_axes, point_list, points, tables_at
+from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes, point_list, points, tables_at
 from raceway.points.dataset import open_store, values_of
 from raceway.points.engine import Work
 from raceway.points.store import facts_digest, written
@@ -89,8 +89,8 @@ def test_lists_and_design_files(tmp_path):
     }
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-        assert list(point_list(tmp_path / name).listed) == wanted, name
-    assert list(design_file(tmp_path / "a.toml").listed) == wanted
+        assert list(point_list(tmp_path / name).points()) == wanted, name
+    assert list(design_file(tmp_path / "a.toml").points()) == wanted
     (tmp_path / "grid.toml").write_text('[grid]\n"load.axial" = "400:1200:3"\nsupports.tilt = ["locked", "free"]\n')
     assert design_file(tmp_path / "grid.toml") == grid(["load.axial=400:1200:3", 'supports.tilt="locked","free"'])
 
@@ -122,7 +122,7 @@ def test_bad_designs_are_refused_before_anything_is_written(tmp_path):
     for design, word in (
         (grid(["load.axail=1,2"]), "unknown key.*did you mean 'axial'"),
         (grid(["load.axial=1,x"]), "load.axial"),
-        (Design(listed=({"load.axial": 1.0}, {"load.axial": "x"})), "point 2: load.axial"),
+        (listed_points([{"load.axial": 1.0}, {"load.axial": "x"}]), "point 2: load.axial"),
     ):
         with pytest.raises(SceneError, match=word):
             prepare(SCENE, design, store)
@@ -141,13 +141,13 @@ def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
 
     design = grid(["excitation.speed_rpm=11000,14000", "load.axial=500,1000,2000"])
     found = swept(tmp_path / "s", design)
-    assert [status for _, status, _, _ in found] == ["done"] * 6
+    assert [status for _, status, _, _ in found] == ["run"] * 6
     for point, _, _, values in found:
         single = run(scene_from_dict(tables_at(SCENE, point, default_registry())))
         assert values == values_of(single)
     with open_store(tmp_path / "s") as store:
         data = store.to_xarray()
-        assert store.status() == {"waiting": 0, "done": 6, "failed": 0, "total": 6}
+        assert store.status() == {"waiting": 0, "done": 6, "failed": 0, "computed": 0, "total": 6}
     assert dict(data.sizes) == {"excitation.speed_rpm": 2, "load.axial": 3, "dof": 5, "dof2": 5}
     one = data.sel({"excitation.speed_rpm": 14000, "load.axial": 500})
     assert one["z_real"] == found[3][3]["z_real"] and one["z_real"].attrs["units"] == "N/m"
@@ -164,8 +164,8 @@ def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
 
 def test_a_static_scene_and_a_list_have_what_they_have(tmp_path):
     static = {name: table for name, table in SCENE.items() if name not in ("excitation", "integrator")}
-    listed = Design(
-        listed=({"load.axial": 500.0, "supports.tilt": "free"}, {"load.axial": 900.0, "supports.tilt": "locked"})
+    listed = listed_points(
+        [{"load.axial": 500.0, "supports.tilt": "free"}, {"load.axial": 900.0, "supports.tilt": "locked"}]
     )
     swept(tmp_path / "s", listed, tables=static)
     with open_store(tmp_path / "s") as store:
@@ -182,7 +182,7 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
         swept(tmp_path / "s", design, Stopping())
     with open_store(tmp_path / "s") as store:
         states = store.status()
-    assert states == {"waiting": 29, "done": 3, "failed": 0, "total": 32}
+    assert states == {"waiting": 29, "done": 3, "failed": 0, "computed": 0, "total": 32}
 
     with pytest.raises(RacewayError, match=r"3 of 32 points done: go on with --resume"):
         prepare(SCENE, design, tmp_path / "s")
@@ -245,7 +245,7 @@ def test_a_damaged_row_is_computed_again(statement, damaged, tmp_path):
     whole = swept(tmp_path / "s", design)
     altered(tmp_path, statement)
     with open_store(tmp_path / "s") as store:
-        read = [row for row in store.rows() if row["status"] == "done"]
+        read = [row for row in store.rows() if row["status"] == "run"]
     assert len(read) == 4 - len(damaged), "nothing that is damaged is read as a value"
     with pytest.warns(UserWarning, match=f"{len(damaged)} rows of the store are damaged"):
         assert swept(tmp_path / "s", design, resume=True) == whole
@@ -324,7 +324,7 @@ def test_a_full_disk_keeps_what_is_finished(tmp_path):
 def test_points_that_fail_keep_their_reason_and_are_tried_again_when_asked(tmp_path):
     design = grid(["supports.tilt=locked", "load.axial=0,500", "excitation.kind=bidirectional,unidirectional"])
     found = swept(tmp_path / "s", design)
-    assert [status for _, status, _, _ in found] == ["failed", "failed", "done", "done"]
+    assert [status for _, status, _, _ in found] == ["failed", "failed", "run", "run"]
     assert "nothing loads the bearing" in found[0][2] and not found[0][3]
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == found
     with pytest.raises(KeyboardInterrupt):
@@ -373,8 +373,8 @@ def test_designs_say_what_differs():
     ]
     (words,) = old.differences(grid(["load.axial=1:11:11", "rotor.mass=2,3"]))
     assert words == "load.axial: 1, 2, ..., 12 (12 values) there, 1, 2, ..., 11 (11 values) here"
-    one, two = (Design(listed=({"load.axial": 1.0}, {"load.axial": value})) for value in (2.0, 3.0))
-    assert one.differences(two) == ["point 2: load.axial = 2 there, load.axial = 3 here"]
+    one, two = (listed_points([{"load.axial": 1.0}, {"load.axial": value}]) for value in (2.0, 3.0))
+    assert one.differences(two) == ["load.axial: 1, 2 there, 1, 3 here"]
     assert one.differences(old)[0].startswith("2 listed points over load.axial there, 12 x 2 points")
 
 

@@ -240,18 +240,18 @@ class ColumnBearing:
     def pressures(self, force: np.ndarray) -> np.ndarray:
         """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""
         halves = np.split(force, 2, axis=1)
-        return np.concatenate([e.peak_pressure(half) for e, half in zip(self._ellipses, halves, strict=True)], axis=1)
+        return np.concatenate([e.peak_pressure(half) for e, half in zip(self.ellipses, halves, strict=True)], axis=1)
 
     def impossible(self, force: np.ndarray) -> np.ndarray:
         """(n,) whether any contact would be longer than half the ball's circumference."""
         radius, halves = 0.5 * per_ball(self.basis.geometry.ball_diameter), np.split(force, 2, axis=1)
         if not self.problem.bearing.equal_rows:
             radius = self.basis.ball_radius
-        pairs = zip(self._ellipses, halves, strict=True)
+        pairs = zip(self.ellipses, halves, strict=True)
         return np.any([(e.semi_axes(half)[0] / radius).max(axis=1) >= 0.5 * np.pi for e, half in pairs], axis=0)
 
     @property
-    def _ellipses(self) -> tuple[Ellipse, Ellipse]:
+    def ellipses(self) -> tuple[Ellipse, Ellipse]:
         """Of the inner and outer contacts, with numbers that spread over points and balls."""
         pair = self.basis.inner, self.basis.outer
         if not self.problem.bearing.equal_rows:
@@ -311,7 +311,12 @@ def _rows(record: R, chosen: np.ndarray) -> R:
 
 def _empty_states(n: int, z: int, columns: int) -> States:
     return States(
-        np.empty((n, 5)), np.empty((n, z, columns)), np.empty((n, 5, 5)), np.zeros((n, 2 * z)), np.empty(n, dtype=np.int64)
+        np.empty((n, 5)),
+        np.empty((n, z, columns)),
+        np.empty((n, 5, 5)),
+        np.empty((n, 5, 5)),
+        np.zeros((n, 2 * z)),
+        np.empty(n, dtype=np.int64),
     )
 
 

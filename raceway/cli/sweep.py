@@ -6,6 +6,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from importlib.util import find_spec
+from itertools import islice
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
@@ -21,7 +22,7 @@ from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_RE
 from raceway.out.table import micro, written
 from raceway.out.wrapping import Words
 from raceway.points.axes import Design, design_file, grid, point_list, point_words, shown
-from raceway.points.dataset import TABLE, open_store, write_csv, write_netcdf
+from raceway.points.dataset import NOT_LOOKED_AT, TABLE, open_store, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
@@ -56,7 +57,7 @@ class _Swept(Answer):
             return {
                 "title": store.title,
                 "store": str(self.store),
-                "axes": [axis.to_dict() for axis in store.design.axes],
+                "axes": [] if store.design.listed else [axis.to_dict() for axis in store.design.axes],
                 "states": store.status(),
                 "rows": [
                     {name: row[name] for name in ("point", "status", "values")}
@@ -71,18 +72,17 @@ class _Swept(Answer):
 
     def report(self) -> Iterator[Part]:
         """How many points are in each state, the first of them with their stiffness, why points failed, and what they warn of."""
-        rows, reasons = list[dict[str, str]](), list[str]()
+        reasons = list[str]()
         # Warning without its numbers -> count, its words and the point that has it first.
         warned = dict[str, tuple[int, str, Tables]]()
         with open_store(self.store) as store:
             title, states = store.title, store.status()
-            for row in store.rows():
+            rows = [_row(row) for row in islice(store.rows(), _MOST_ROWS)]
+            for row in store.remarks():
                 for text in row["warnings"]:
                     count, first, point = warned.get(key := _NUMBER.sub("#", text), (0, text, row["point"]))
                     warned[key] = count + 1, first, point
-                if len(rows) < _MOST_ROWS:
-                    rows.append(_row(row))
-                if row["status"] == "failed" and len(reasons) < _MOST_REASONS:
+                if row["reason"] and len(reasons) < _MOST_REASONS:
                     reasons.append(f"{point_words(row['point'])}: {row['reason'].splitlines()[0]}")
         total = states["total"]
         counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "waiting") if states[name])
@@ -91,6 +91,8 @@ class _Swept(Answer):
         if total > len(rows):
             yield Words(f"and {total - len(rows)} more points in {self.store}", "dim")
         yield f"{total} points: {counted}"
+        if states["computed"]:
+            yield f"{states['computed']} are computed in a compiled loop. {NOT_LOOKED_AT}"
         yield from (f"failed: {micro(reason)}" for reason in reasons)
         for count, text, point in warned.values():
             yield f"{count} point{'s warn' if count > 1 else ' warns'}: {micro(text)} (first at {point_words(point)})"

@@ -176,7 +176,7 @@ ERROR = Quantity("error_total", "1", "estimated relative error of Z", "error.tot
 _PARTS = {"time_step": "time step", "transient": "transient", "mesh": "mesh", "contact": "contact law", "identification": "identification"}
 _ERRORS = [Quantity(f"error_{part}", "1", f"part of the {words} in the relative error of Z", f"error.{part}", f"error.{part}") for part, words in _PARTS.items()]
 ERROR_BODIES = Quantity("error_bodies", "1", "sum of the parts of mesh and contact law", "error.bodies", "error.bodies")
-_MODEL_BOUND = Quantity("error_model_bound", "1", "upper estimate of the change of kyy by hypotheses of [kinematics] left at their defaults", "error.model.bound", "model_bound")
+MODEL_BOUND = Quantity("error_model_bound", "1", "upper estimate of the change of kyy by hypotheses of [kinematics] left at their defaults", "error.model.bound", "model_bound")
 # Arrays: over coordinates of the ring, races and balls, times.
 DISPLACEMENT = Quantity("displacement", "m, rad", "equilibrium under the constant loads", dims=("dof",))
 STIFFNESS = Quantity("stiffness", "N/m, N/rad, N m/m, N m/rad", "tangent of the contacts at the equilibrium: kyy is y, y, tilts held", dims=("dof", "dof2"))
@@ -204,7 +204,7 @@ IDENTIFIED = (
 COLUMNS = named(
     Z_REAL, Z_IMAG, K, C, FORCE_AMPLITUDE, _FREQUENCY, MASS, _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL,
     AXIAL_DISPLACEMENT, KYY_TILTS_FOLLOW, PEAK_BALL_LOAD, _PEAK_INNER, _PEAK_OUTER, _LEAST_LOAD, P0, _P0_INNER, _P0_OUTER,
-    ERROR, *_ERRORS, _MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
+    ERROR, *_ERRORS, MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
 )
 # fmt: on
 #: Numbers that have derivatives by the keys of a scene, by their symbols; what a scene does not have is left out.

@@ -22,10 +22,13 @@ from typing import Any
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import growth_of
+from raceway.bodies.basis import Basis, growth_of
+from raceway.bodies.columns import ColumnBearing
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import add_moments
+from raceway.core.columns import with_columns
+from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
 from raceway.core.ring.orbit import Orbit, orbit_near
@@ -182,10 +185,10 @@ def model_spread(
     model: Model, equilibrium: Equilibrium, identification: Identification | None, simulation: Simulation | None
 ) -> tuple[Tables | None, Note]:
     """``error.model`` of result.json, and ``error.how.model``."""
-    values, why = _alternatives(model)
+    values, why = _alternatives(model.problem, compiled(model.system) is not None)
     if isinstance(why, Note):
         return None, why
-    bound = _bound(model, equilibrium, values)
+    bound = _bound_of(model, equilibrium, values)
     if bound < NEGLIGIBLE:
         return _table([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
@@ -213,19 +216,37 @@ def model_spread(
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
     """Upper estimate of the relative change of kyy by the hypotheses left at their defaults; None where there are none."""
-    values, _ = _alternatives(model)
-    return _bound(model, equilibrium, values) if values else None
+    values, _ = _alternatives(model.problem, compiled(model.system) is not None)
+    return _bound_of(model, equilibrium, values) if values else None
 
 
-def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
+def _bound_of(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> float:
+    z = model.system.ball_count
+    return float(_bound(model.problem, model.basis, model.inner, model.system.table, equilibrium.contact_force[:z], keys))
+
+
+def column_bounds(example: Problem, bearing: ColumnBearing, force: np.ndarray) -> np.ndarray:
+    """The same (n,) of the rigid bearing at n points under contact forces (n, 2 Z); nan where there is none.
+
+    Parameters
+    ----------
+    example : problem of one of the points
+    """
+    values, _ = _alternatives(example, True)
+    if not values:
+        return np.full(len(force), np.nan)
+    inner, table = force[:, : force.shape[1] // 2], bearing.points.table
+    return _bound(bearing.problem, bearing.basis, bearing.ellipses[0], table, inner, values)
+
+
+def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list[Any]], str]:
     """Values of the keys left at their defaults that the scene can run with, and what it cannot; a note where there are none."""
-    problem = model.problem
     if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
     unstated = [key for key in _HYPOTHESES if not problem.says(f"kinematics.{key}")]
     if not unstated:
         return {}, Estimate.HYPOTHESES_STATED()
-    if compiled(model.system) is None:
+    if not compiled_ring:
         return {}, Estimate.POINTS_TOO_SLOW(kind=problem.bodies.name)
     if problem.contact.law.state_size > 0 or problem.spin_changes:
         return {}, Estimate.NO_STEADY_MOTION()
@@ -242,19 +263,23 @@ def _alternatives(model: Model) -> tuple[dict[str, list[Any]], str]:
     return values, why if values else Estimate.NO_OTHER_HYPOTHESIS(why=why)
 
 
-def _bound(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> float:
-    inner = equilibrium.contact_force[: model.system.ball_count]
-    loaded, bound = inner > 0.0, 0.0
-    if not loaded.any():
-        return np.inf
+def _bound(
+    problem: Problem, basis: Basis, ellipse: Ellipse, table: np.ndarray, inner: np.ndarray, keys: Collection[str]
+) -> np.ndarray:
+    """Of inner loads (..., Z) with their ellipse and balls' numbers (..., Z, k), at one point or many."""
+    loaded = inner > 0.0
+    least = np.where(loaded, inner, np.inf).min(axis=-1)
+    bound = np.where(np.isfinite(least), 0.0, np.inf)
     if "gyroscopic" in keys:
-        bound += _MOMENTS * float((model.system.table[loaded, CENTRIFUGAL] / inner[loaded]).max())
+        bound += _MOMENTS * np.divide(table[..., CENTRIFUGAL], inner, out=np.zeros_like(inner), where=loaded).max(axis=-1)
     if "ring_growth" in keys:
-        running = model.problem.running
-        grown = attrs.evolve(running, kinematics=attrs.evolve(running.kinematics, ring_growth=True))
-        more, now = growth_of(grown, model.basis.row), model.basis.growth
-        radial = np.abs(more.common[1] + more.by_ball[:, 1] - now.common[1] - now.by_ball[:, 1]).max()
-        bound += _GROWTH * float(radial / np.max(model.inner.approach(np.where(loaded, inner, inner[loaded].min()))))
+        running = problem.running
+        grown = attrs.evolve(running, kinematics=with_columns(running.kinematics, ring_growth=True))
+        more, now = growth_of(grown, basis.row), basis.growth
+        radial = np.abs(more.common[..., None, 1] + more.by_ball[..., 1] - now.common[..., None, 1] - now.by_ball[..., 1])
+        with np.errstate(invalid="ignore"):  # of points without a load
+            approach = ellipse.approach(np.where(loaded, inner, least[..., None])).max(axis=-1)
+        bound += _GROWTH * radial.max(axis=-1) / approach
     return bound
 
 

@@ -7,10 +7,12 @@ import itertools
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import attrs
+import numpy as np
 
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.registry import Registry
@@ -41,6 +43,11 @@ class Axis:
     @property
     def numeric(self) -> bool:
         return all(is_number(v) for v in self.values)
+
+    @cached_property
+    def column(self) -> np.ndarray:
+        """Values that are numbers, (n,)."""
+        return np.array(self.values, dtype=float)
 
     @property
     def ends(self) -> tuple[Any, Any]:
@@ -237,7 +244,16 @@ def axes_of(definitions: Vary, tables: ReadTables, registry: Registry) -> tuple[
 
 def in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
     """An axis whose values with a unit as text are numbers in the unit of the key."""
+    if axis.numeric:
+        return axis
     return Axis(axis.key, tuple(numbers_at(tables, {axis.key: value}, registry)[axis.key] for value in axis.values))
+
+
+def design_in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
+    """A design with all values as numbers in the units of their keys."""
+    if design.listed and not all(axis.numeric for axis in design.axes):
+        return _of_points([numbers_at(tables, point, registry) for point in design.points()])
+    return Design(tuple(in_units(axis, tables, registry) for axis in design.axes), design.listed)
 
 
 def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
@@ -288,16 +304,16 @@ class Design:
 
     Attributes
     ----------
-    axes : of a grid, the last one running fastest in the numbering of points; empty for a list
-    listed : the points of a list, all with the same keys; empty for a grid
+    axes : keys with their values, the last one running fastest in the numbering of points
+    listed : whether the values of the axes belong together point by point, instead of all their combinations
     """
 
-    axes: tuple[Axis, ...] = ()
-    listed: tuple[Tables, ...] = ()
+    axes: tuple[Axis, ...]
+    listed: bool = False
 
     @property
     def shape(self) -> tuple[int, ...]:
-        return tuple(len(axis.values) for axis in self.axes) if self.axes else (len(self.listed),)
+        return tuple(len(axis.values) for axis in (self.axes[:1] if self.listed else self.axes))
 
     @property
     def size(self) -> int:
@@ -305,41 +321,37 @@ class Design:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        return tuple(axis.key for axis in self.axes) if self.axes else tuple(self.listed[0])
+        return tuple(axis.key for axis in self.axes)
 
     def point(self, number: int) -> Tables:
         """Key -> value of one point."""
-        if not self.axes:
-            return dict(self.listed[number])
-        values = {}
-        for axis in reversed(self.axes):
-            number, position = divmod(number, len(axis.values))
-            values[axis.key] = axis.values[position]
-        return {axis.key: values[axis.key] for axis in self.axes}
+        return {axis.key: axis.values[place] for axis, place in zip(self.axes, self._places(number), strict=True)}
 
     def points(self) -> Iterator[Tables]:
         return (self.point(number) for number in range(self.size))
 
+    def columns(self, first: int, last: int) -> dict[str, np.ndarray]:
+        """Key -> values (n,) of the points from ``first`` until before ``last``, all of them numbers."""
+        places = self._places(np.arange(first, last))
+        return {axis.key: axis.column[place] for axis, place in zip(self.axes, places, strict=True)}
+
+    def _places(self, numbers: Any) -> Sequence[Any]:
+        """Of the values of each axis, at one point or many."""
+        return [numbers] * len(self.axes) if self.listed else np.unravel_index(numbers, self.shape)
+
     def to_dict(self) -> Tables:
-        if self.axes:
-            return {"axes": [axis.to_dict() for axis in self.axes]}
-        return {"points": list(self.listed)}
+        return {"listed": self.listed, "axes": [axis.to_dict() for axis in self.axes]}
 
     @classmethod
     def from_dict(cls, tables: ReadTables) -> Design:
-        axes = tuple(Axis(axis["key"], tuple(axis["values"])) for axis in tables.get("axes", ()))
-        return cls(axes, tuple(tables.get("points", ())))
+        return cls(tuple(Axis(axis["key"], tuple(axis["values"])) for axis in tables["axes"]), tables["listed"])
 
     def differences(self, stored: Design) -> list[str]:
-        """In words what this design has and the other one has not: axes with their values, or listed points."""
+        """In words what this design has and the other one has not: axes with their values."""
         if self == stored:
             return []
-        if not self.axes or not stored.axes:
-            changed = [k for k, (a, b) in enumerate(zip(self.listed, stored.listed, strict=False), 1) if a != b]
-            if self.keys != stored.keys or self.size != stored.size or not changed:
-                return [f"{self.in_words()} there, {stored.in_words()} here"]
-            first, k = changed[0], changed[0] - 1
-            return [f"point {first}: {point_words(self.listed[k])} there, {point_words(stored.listed[k])} here"]
+        if self.listed != stored.listed:
+            return [f"{self.in_words()} there, {stored.in_words()} here"]
         old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, stored))
         words = []
         for key in [*old, *(key for key in new if key not in old)]:
@@ -352,7 +364,7 @@ class Design:
         return words or [f"axes {', '.join(old)} there, {', '.join(new)} here"]
 
     def in_words(self) -> str:
-        if not self.axes:
+        if self.listed:
             return f"{self.size} listed points over {', '.join(self.keys)}"
         return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
 
@@ -423,6 +435,11 @@ def design_file(path: Path) -> Design:
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 
+def _of_points(points: Sequence[ReadTables]) -> Design:
+    """A list of points, all with the same keys."""
+    return Design(tuple(Axis(key, tuple(point[key] for point in points)) for key in points[0]), listed=True)
+
+
 def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
     """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
     for key, value in table.items():
@@ -486,7 +503,7 @@ def _listed(path: Path | str, points: object) -> Design:
     bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
     if bad:
         raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")
-    return Design(listed=tuple({key: point[key] for key in keys} for point in points))
+    return _of_points(points)
 
 
 def point_words(point: ReadTables, keys: Sequence[str] | None = None) -> str:

@@ -14,7 +14,9 @@ from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
 from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
+from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
+from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Excitation
@@ -28,8 +30,9 @@ DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inn
 
 @attrs.frozen(eq=False, slots=False)
 class Computed:
-    """Equilibria, and orbits where a motion is asked for, of n points."""
+    """Equilibria, and orbits where a motion is asked for, of n points; ``example`` : problem of one of them."""
 
+    example: Problem
     bearing: ColumnBearing
     states: States
     orbits: Orbits | None
@@ -38,6 +41,7 @@ class Computed:
     @classmethod
     def of(
         cls,
+        example: Problem,
         bearing: ColumnBearing,
         moving: bool,
         excitations: Callable[[], tuple[list[Excitation], np.ndarray]],
@@ -46,10 +50,10 @@ class Computed:
         """Solve for them."""
         states = bearing.equilibria()
         if not moving:
-            return cls(bearing, states, None, np.zeros(0))
+            return cls(example, bearing, states, None, np.zeros(0))
         several, which = excitations()
         speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
-        return cls(bearing, states, bearing.orbits(states, several, which, speed, tolerance), speed)
+        return cls(example, bearing, states, bearing.orbits(states, several, which, speed, tolerance), speed)
 
     @cached_property
     def fine(self) -> np.ndarray:
@@ -124,17 +128,25 @@ def _races(values: np.ndarray) -> np.ndarray:
 _STATIC: dict[str, Callable[[Computed], np.ndarray]] = {
     "displacement": lambda c: c.states.q,
     "stiffness": lambda c: c.states.stiffness,
+    "damping": lambda c: c.states.damping,
+    "axial_displacement": lambda c: (c.states.q if c.orbits is None else c.orbits.mean)[:, 0],
     "x": lambda c: c.states.q[:, 0],
     "kxx": lambda c: c.states.stiffness[:, 0, 0],
     "kyy": lambda c: c.states.stiffness[:, 1, 1],
     "kyy_tilts_follow": _tilts_follow,
     "largest_ball_load": lambda c: c.states.force.max(axis=1),
     "ball_load": lambda c: _races(c.states.force),
+    "error_model_bound": lambda c: column_bounds(c.example, c.bearing, c.states.force),
     "contact_angle": lambda c: _races(np.degrees(np.concatenate(c.bearing.contact_angles(c.states), axis=1))),
 }
 _LOADED: dict[str, Callable[[Computed], np.ndarray]] = {
     "peak_ball_load": lambda c: c.states.force.max(axis=1),
+    "peak_ball_load_inner": lambda c: _races(c.states.force)[:, 0].max(axis=1),
+    "peak_ball_load_outer": lambda c: _races(c.states.force)[:, 1].max(axis=1),
+    "min_ball_load": lambda c: _races(c.states.force)[:, 0].min(axis=1),
     "p0": lambda c: c.bearing.pressures(c.states.force).max(axis=1),
+    "p0_inner": lambda c: _races(c.bearing.pressures(c.states.force))[:, 0].max(axis=1),
+    "p0_outer": lambda c: _races(c.bearing.pressures(c.states.force))[:, 1].max(axis=1),
 }
 _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     K.name: lambda c: c.impedance.real + c.mass * c.speed**2,
@@ -151,7 +163,6 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     "backward_amplitude": lambda c: c.parts[1],
     **dict.fromkeys(("orbit_major", AMPLITUDE.name), lambda c: c.parts[0] + c.parts[1]),
     "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
-    "axial_displacement": lambda c: c.motion.mean[:, 0],
     "error_total": lambda c: c.motion.error,
 }
 #: Quantities of a motion, those of loads along one, and all that a function has.

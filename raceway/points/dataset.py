@@ -14,13 +14,16 @@ from warnings import warn
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Design, is_number
-from raceway.points.store import DAMAGED, POINTS, Store, connected, told
+from raceway.points.blocks import block_edges, block_key
+from raceway.points.function import PointStatus
+from raceway.points.store import DAMAGED, POINTS, Row, Store, connected, told
 from raceway.points.survey import key_facts
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -58,6 +61,8 @@ def values_of(result: Result) -> Tables:
     return values
 
 
+#: What runs say of a point beyond the columns.
+NOT_LOOKED_AT = "Of computed points the stability of orbits, other orbits and warnings are not looked at: raceway run does"
 RESULTS, TABLE = "results.nc", "results.csv"
 #: Words of any length, as HDF5 has them.
 _WORDS = np.dtype("O", metadata={"vlen": str})
@@ -90,26 +95,86 @@ class SweepStore(Store):
         return dict(self.facts["scene"])
 
     def status(self) -> dict[str, int]:
-        """Number of points in each state, and ``total``."""
-        counts, total = self.counts(), self.design.size
-        return {**counts, "waiting": total - counts["done"] - counts["failed"], "total": total}
+        """Number of points in each state, and ``total``; of those that are done, how many the compiled loop ``computed``."""
+        counts, total, length = self.counts(), self.design.size, self.facts["block"]
+        if length:
+            rows = self.costs()
+            computed, refused = (sum(cost[how.name] for cost in rows) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
+            counts = {
+                "done": counts["done"] - len(rows) + computed,
+                "failed": counts["failed"] + refused,
+                "computed": computed,
+            }
+        waiting = total - counts["done"] - counts["failed"]
+        return {
+            "waiting": waiting,
+            "done": counts["done"],
+            "failed": counts["failed"],
+            "computed": 0,
+            **counts,
+            "total": total,
+        }
+
+    def blocks(self) -> Iterator[tuple[int, int, Row]]:
+        """The first point of each block, that after its last one, and its row."""
+        for first, last in block_edges(self.design.size, self.facts["block"]):
+            yield first, last, self.get(block_key(first, last - first))
+
+    def runs(self) -> Iterator[Row]:
+        """The rows of single points; beside blocks those alone that are finished."""
+        if not self.facts["block"]:
+            return (self.get(number) for number in range(self.design.size))
+        return (self.get(key) for key in sorted(k for k in self.keys("done") | self.keys("failed") if isinstance(k, int)))
 
     def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings, cost}`` of every point, in the order of the design."""
-        for number in range(self.design.size):
-            row = self.get(number)
-            content = {"values": {}, "warnings": [], **row.content}
-            yield {
-                "point": self.design.point(number),
-                "status": row.state,
-                "reason": row.reason,
-                **content,
-                "cost": row.cost,
-            }
+        runs = {row.key: row for row in self.runs()} if self.facts["block"] else {}
+        for first, last, block in self.blocks():
+            reasons = json.loads(block.reason) if block.state == "done" else {}
+            status = _status_of(block, last - first)
+            for number, word in enumerate(status.tolist(), first):
+                if number in runs:
+                    yield self._row(runs[number])
+                    continue
+                k = number - first
+                values = {n: v[k].tolist() for n, v in block.content.items() if n != "status"} if word == "computed" else {}
+                values = {name: value for name, value in values.items() if isinstance(value, list) or math.isfinite(value)}
+                reason = reasons.get(str(number), "")
+                yield self._row(Row(number, word, reason, {"values": values}, {}))
+        if not self.facts["block"]:
+            yield from map(self._row, self.runs())
+
+    def remarks(self) -> Iterator[Tables]:
+        """``rows`` of points that failed or that warn, those of blocks first."""
+        for _, _, block in self.blocks():
+            reasons = json.loads(block.reason) if block.state == "done" else {}
+            yield from (self._row(Row(int(number), "refused", reason, {}, {})) for number, reason in reasons.items())
+        yield from (self._row(row) for row in self.runs() if row.state == "failed" or row.content.get("warnings"))
+
+    def _row(self, row: Row) -> Tables:
+        content = {"values": {}, "warnings": [], **row.content}
+        point = self.design.point(int(row.key))
+        return {
+            "point": point,
+            "status": _STATUS.get(row.state, row.state),
+            "reason": row.reason,
+            **content,
+            "cost": row.cost,
+        }
 
     def to_xarray(self) -> xarray.Dataset:
         """The labelled results: a dimension for each axis of a grid, or ``point`` for a list."""
         return dataset(self)
+
+
+#: What a point's status is called where its row has another word.
+_STATUS = {"done": "run"}
+_OF_BLOCK = np.array(["computed", "run", "refused", "waiting"], dtype=object)
+
+
+def _status_of(block: Row, count: int) -> np.ndarray:
+    """(n,) of the points of a block: what the loop has left waits for its run."""
+    return _OF_BLOCK[block.content["status"]] if block.state == "done" else np.full(count, "waiting", dtype=object)
 
 
 def open_store(path: str | Path) -> SweepStore:
@@ -157,7 +222,7 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
 def _table_of(store: SweepStore, registry: Registry | None = None) -> _Table:
     """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
-    dims = design.keys if design.axes else ("point",)
+    dims = ("point",) if design.listed else design.keys
     columns, status, warnings, damaged = _columns(store)
     variables: dict[str, Labelled] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
     if columns:
@@ -173,7 +238,7 @@ def _table_of(store: SweepStore, registry: Registry | None = None) -> _Table:
         "program": store.facts["identity"]["program"],
         "schema": store.facts["schema"],
         "created": store.facts["created"],
-        "note": "NaN: not finished, or not estimated; see status",
+        "note": "NaN: not finished, or not estimated; see status. " + NOT_LOOKED_AT,
         "damaged_rows": damaged,
     }
     if damaged:
@@ -188,15 +253,26 @@ def _columns(store: SweepStore) -> tuple[dict[str, np.ndarray], np.ndarray, np.n
     """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,); damaged rows."""
     size, damaged, columns = store.design.size, 0, dict[str, np.ndarray]()
     status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
-    for number, row in enumerate(store.rows()):
-        status[number] = row["status"]
-        damaged += row["reason"] == DAMAGED
-        if row["status"] == "done":
-            warnings[number] = len(row["warnings"])
-        for name, value in row["values"].items():
-            if name not in columns:
-                columns[name] = np.full((size, *np.shape(value)), np.nan)
-            columns[name][number] = value
+
+    def put(name: str, where: int | slice, value: ArrayLike, shape: tuple[int, ...]) -> None:
+        if name not in columns:
+            columns[name] = np.full((size, *shape), np.nan)
+        columns[name][where] = value
+
+    for first, last, block in store.blocks():
+        status[first:last] = _status_of(block, last - first)
+        damaged += (last - first) * (block.reason == DAMAGED)
+        for name, column in block.content.items():
+            if name != "status":
+                put(name, slice(first, last), column, column.shape[1:])
+    for row in store.runs():
+        number = int(row.key)
+        status[number] = _STATUS.get(row.state, row.state)
+        damaged += row.reason == DAMAGED
+        if row.state == "done":
+            warnings[number] = len(row.content["warnings"])
+        for name, value in row.content.get("values", {}).items():
+            put(name, number, value, np.shape(value))
     return {name: columns[name] for name in COLUMNS if name in columns}, status, warnings, damaged
 
 
@@ -208,12 +284,14 @@ def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
         scene = None
     names = np.array(DOF, dtype=object)
     coordinates: dict[str, Labelled] = {"dof": (("dof",), names, {}), "dof2": (("dof2",), names, {})}
-    for key in design.keys:
-        values = next(a.values for a in design.axes if a.key == key) if design.axes else [p[key] for p in design.listed]
-        unit, words = ("", "") if scene is None else key_facts(scene, key)
-        dim = key if design.axes else "point"
-        coordinates[key] = ((dim,), axis_labels(values), {"units": unit or "1", "long_name": key, "description": words})
-    if not design.axes:
+    for axis in design.axes:
+        unit, words = ("", "") if scene is None else key_facts(scene, axis.key)
+        dim, about = (
+            "point" if design.listed else axis.key,
+            {"units": unit or "1", "long_name": axis.key, "description": words},
+        )
+        coordinates[axis.key] = ((dim,), axis_labels(axis.values), about)
+    if design.listed:
         coordinates["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return coordinates
 

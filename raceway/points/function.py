@@ -19,6 +19,7 @@ from raceway.bodies.columns import KEYS, build_columns, column_problem, conspicu
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
+from raceway.framework.duties import is_foundation
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
@@ -39,8 +40,9 @@ if TYPE_CHECKING:
 
     from raceway.framework.contracts import Excitation
 
-#: Points of a block: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the cache of the second level.
-_STATIC, _MOVING = 8192, 2048
+#: Points of a block, of equilibria and of motions: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the
+#: cache of the second level.
+BLOCK = (8192, 2048)
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
 _LIMIT_S = 120.0
 #: Share of the memory that is free which inputs and outputs may take.
@@ -111,6 +113,10 @@ class Function:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
         if self.scene.excitation is not None and any(name in LOADED for name in self.outputs):
             return "loads along a motion are asked for"
+        if is_foundation(self.scene.contact.law) and any(name.startswith("p0") for name in self.outputs):
+            return "pressures are the contact law's own"
+        if self.scene.kinematics.ring_growth and any(key.startswith("bearing.") for key in self.inputs):
+            return "each point's rings grow by sections of their own"
         strange = [key for key in self.inputs if key not in KEYS and not key.startswith("excitation.")]
         return f"{strange[0]} changes more than numbers" if strange else why_not(self.scene, self.moving)
 
@@ -174,7 +180,7 @@ class Function:
 
     def looped(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
-        n, size = len(next(iter(flat.values()))), _MOVING if self.moving else _STATIC
+        n, size = len(next(iter(flat.values()))), BLOCK[self.moving]
         blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
         answers: list[Columns] = [{}] * len(blocks)
 
@@ -185,6 +191,14 @@ class Function:
             pool.do(len(blocks), job)
         return _joined(answers, self.outputs)
 
+    def with_reasons(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
+        """What the loop computed, with the reasons of rows that are refused."""
+        refused = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
+        answer["reason"][refused] = _REFUSED
+        for row in refused[:_REASONS]:
+            answer["reason"][row] = self._reason(flat, int(row))
+        return answer
+
     def scene_at(self, point: Mapping[str, float]) -> Scene:
         """The scene at one point, every rule looked at.
 
@@ -193,10 +207,14 @@ class Function:
         SceneError
             A number that is refused.
         """
+        return scene_from_dict(self._changed(point).to_dict(), default_registry())
+
+    def _changed(self, point: Mapping[str, float]) -> Scene:
+        """The scene with other numbers, which no rule looks at."""
         scene = self.scene
         for key, number in point.items():
             scene = with_column(scene, key, float(number))
-        return scene_from_dict(scene.to_dict(), default_registry())
+        return scene
 
     def _named(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
         """All inputs by their keys."""
@@ -268,7 +286,8 @@ class Function:
             with np.errstate(all="ignore"):  # of points that contradict themselves
                 problem = column_problem(self.scene, chosen)
                 bearing = build_columns(problem, plan)
-            computed = Computed.of(bearing, self.moving, partial(self._excitations, chosen), self.tolerance)
+            example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
+            computed = Computed.of(example, bearing, self.moving, partial(self._excitations, chosen), self.tolerance)
             fine = ~conspicuous(problem) & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:
@@ -326,10 +345,7 @@ class Function:
 
     def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """With runs of the points that the loop has left."""
-        left, refused = (np.flatnonzero(answer["status"] == how) for how in (PointStatus.FAILED, PointStatus.REFUSED))
-        answer["reason"][refused] = _REFUSED
-        for row in refused[:_REASONS]:
-            answer["reason"][row] = self._reason(flat, int(row))
+        answer, left = self.with_reasons(flat, answer), np.flatnonzero(answer["status"] == PointStatus.FAILED)
         seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
         if seconds > _LIMIT_S:
             answer["reason"][left] = (

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 #: The dimension of a sweep over a list of points; a grid has one dimension for each key instead.
 LIST = "point"
-_DONE = "done"
+_FINISHED = ("computed", "run")
 #: Numbers of an axis that differ by less are one value [relative].
 _SAME = 1e-9
 _SHOWN = 8
@@ -225,7 +225,7 @@ def _unfinished(dataset: Dataset) -> dict[str, int]:
     if "status" not in dataset:
         return {}
     states, counts = np.unique(dataset["status"].values.astype(str), return_counts=True)
-    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state != _DONE}
+    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state not in _FINISHED}
 
 
 def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import io
 import json
 import sqlite3
 import sys
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 import attrs
+import numpy as np
 
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
@@ -26,7 +28,7 @@ from raceway.scene.scene import Scene
 from raceway.storage.kernel_cache import source_key
 from raceway.storage.tables import ReadTables, Tables
 
-SCHEMA = 5
+SCHEMA = 6
 _STATES = ("waiting", "done", "failed")
 POINTS, _LOCK = "points.sqlite", ".lock"
 _COLUMNS = "key, state, reason, content, cost, digest"
@@ -48,7 +50,8 @@ class Row(NamedTuple):
     ----------
     key : number of a point, or hash of all that decides a case
     reason : why it failed or waits
-    content, cost : plain values; empty where it waits
+    content : plain values, or arrays of many points; empty where it waits
+    cost : plain values
     """
 
     key: Key
@@ -105,12 +108,18 @@ class Store:
         if record is None or not self._sound(*record):
             return Row(key, "waiting", DAMAGED, {}, {})
         _, state, reason, content, cost, _ = record
-        return Row(key, state, reason or "", json.loads(content or "{}"), json.loads(cost or "{}"))
+        return Row(key, state, reason or "", _unpacked(content), json.loads(cost or "{}"))
 
     def keys(self, state: str) -> set[Key]:
         """Keys of the rows in a state."""
         with told(self.path):
             return {key for (key,) in self._connection.execute("SELECT key FROM points WHERE state = ?", (state,))}
+
+    def costs(self) -> list[Tables]:
+        """Of finished rows whose key is a text."""
+        query = "SELECT cost FROM points WHERE state = 'done' AND typeof(key) = 'text'"
+        with told(self.path):
+            return [json.loads(cost or "{}") for (cost,) in self._connection.execute(query)]
 
     def put(self, rows: Iterable[Row]) -> None:
         """Store finished rows, all in one transaction.
@@ -122,7 +131,7 @@ class Store:
         """
         lines = list[tuple[object, ...]]()
         for key, state, reason, content, cost in rows:
-            columns = (key, state, reason, _text(content), _text(cost))
+            columns = (key, state, reason, _packed(content), _text(cost))
             lines.append((*columns, self._digest(*columns)))
         self._write(f"INSERT OR REPLACE INTO points ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", lines)
 
@@ -150,14 +159,20 @@ class Store:
             }
         expected = set(keys or sound)
         bad = {key for key in expected if not sound.get(key, False)}
-        if bad or expected != set(sound):
-            self._write("DELETE FROM points WHERE key = ?", [(key,) for key in set(sound) - expected])
+        strange = {key for key in set(sound) - expected if not sound[key]}  # runs of points that a block has left are not
+        if bad or strange:
+            self._write("DELETE FROM points WHERE key = ?", [(key,) for key in strange])
             self.wait(bad)
-            warnings.warn(f"{len(bad)} rows of the store are damaged: they are computed again", stacklevel=2)
+            warnings.warn(
+                f"{max(len(bad), len(strange))} rows of the store are damaged: they are computed again", stacklevel=2
+            )
 
     def _digest(self, *columns: object) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
-        return hashlib.blake2b(repr((self._origin, *columns)).encode(), digest_size=16).hexdigest()
+        digest = hashlib.blake2b(digest_size=16)
+        for column in (self._origin, *columns):
+            digest.update(column if isinstance(column, bytes) else repr(column).encode())
+        return digest.hexdigest()
 
     def _sound(self, key: object, state: object, *columns: object) -> bool:
         """Whether a row says what was written: finished ones have a digest, the others a state alone."""
@@ -273,6 +288,22 @@ def _read_facts(folder: Path, texts: Mapping[str, str]) -> Tables:
 
 def _damaged(folder: Path, how: str = "what it says of its scene and design is not what was written") -> RacewayError:
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
+
+
+def _packed(content: Tables) -> str | bytes:
+    """Plain values as text, arrays as a file of numpy's."""
+    if not any(isinstance(value, np.ndarray) for value in content.values()):
+        return _text(content)
+    memory = io.BytesIO()
+    np.savez(memory, **content)
+    return memory.getvalue()
+
+
+def _unpacked(content: str | bytes | None) -> Tables:
+    if not isinstance(content, bytes):
+        return dict(json.loads(content or "{}"))
+    with np.load(io.BytesIO(content)) as arrays:
+        return dict(arrays)
 
 
 def _text(value: object) -> str:

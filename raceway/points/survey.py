@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 
 import attrs
@@ -13,6 +14,7 @@ from raceway.framework.registry import Registry
 from raceway.points.axes import Design, tables_at
 from raceway.points.engine import plugins_of
 from raceway.points.store import files_of
+from raceway.scene.changes import continuous_keys
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
@@ -50,11 +52,12 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
     notes: list[str] = []
     first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)
     used, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
-    for where, changed, point in _others(design):
+    numbers = {key.path for key in continuous_keys(first)} & {axis.key for axis in design.axes if axis.numeric}
+    for where, changed, point in _others(design, numbers):
         try:
             scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
         except SceneError as error:
-            blamed = _blamed(error.mistakes, point, changed) if design.axes else error.mistakes
+            blamed = error.mistakes if design.listed else _blamed(error.mistakes, point, changed)
             mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in blamed]
             if len(mistakes) >= _MOST_MISTAKES:
                 break
@@ -78,14 +81,20 @@ def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> lis
     return blamed
 
 
-def _others(design: Design) -> Iterator[tuple[str, str, Tables]]:
-    """(where, key that differs from the first point, point)."""
+def _others(design: Design, continuous: Collection[str]) -> Iterator[tuple[str, str, Tables]]:
+    """(where, key that differs from the first point, point); of numbers at continuous keys the ends: rules are intervals."""
     first = design.point(0)
+    ends = {
+        axis.key: (int(axis.column.argmin()), int(axis.column.argmax())) for axis in design.axes if axis.key in continuous
+    }
+    if design.listed:
+        numbers = chain(*ends.values()) if len(ends) == len(design.axes) else range(design.size)
+        yield from ((f"point {n + 1}: ", "", design.point(n)) for n in dict.fromkeys(numbers) if n)
+        return
     for axis in design.axes:
-        for value in axis.values[1:]:
-            yield "", axis.key, {**first, axis.key: value}
-    for number, point in enumerate(design.listed[1:], 2):
-        yield f"point {number}: ", "", point
+        for n in ends.get(axis.key, range(len(axis.values))):
+            if n:
+                yield "", axis.key, {**first, axis.key: axis.values[n]}
 
 
 def _hash(name: str) -> str:

@@ -5,22 +5,25 @@ from __future__ import annotations
 import tempfile
 import time
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import attrs
+import numpy as np
 
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
-from raceway.framework.contracts import Lost
+from raceway.framework.contracts import Batch, Lost
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import telling
 from raceway.pipeline.simulate import OnProgress
-from raceway.points.axes import Design, grid, in_units, listed_points, numbers_at, tables_at
+from raceway.points.axes import Design, design_in_units, grid, listed_points, tables_at
+from raceway.points.blocks import Block, block_edges, block_key, block_length, block_row, column_function, left_over
 from raceway.points.dataset import SweepStore, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
+from raceway.points.function import Function, PointStatus
 from raceway.points.store import Row, exists, written
 from raceway.points.survey import Survey, survey
 from raceway.scene.inputs import SceneSource, plain_tables
@@ -67,7 +70,12 @@ class Point:
 
 @attrs.frozen
 class Sweep:
-    """A sweep that was looked over: what is computed, where it goes, and what is there already."""
+    """A sweep that was looked over: what is computed, where it goes, and what is there already.
+
+    Attributes
+    ----------
+    function : that computes blocks of points; None where each point is a run
+    """
 
     tables: Tables
     design: Design
@@ -75,6 +83,7 @@ class Sweep:
     plugins: tuple[str, ...]
     survey: Survey
     facts: Tables
+    function: Function | None
 
 
 def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
@@ -95,9 +104,11 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
     files = tuple(str(file.resolve()) for file in plugins)
     registry = registry_of(files)
     surveyed = survey(tables, design, registry)
+    function = None if files else column_function(tables, surveyed.scene, design, registry)
     facts = {
         "scene": surveyed.scene.to_dict(),
         "design": design.to_dict(),
+        "block": 0 if function is None else block_length(function),
         "identity": identity(registry, surveyed.used),
         "files": surveyed.files,
     }
@@ -114,7 +125,7 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(dict(tables), design, store, files, surveyed, facts)
+    return Sweep(dict(tables), design, store, files, surveyed, facts, function)
 
 
 def fill_store(
@@ -134,20 +145,58 @@ def fill_store(
     RacewayError
         A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
-    design = prepared.design
-    work = Work(Point(prepared.tables), prepared.plugins, prepared.facts["identity"])
-    with written(prepared.store, prepared.facts, range(design.size)) as store:
+    design, length = prepared.design, int(prepared.facts["block"])
+    edges = {block_key(first, last - first): (first, last) for first, last in block_edges(design.size, length)}
+    with written(prepared.store, prepared.facts, edges or range(design.size)) as store:
         if retry_failed:
             store.wait(store.keys("failed"))
-        waiting = sorted(store.keys("waiting"))
-        finished = design.size - len(waiting)
-        with closing(answers(executor, work, ((n, [(n, design.point(n))]) for n in waiting))) as results:
-            for number, answer in results:
-                store.put([Row(number, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer[0]])
-                finished += 1
-                if on_progress is not None:
-                    on_progress("points", finished, design.size)
+        waiting = store.keys("waiting")
+        progress = _Progress(design.size, on_progress)
+        if prepared.function is not None:
+            at_first = tables_at(prepared.tables, design.point(0), registry_of(prepared.plugins))
+            blocks = [ends for key, ends in edges.items() if key in waiting]
+            progress.finished = design.size - sum(last - first for first, last in blocks)
+            batches = ((k, [(first, design.columns(first, last))]) for k, (first, last) in enumerate(blocks))
+            for k, answer in _rows(executor, prepared, Block(at_first, prepared.function.outputs), batches):
+                row = _unfinished_block(*blocks[k]) if isinstance(answer, Lost) else answer
+                store.put([row])
+                progress.add(blocks[k][1] - blocks[k][0])
+            numbers = left_over(store, design.size, length)
+        else:
+            numbers = [number for number in range(design.size) if number in waiting]
+        progress.finished = design.size - len(numbers)
+        batches = ((n, [(n, design.point(n))]) for n in numbers)
+        for n, answer in _rows(executor, prepared, Point(prepared.tables), batches):
+            store.put([Row(n, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer])
+            progress.add(1)
     return open_store(prepared.store)
+
+
+def _rows(
+    executor: Executor, prepared: Sweep, function: Point | Block, batches: Iterable[Batch]
+) -> Iterator[tuple[int, Row | Lost]]:
+    """Number and row of each batch of one task."""
+    work = Work(function, prepared.plugins, prepared.facts["identity"])
+    with closing(answers(executor, work, batches)) as results:
+        for number, answer in results:
+            yield number, answer if isinstance(answer, Lost) else answer[0]
+
+
+def _unfinished_block(first: int, last: int) -> Row:
+    """Of a block that took its worker down: its points are left to runs."""
+    return block_row(first, {"status": np.full(last - first, PointStatus.FAILED)}, {}, {})
+
+
+class _Progress:
+    """How many points are finished, for whom it is reported to."""
+
+    def __init__(self, total: int, report: OnProgress | None) -> None:
+        self.finished, self._total, self._report = 0, total, report
+
+    def add(self, count: int) -> None:
+        self.finished += count
+        if self._report is not None:
+            self._report("points", self.finished, self._total)
 
 
 def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
@@ -265,7 +314,7 @@ def prepared_sweep(
     registry = registry_with(files)
     tables = plain_tables(scene, registry=registry)
     try:
-        prepared = prepare(tables, _in_units(_design_of(axes), tables, registry), store, files, resume)
+        prepared = prepare(tables, design_in_units(_design_of(axes), tables, registry), store, files, resume)
     except SceneError as error:
         raise _with_static_remedy(error) from None
     for note in prepared.survey.notes:
@@ -289,13 +338,6 @@ def _design_of(axes: Axes) -> Design:
     if isinstance(axes, Design):
         return axes
     return grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
-
-
-def _in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
-    """A design with all values as numbers in the units of their keys."""
-    if design.axes:
-        return Design(tuple(in_units(axis, tables, registry) for axis in design.axes))
-    return Design(listed=tuple(numbers_at(tables, point, registry) for point in design.listed))
 
 
 def executor_of(name: str | Executor, options_given: ReadTables, registry: Registry) -> Executor:

@@ -75,15 +75,31 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
             raise SceneError.at(key, value, f"`{name}` is not a table")
         table[name] = dict(inner)
         table = table[name]
+    if entry := _ENTRY.fullmatch(last):  # one number of several
+        name, place = entry[1], int(entry[2])
+        numbers = list(table.get(name, _default(parents, name)))
+        if place >= len(numbers):
+            raise SceneError.at(key, value, f"is not there: {name} has {len(numbers)} numbers")
+        last, value = name, [*numbers[:place], value, *numbers[place + 1 :]]
     table[last] = value
     return result
+
+
+def _default(parents: list[str], name: str) -> Iterable[object]:
+    """Numbers of a key that the tables leave out; none where it has no default."""
+    table = TABLES.get(parents[0]) if len(parents) == 1 else None
+    field = attrs.fields_dict(table).get(name) if table is not None else None
+    return field.default if field is not None and isinstance(field.default, tuple) else ()
 
 
 def value_at(tables: ReadTables, key: str) -> Any:
     """What stands at a dotted key, or None."""
     value: Any = tables
-    for name in key.split("."):
-        value = value.get(name) if isinstance(value, dict) else None
+    for step in _steps(key):
+        if isinstance(step, int):
+            value = value[step] if isinstance(value, list | tuple) and step < len(value) else None
+        else:
+            value = value.get(step) if isinstance(value, dict) else None
     return value
 
 
@@ -100,6 +116,7 @@ def without(tables: ReadTables, key: str) -> Tables:
 _PLUGINS = ("excitation", "bodies")
 #: Tables of numerical settings: the answer must not depend on them.
 _SETTINGS = ("integrator", "identifier", "mesh")
+_ENTRY = re.compile(r"([^\[\]]+)\[(\d+)\]")
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 

@@ -8,14 +8,17 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import CONVERGED, cholesky_solve, copy_matrix, find_root, settle
+from raceway.core.ring.equilibrium import CONVERGED, SLOW, cholesky_solve, copy_matrix, find_root, settle
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, work_rows
 from raceway.core.signatures import (
+    CONSTANTS,
+    CONTACTS,
     CUBE,
     LAW_POINTER,
     LINEAR,
     MATRIX,
+    RESPONSE,
     SYSTEM_POINTER,
     VECTOR,
     Balls,
@@ -47,12 +50,13 @@ class Points(NamedTuple):
 
 
 class States(NamedTuple):
-    """What is computed of n points: displacement (n, 5), positions of balls (n, Z, b), tangent of the contacts (n, 5, 5), contact
-    forces (n, 2 Z), status (n,)."""
+    """What is computed of n points: displacement (n, 5), positions of balls (n, Z, b), tangent of the contacts and their
+    damping (n, 5, 5), contact forces (n, 2 Z), status (n,)."""
 
     q: np.ndarray
     ball: np.ndarray
     stiffness: np.ndarray
+    damping: np.ndarray
     force: np.ndarray
     status: np.ndarray
 
@@ -67,7 +71,7 @@ class Kernels(NamedTuple):
 
 
 POINTS = record(Points, MATRIX, CUBE, CUBE, MATRIX, VECTOR, MATRIX)
-STATES = record(States, MATRIX, CUBE, CUBE, MATRIX, int64[::1])
+STATES = record(States, MATRIX, CUBE, CUBE, CUBE, MATRIX, int64[::1])
 KERNELS = record(Kernels, SYSTEM_POINTER, SYSTEM_POINTER, int64, LAW_POINTER)
 
 
@@ -91,13 +95,37 @@ def _definiteness(K, linear, arm, factor, scale):
     return least / largest
 
 
+@jit(void(KERNELS, CONTACTS, CONSTANTS, VECTOR, MATRIX, RESPONSE, MATRIX), allocates=True)
+def _slow_damping(kernels, contacts, constants, q, places, response, history):
+    """C of the response, of a ring that moves while the balls stay, to that of slow motions in which they move, too: see
+    ``raceway.core.ring.system.System.damping_at``; ``history`` (Z, b) holds the slips."""
+    stiffest, damped, ball, C = 0.0, 0.0, places.copy(), response.C
+    for i in range(3):
+        stiffest, damped = max(stiffest, response.K[i, i]), max(damped, C[i, i])
+    if damped == 0.0:
+        return
+    rate, columns, still = SLOW * stiffest / damped, ball.shape[1], np.zeros(5)
+    shifted = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), response.work)
+    C[:] = 0.0
+    for sign in (1.0, -1.0):
+        for k in range(ball.shape[0]):
+            for c in range(columns):
+                if columns == kernels.columns or c < 2 or c > 3:  # slips have no rates
+                    history[k, c] = -sign * rate * places[k, c]
+        copy_matrix(places, ball)
+        kernels.system(0.0, q, still, Balls(ball, sign * rate, history), contacts, constants, shifted)
+        for i in range(5):
+            for j in range(5):
+                C[i, j] += sign * (shifted.K[i, j] + sign * rate * shifted.C[i, j]) / (2.0 * rate)
+
+
 @jit(void(KERNELS, LINEAR, POINTS, STATES), allocates=True, releases=True)
 def equilibria(kernels, linear, points, states):
     """The equilibrium of every point; ``linear`` has what all of them share.  States of points whose status is not 0 are undefined."""
     n, z = points.table.shape[0], points.table.shape[1]
     memory, columns = np.zeros((2 * z, 0)), states.ball.shape[2]
     still, report, f, factor, scale = np.zeros(5), np.zeros(2), np.empty(5), np.empty((5, 5)), np.empty(5)
-    C, stiffness = np.empty((5, 5)), linear.stiffness.copy()
+    stiffness = linear.stiffness.copy()
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     free_ball, history = np.zeros((z, kernels.columns)), np.zeros((z, columns))
     for p in range(n):
@@ -113,7 +141,7 @@ def equilibria(kernels, linear, points, states):
         for i in range(5):
             q[i] = points.guess[p, i]
         free_ball[:] = 0.0
-        response = Response(f, K, C, work)
+        response = Response(f, K, states.damping[p], work)
         forces = Forces(kernels.base, kernels.law, params, constants)
         status = settle(forces, own, TOLERANCE, 0.0, StaticState(q, free_ball, memory), response, report)
         ball = states.ball[p]
@@ -131,4 +159,5 @@ def equilibria(kernels, linear, points, states):
                 status = LOOSE
             for i in range(2 * z):
                 states.force[p, i] = work[CONTACT_FORCE, i]
+            _slow_damping(kernels, contacts, constants, q, ball, response, history)
         states.status[p] = status

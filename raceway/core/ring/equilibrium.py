@@ -169,6 +169,8 @@ def at_rest(constants, t):
 CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE, RUN_AWAY = range(5)
 #: Entries of ``report``.
 ITERATIONS, RESIDUAL = range(2)
+#: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
+SLOW = 1e-4
 _LIMIT = 300
 #: Rows of ``work`` that the energy's integral takes, from the first to the one after the last.
 _SCRATCH, _SCRATCH_END = 8, 14

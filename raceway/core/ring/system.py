@@ -7,7 +7,7 @@ import numpy as np
 
 from raceway.core.jit import Kernel, address_of
 from raceway.core.record import check_state
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, settle
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, settle
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
@@ -26,8 +26,6 @@ from raceway.core.signatures import (
 )
 from raceway.errors import ConvergenceError
 
-#: Rate of the slow motions that a damping is taken from, over the stiffness by the damping [1/s]: an error of second order in it.
-_SLOW = 1e-4
 #: Rounding of a force over stiffness and distance of ball and groove centres; 0.4 to 0.7 of 2.2e-16 were measured.
 _ROUNDING = 8.9e-16
 
@@ -218,7 +216,7 @@ class System(Ring):
         """
         if not now.damping.any():
             return now.damping
-        rate = _SLOW * float(np.diag(now.stiffness)[:3].max() / np.diag(now.damping)[:3].max())
+        rate = SLOW * float(np.diag(now.stiffness)[:3].max() / np.diag(now.damping)[:3].max())
         return (self.stiffness_at_rate(q, now, rate) - self.stiffness_at_rate(q, now, -rate)) / (2.0 * rate)
 
     def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:

@@ -1,0 +1,221 @@
+"""Sweeps of points that a compiled loop computes: blocks of columns in the store, the same numbers as runs of their own."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.framework.contracts import Lost
+from raceway.out.quantities import COLUMNS
+from raceway.plugins.processes import Processes, Serial
+from raceway.points import blocks
+from raceway.points.axes import grid, listed_points, tables_at
+from raceway.points.dataset import open_store, values_of
+from raceway.points.sweep import fill_store, prepare
+from raceway.testing import default_registry
+from validation.command_line import invoke
+
+STATIC: dict[str, Any] = {
+    "title": "static",
+    "bearing": {"preset": "B7206C"},
+    "load": {"axial": 1000.0},
+    "supports": {"tilt": "free"},
+    "kinematics": {"spin_speed_rpm": 9000.0},
+}
+LOADS = "load.axial=300:2000:24"
+
+
+def filled(folder: Path, design: Any, executor: Any = None, resume: bool = False) -> Any:
+    fill_store(prepare(STATIC, design, folder, resume=resume), executor or Serial()).close()
+    with open_store(folder) as store:
+        return store.to_xarray()
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blocks of ten points."""
+    monkeypatch.setattr("raceway.points.sweep.block_length", lambda _function: 10)
+
+
+@pytest.mark.parametrize(
+    "changes, axes",
+    [
+        (
+            {},
+            {
+                "load.axial": [300.0, 2000.0],
+                "kinematics.spin_speed_rpm": [0.0, 1000.0, 24000.0],
+                "load.radial[1]": [0.0, 30.0],
+            },
+        ),
+        ({"supports": {"tilt": "locked"}, "contact": {"kind": "hertz", "damping": 0.01}}, {"load.axial": [300.0, 800.0]}),
+        (
+            {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
+            {"bearing.preload": [200.0, 600.0], "bearing.contact_angle_deg": [14.0, 16.0]},
+        ),
+    ],
+    ids=["speeds", "damped", "pair"],
+)
+def test_computed_points_are_what_runs_give(changes: dict[str, Any], axes: dict[str, Any]) -> None:
+    """1e-9 of every number that a run has, and no number more."""
+    tables = {**STATIC, **changes}
+    swept = rw.sweep(tables, axes)
+    assert (swept.status == "computed").all()
+    flat = swept.stack(point=list(axes))
+    for number, point in enumerate(flat.point.values.tolist()):
+        at = dict(zip(axes, point, strict=True))
+        values = values_of(rw.run(rw.Scene.from_dict(tables_at(tables, at, default_registry()))))
+        one = flat.isel(point=number)
+        for name, value in values.items():
+            if name == "error_model_bound" and "bearing.preload" in axes:
+                continue  # rings grow by their own sections
+            # Damping is the difference of two stiffnesses, 1e-4 of them.
+            bound = (1e-7 if name == "damping" else 1e-9) * (np.abs(value).max() or 1.0)
+            assert np.abs(one[name].values - value).max() <= bound, (name, at)
+        more = [name for name in COLUMNS if name in one and name not in values and np.isfinite(one[name].values).any()]
+        assert not more
+
+
+def test_what_the_loop_leaves_is_run_and_what_a_rule_refuses_says_so(tmp_path: Path, small: None) -> None:
+    design = listed_points([{"load.axial": load, "rotor.mass": 1.0} for load in [*np.linspace(300.0, 2000.0, 11), 0.0]])
+    swept = filled(tmp_path / "s", design)
+    assert swept.status.values.tolist() == [*["computed"] * 11, "failed"]
+    with open_store(tmp_path / "s") as store:
+        assert store.status() == {"waiting": 0, "done": 11, "failed": 1, "computed": 11, "total": 12}
+        (remark,) = store.remarks()
+        assert "nothing loads the bearing" in remark["reason"] and remark["point"]["load.axial"] == 0.0
+        rows = list(store.rows())
+    assert rows[3]["values"]["p0"] == float(swept.p0[3]) and not rows[11]["values"]
+    with pytest.raises(rw.SceneError, match=r"load\.axial"):
+        prepare(STATIC, grid(["load.axial=300,inf"]), tmp_path / "t")
+
+
+def test_kinds_and_words_are_run_point_by_point(tmp_path: Path) -> None:
+    for axis in ("supports.tilt=free,locked", "contact.kind=hertz,penalty", "bearing.ball_count=12,14"):
+        assert prepare(STATIC, grid([axis, "load.axial=300,400"]), tmp_path / "s").function is None
+    assert prepare(STATIC, grid(["load.axial=300,400"]), tmp_path / "s").function is not None
+    slow = {**STATIC, "bodies": {"kind": "condensed"}}
+    assert prepare(slow, grid(["load.axial=300,400"]), tmp_path / "s").function is None
+
+
+class _Stopping(Serial):
+    """Ctrl-C after one block."""
+
+    def compute(self, work: Any, batches: Any) -> Any:
+        for count, answer in enumerate(super().compute(work, batches)):
+            if count == 1:
+                raise KeyboardInterrupt
+            yield answer
+
+
+class _Losing(Serial):
+    """The first block takes its worker down."""
+
+    def compute(self, work: Any, batches: Any) -> Any:
+        for number, answer in super().compute(work, batches):
+            yield number, Lost("it died") if number == 0 and isinstance(work.function, blocks.Block) else answer
+
+
+def test_blocks_are_resumed_shared_and_repaired(tmp_path: Path, small: None) -> None:
+    design = grid([LOADS])
+    whole = filled(tmp_path / "whole", design)
+    with pytest.raises(KeyboardInterrupt):
+        filled(tmp_path / "s", design, _Stopping())
+    with open_store(tmp_path / "s") as store:
+        assert store.status()["waiting"] == 14
+        assert [row["status"] for row in store.rows()] == ["computed"] * 10 + ["waiting"] * 14
+    assert filled(tmp_path / "s", design, resume=True).equals(whole)
+    assert filled(tmp_path / "p", design, Processes(workers=2)).equals(whole)
+    import sqlite3
+    from contextlib import closing
+
+    with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
+        file.execute("UPDATE points SET content = zeroblob(length(content)) WHERE key = '10:20'")
+    with pytest.warns(UserWarning, match="10 of 24 rows are damaged"), open_store(tmp_path / "s") as store:
+        assert int(np.isnan(store.to_xarray().p0).sum()) == 10
+    with pytest.warns(UserWarning, match="1 rows of the store are damaged"):
+        assert filled(tmp_path / "s", design, resume=True).equals(whole)
+
+
+def test_a_block_whose_worker_dies_is_run_point_by_point(tmp_path: Path, small: None) -> None:
+    design = grid(["load.axial=300:2000:12"])
+    swept, whole = filled(tmp_path / "s", design, _Losing()), filled(tmp_path / "whole", design)
+    assert swept.status.values.tolist() == ["run"] * 10 + ["computed"] * 2
+    np.testing.assert_allclose(swept.p0, whole.p0, rtol=1e-9)
+    assert filled(tmp_path / "s", design, resume=True).equals(swept)  # runs beside blocks stay
+
+
+def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
+    tables = tmp_path / "scene.toml"
+    tables.write_text(
+        'title = "t"\n[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n[kinematics]\nspin_speed_rpm = 9000.0\n'
+    )
+    words = ["sweep", str(tables), "--grid", "load.axial=300:2000:400", "--grid", "kinematics.spin_speed_rpm=1000:24000:300"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "raceway", *words, "--out", str(tmp_path / "s")], stdout=subprocess.DEVNULL
+    )
+    done, end = 0, time.monotonic() + 100.0
+    while not 0 < done < 120_000 and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.02)
+        if (tmp_path / "s" / "points.sqlite").is_file():
+            try:
+                with open_store(tmp_path / "s") as store:
+                    done = store.status()["done"]
+            except rw.RacewayError:
+                continue  # it is being made
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert done > 0
+    shown = invoke(*words, "--out", str(tmp_path / "s"), "--resume")
+    assert shown.exit_code == 0 and "120000 points: 120000 done" in shown.output
+    axes = {
+        "load.axial": np.linspace(300.0, 2000.0, 400)[::37],
+        "kinematics.spin_speed_rpm": np.linspace(1000.0, 24000.0, 300)[::29],
+    }
+    with open_store(tmp_path / "s") as store:
+        some = store.to_xarray().sel(axes, method="nearest")
+    np.testing.assert_allclose(some.p0, rw.sweep(tables, axes).p0, rtol=1e-9)
+
+
+def test_ctrl_c_is_answered_within_a_second(tmp_path: Path) -> None:
+    rw.sweep(STATIC, {"load.axial": [300.0, 400.0]})  # kernels are compiled
+    sweep = prepare(STATIC, grid(["load.axial=300:2000:1000", "kinematics.spin_speed_rpm=1000:24000:1000"]), tmp_path / "s")
+    pressed: list[float] = []
+
+    def press() -> None:
+        pressed.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    threading.Timer(2.0, press).start()
+    with pytest.raises(KeyboardInterrupt):
+        fill_store(sweep, Serial())
+    assert time.monotonic() - pressed[0] < 1.0
+    with open_store(tmp_path / "s") as store:
+        assert store.status()["waiting"] > 0
+
+
+def test_the_answer_says_how_points_were_computed(tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n')
+    words = ["sweep", tmp_path / "s.toml", "--grid", "load.axial=0,500,900", "--out", tmp_path / "s"]
+    shown = " ".join(invoke(*words, "--csv").output.split())
+    assert "3 points: 2 done, 1 failed" in shown and "2 are computed in a compiled loop" in shown
+    assert "the stability of orbits, other orbits and warnings are not looked at" in shown
+    lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
+    assert [line.split(",")[1] for line in lines] == ["status", "failed", "computed", "computed"]
+    content = json.loads(invoke(*words, "--resume", "--json").stdout)
+    assert content["states"]["computed"] == 2 and [row["status"] for row in content["rows"]] == [
+        "failed",
+        "computed",
+        "computed",
+    ]
