@@ -56,7 +56,7 @@ def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(clus
         assert done < POINTS, "nothing was left for the other worker"
         assert found.status()["done"] == POINTS, next(found.rows())["reason"]
         assert rows(found) == rows(alone)
-        pids = {int(row["cost"]["worker"].rpartition(":")[2]) for row in found.rows()}
+        pids = {int(cost["worker"].rpartition(":")[2]) for cost in found.costs(int)}
         assert pids <= {cluster.running[name].pid for name in ("first", "second")}
     refused = [str(one.message) for one in told if "gets no points" in str(one.message)]
     assert len(refused) == 1

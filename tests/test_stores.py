@@ -26,7 +26,7 @@ def chosen(axes, at=None, **wanted):
 
 
 def drawn(picture):
-    return draw(picture.data, picture.kind, picture.x, picture.y, picture.panels, picture.title, picture.remark)
+    return draw(picture)
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.mesh_files import File
 from raceway.points import axes as design
-from raceway.points.axes import point_list
+from raceway.points.axes import design_file
 from raceway.storage import number_table
 from raceway.storage.files import memory_for, told
 from raceway.storage.number_table import read_numbers
@@ -54,7 +54,7 @@ READERS = {
     "vtu": (".vtu", Vtu().read),
     "inp": (".inp", Abaqus().read),
     "msh": (".msh", Msh().read),
-    "points of a sweep": (".csv", point_list),
+    "points of a sweep": (".csv", design_file),
     "plug-in": (".py", import_file),
     "step": (".step", lambda path: Gmsh(ball=str(path)).mesh(BEARING)),
 }

@@ -56,7 +56,7 @@ def timed(count: int, *more: str, bodies: str = "rigid") -> dict[str, float]:
         process.returncode = os.waitstatus_to_exitcode(status)
         with open_store(store) as there:
             states = there.status()
-            points = sum(row["cost"]["cpu_s"] for row in there.rows())
+            points = sum(cost["cpu_s"] for kind in (int, str) for cost in there.costs(kind))
     if process.returncode or states["done"] != count:
         raise RuntimeError(f"a sweep of {count} points ended with code {process.returncode}, {states}")
     return {
@@ -148,7 +148,7 @@ def worker_killed(count: int = 200) -> dict[str, Any]:
         with _running(words(count, store, "--executor", "processes")) as process:
             _until(store, process, count // 3)
             with open_store(store) as there:
-                worker = int(next(row["cost"]["worker"] for row in there.rows() if row["cost"]).rpartition(":")[2])
+                worker = int(there.costs(int)[0]["worker"].rpartition(":")[2])
             os.kill(worker, signal.SIGKILL)
             code = process.wait(300)
         return {"code": code, "equal": rows_of(store) == rows_of(whole)}

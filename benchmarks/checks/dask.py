@@ -84,7 +84,7 @@ def _unfit(cluster: Cluster, folder: Path) -> list[Row]:
         warnings.simplefilter("always")
         with fill_store(prepared(folder / "unfit"), Dask(scheduler=cluster.address, patience=START_S)) as store:
             done = store.status()["done"]
-            pids = {int(row["cost"]["worker"].rpartition(":")[2]) for row in store.rows()}
+            pids = {int(cost["worker"].rpartition(":")[2]) for cost in store.costs(int)}
     words = [str(one.message) for one in told if "elsewhere" in str(one.message)]
     refused = bool(words) and cluster.running["without"].pid not in pids and done == POINTS
     said = words[0].partition(" gets ")[2] if words else "nothing is said"

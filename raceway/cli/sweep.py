@@ -21,8 +21,8 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
 from raceway.out.table import micro, written
 from raceway.out.wrapping import Words
-from raceway.points.axes import Design, design_file, grid, point_list, point_words, shown
-from raceway.points.dataset import NOT_LOOKED_AT, TABLE, open_store, write_csv, write_netcdf
+from raceway.points.axes import Design, design_file, grid, point_words, shown
+from raceway.points.dataset import NOT_LOOKED_AT, TABLE, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
@@ -72,18 +72,15 @@ class _Swept(Answer):
 
     def report(self) -> Iterator[Part]:
         """How many points are in each state, the first of them with their stiffness, why points failed, and what they warn of."""
-        reasons = list[str]()
-        # Warning without its numbers -> count, its words and the point that has it first.
-        warned = dict[str, tuple[int, str, Tables]]()
         with open_store(self.store) as store:
-            title, states = store.title, store.status()
-            rows = [_row(row) for row in islice(store.rows(), _MOST_ROWS)]
-            for row in store.remarks():
-                for text in row["warnings"]:
-                    count, first, point = warned.get(key := _NUMBER.sub("#", text), (0, text, row["point"]))
-                    warned[key] = count + 1, first, point
-                if row["reason"] and len(reasons) < _MOST_REASONS:
-                    reasons.append(f"{point_words(row['point'])}: {row['reason'].splitlines()[0]}")
+            title, states, points = store.title, store.status(), points_of(store)
+        rows = [_row(row) for row in islice(points.rows(), _MOST_ROWS)]
+        # Warning without its numbers -> count, its words and the point that has it first.
+        warned = dict[str, tuple[int, str, int]]()
+        for number, texts in points.warnings.items():
+            for text in texts:
+                count, first, where = warned.get(key := _NUMBER.sub("#", text), (0, text, number))
+                warned[key] = count + 1, first, where
         total = states["total"]
         counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "waiting") if states[name])
         yield Words(title, "bold")
@@ -93,9 +90,11 @@ class _Swept(Answer):
         yield f"{total} points: {counted}"
         if states["computed"]:
             yield f"{states['computed']} are computed in a compiled loop. {NOT_LOOKED_AT}"
-        yield from (f"failed: {micro(reason)}" for reason in reasons)
-        for count, text, point in warned.values():
-            yield f"{count} point{'s warn' if count > 1 else ' warns'}: {micro(text)} (first at {point_words(point)})"
+        for number, reason in islice(points.reasons.items(), _MOST_REASONS):
+            yield f"failed: {point_words(points.design.point(number))}: {micro(reason.splitlines()[0])}"
+        for count, text, where in warned.values():
+            words = "points warn" if count > 1 else "point warns"
+            yield f"{count} {words}: {micro(text)} (first at {point_words(points.design.point(where))})"
         yield from written(self.files)
 
 
@@ -216,7 +215,7 @@ def sweep(
     kind : of the picture; None: map where both axes have more than 8 values, else curves
     picture : a .png or .svg; None: STORE/NAME-KIND.png
     """
-    from raceway.points.sweep import all_failed, executor_of, fill_store, prepared_sweep
+    from raceway.points.sweep import all_failed, executor_of, fill_store, prepare
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
     if (stored := exists(scene)) or value is not None:
@@ -232,7 +231,7 @@ def sweep(
     resume = resume or retry_failed
     if resume and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to go on with: it is begun anew", stacklevel=2)
-    prepared = prepared_sweep(tables, listed, folder, resume, plugins)
+    prepared = prepare(tables, listed, folder, plugins, resume)
     stopped: BaseException | None = None
     try:
         with telling(progress, remaining=True) as report:
@@ -271,12 +270,11 @@ def _files(steps: Iterable[Callable[[], object]], folder: Path) -> tuple[list[st
 
 
 def _design(axes: tuple[str, ...], points: str | Path | None, design: str | Path | None) -> Design:
-    named = [name for name, value in (("--grid", axes), ("--list", points), ("--design", design)) if value]
-    if len(named) > 1:
-        raise SceneError.at(" and ".join(named), None, "contradict each other: give one of them")
-    if points is not None:
-        return point_list(Path(points))
-    return design_file(Path(design)) if design is not None else grid(axes)
+    options = {"--grid": axes, "--list": points, "--design": design}
+    if len(names := [name for name, value in options.items() if value]) > 1:
+        raise SceneError.at(" and ".join(names), None, "contradict each other: give one of them")
+    file = points or design
+    return grid(axes) if file is None else design_file(Path(file))
 
 
 def _has_netcdf() -> bool:

@@ -204,8 +204,7 @@ def _range(key: str, text: str, most: int) -> list[Any]:
 
 def points(axes: Sequence[Axis]) -> Iterator[Tables]:
     """Every combination, the last axis running fastest."""
-    for values in itertools.product(*(axis.values for axis in axes)):
-        yield dict(zip((axis.key for axis in axes), values, strict=True))
+    return Design(tuple(axes)).points()
 
 
 def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
@@ -293,8 +292,6 @@ def refuse_mistakes(tables: ReadTables, axes: tuple[Axis, ...], registry: Regist
 _MOST_SWEEP_POINTS = 1_000_000
 #: Bytes of a list of them at most: 256 for each.
 _LONGEST = 256 * _MOST_SWEEP_POINTS
-#: Values of an axis that a message names one by one.
-_MOST_SHOWN = 9
 _FILE_FORM = 'must be a TOML file with a table [grid], for instance "load.axial" = [400, 1000], or with tables [[points]]'
 
 
@@ -340,40 +337,11 @@ class Design:
         return [numbers] * len(self.axes) if self.listed else np.unravel_index(numbers, self.shape)
 
     def to_dict(self) -> Tables:
-        return {"listed": self.listed, "axes": [axis.to_dict() for axis in self.axes]}
+        return {"listed": self.listed, "axes": {axis.key: list(axis.values) for axis in self.axes}}
 
     @classmethod
     def from_dict(cls, tables: ReadTables) -> Design:
-        return cls(tuple(Axis(axis["key"], tuple(axis["values"])) for axis in tables["axes"]), tables["listed"])
-
-    def differences(self, stored: Design) -> list[str]:
-        """In words what this design has and the other one has not: axes with their values."""
-        if self == stored:
-            return []
-        if self.listed != stored.listed:
-            return [f"{self.in_words()} there, {stored.in_words()} here"]
-        old, new = ({axis.key: axis.values for axis in design.axes} for design in (self, stored))
-        words = []
-        for key in [*old, *(key for key in new if key not in old)]:
-            if key not in new:
-                words.append(f"{key} = {_few(old[key])} there, no axis here")
-            elif key not in old:
-                words.append(f"{key} = {_few(new[key])} here, no axis there")
-            elif old[key] != new[key]:
-                words.append(f"{key}: {_few(old[key])} there, {_few(new[key])} here")
-        return words or [f"axes {', '.join(old)} there, {', '.join(new)} here"]
-
-    def in_words(self) -> str:
-        if self.listed:
-            return f"{self.size} listed points over {', '.join(self.keys)}"
-        return f"{' x '.join(str(n) for n in self.shape)} points over {', '.join(self.keys)}"
-
-
-def _few(values: Sequence[object]) -> str:
-    """Values of an axis; of a long one the ends and how many."""
-    if len(values) <= _MOST_SHOWN:
-        return ", ".join(shown(value) for value in values)
-    return f"{shown(values[0])}, {shown(values[1])}, ..., {shown(values[-1])} ({len(values)} values)"
+        return cls(tuple(Axis(key, tuple(values)) for key, values in tables["axes"].items()), tables["listed"])
 
 
 def grid(definitions: Vary) -> Design:
@@ -398,40 +366,28 @@ def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
     return _listed("points", tidy(list(points)))
 
 
-def point_list(path: Path) -> Design:
-    """The points of a file: CSV with keys in its first line, JSON (a list of objects), or TOML (tables [[points]]).
+def design_file(path: Path) -> Design:
+    """The points of a file: CSV with keys in its first line, JSON (a list of objects), or TOML.
+
+    A TOML file has tables ``[[points]]``, or a grid in a table ``[grid]`` with ``"key" = [values]`` or ``"start:stop:count"``.
 
     Raises
     ------
     SceneError
-        A file that cannot be read, or points that do not have the same keys.
+        A file that cannot be read, points that do not have the same keys, or mistakes in its axes.
     """
-    readers = {".csv": _csv_points, ".json": _json_points, ".toml": lambda p: read_toml(p).get("points")}
+    readers = {".csv": _csv_points, ".json": _json_points, ".toml": read_toml}
     if path.suffix.lower() not in readers:
         raise SceneError.at(str(path), None, f"must end in one of {', '.join(readers)}")
-    return _listed(path, readers[path.suffix.lower()](path))
-
-
-def design_file(path: Path) -> Design:
-    """A grid or a list from a TOML file: table ``[grid]`` with ``"key" = [values]`` or ``"start:stop:count"``, or ``[[points]]``.
-
-    Raises
-    ------
-    SceneError
-        A file of another form, or mistakes in its axes.
-    """
-    tables = read_toml(path)
-    strange = sorted(set(tables) - {"grid", "points"})
-    if strange or ("grid" in tables) == ("points" in tables):
-        raise SceneError.at(str(path), None, f"{_FILE_FORM}{', not both' if not strange else ', not ' + strange[0]}")
-    if "points" in tables:
-        return _listed(path, tables["points"])
-    entries = tables["grid"]
-    if not isinstance(entries, dict):
-        raise SceneError.at(f"{path}: grid", entries, _FILE_FORM)
-    words = (
-        (key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)]) for key, value in _dotted(entries)
-    )
+    content = readers[path.suffix.lower()](path)
+    if not isinstance(content, dict):
+        return _listed(path, content)
+    if len(content) != 1 or not isinstance(content.get("grid", {}), dict) or not content.keys() <= {"grid", "points"}:
+        raise SceneError.at(str(path), None, _FILE_FORM)
+    if "points" in content:
+        return _listed(path, content["points"])
+    words = ((key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)])
+             for key, value in _dotted(content["grid"]))  # fmt: skip
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 

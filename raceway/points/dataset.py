@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,7 +22,7 @@ from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Design, is_number
 from raceway.points.blocks import block_edges, block_key
 from raceway.points.function import PointStatus
-from raceway.points.store import DAMAGED, POINTS, Row, Store, connected, told
+from raceway.points.store import DAMAGED, POINTS, Store, connected, told
 from raceway.points.survey import key_facts
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from sqlite3 import Connection
 
-    import h5netcdf
     import xarray
 
     from raceway.pipeline.result import Result
@@ -61,11 +59,11 @@ def values_of(result: Result) -> Tables:
     return values
 
 
+#: Status of points that have numbers.
+FINISHED = ("computed", "run")
 #: What runs say of a point beyond the columns.
 NOT_LOOKED_AT = "Of computed points the stability of orbits, other orbits and warnings are not looked at: raceway run does"
 RESULTS, TABLE = "results.nc", "results.csv"
-#: Words of any length, as HDF5 has them.
-_WORDS = np.dtype("O", metadata={"vlen": str})
 #: Dimensions, values and attributes of a variable.
 Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 
@@ -96,85 +94,18 @@ class SweepStore(Store):
 
     def status(self) -> dict[str, int]:
         """Number of points in each state, and ``total``; of those that are done, how many the compiled loop ``computed``."""
-        counts, total, length = self.counts(), self.design.size, self.facts["block"]
-        if length:
-            rows = self.costs()
-            computed, refused = (sum(cost[how.name] for cost in rows) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
-            counts = {
-                "done": counts["done"] - len(rows) + computed,
-                "failed": counts["failed"] + refused,
-                "computed": computed,
-            }
-        waiting = total - counts["done"] - counts["failed"]
-        return {
-            "waiting": waiting,
-            "done": counts["done"],
-            "failed": counts["failed"],
-            "computed": 0,
-            **counts,
-            "total": total,
-        }
-
-    def blocks(self) -> Iterator[tuple[int, int, Row]]:
-        """The first point of each block, that after its last one, and its row."""
-        for first, last in block_edges(self.design.size, self.facts["block"]):
-            yield first, last, self.get(block_key(first, last - first))
-
-    def runs(self) -> Iterator[Row]:
-        """The rows of single points; beside blocks those alone that are finished."""
-        if not self.facts["block"]:
-            return (self.get(number) for number in range(self.design.size))
-        return (self.get(key) for key in sorted(k for k in self.keys("done") | self.keys("failed") if isinstance(k, int)))
+        counts, total, blocks = self.counts(), self.design.size, self.costs(str)
+        computed, refused = (sum(cost[how.name] for cost in blocks) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
+        done, failed = counts["done"] - len(blocks) + computed, counts["failed"] + refused
+        return {"waiting": total - done - failed, "done": done, "failed": failed, "computed": computed, "total": total}
 
     def rows(self) -> Iterator[Tables]:
-        """``{point, status, reason, values, warnings, cost}`` of every point, in the order of the design."""
-        runs = {row.key: row for row in self.runs()} if self.facts["block"] else {}
-        for first, last, block in self.blocks():
-            reasons = json.loads(block.reason) if block.state == "done" else {}
-            status = _status_of(block, last - first)
-            for number, word in enumerate(status.tolist(), first):
-                if number in runs:
-                    yield self._row(runs[number])
-                    continue
-                k = number - first
-                values = {n: v[k].tolist() for n, v in block.content.items() if n != "status"} if word == "computed" else {}
-                values = {name: value for name, value in values.items() if isinstance(value, list) or math.isfinite(value)}
-                reason = reasons.get(str(number), "")
-                yield self._row(Row(number, word, reason, {"values": values}, {}))
-        if not self.facts["block"]:
-            yield from map(self._row, self.runs())
-
-    def remarks(self) -> Iterator[Tables]:
-        """``rows`` of points that failed or that warn, those of blocks first."""
-        for _, _, block in self.blocks():
-            reasons = json.loads(block.reason) if block.state == "done" else {}
-            yield from (self._row(Row(int(number), "refused", reason, {}, {})) for number, reason in reasons.items())
-        yield from (self._row(row) for row in self.runs() if row.state == "failed" or row.content.get("warnings"))
-
-    def _row(self, row: Row) -> Tables:
-        content = {"values": {}, "warnings": [], **row.content}
-        point = self.design.point(int(row.key))
-        return {
-            "point": point,
-            "status": _STATUS.get(row.state, row.state),
-            "reason": row.reason,
-            **content,
-            "cost": row.cost,
-        }
+        """``{point, status, reason, values, warnings}`` of every point, in the order of the design."""
+        return points_of(self).rows()
 
     def to_xarray(self) -> xarray.Dataset:
         """The labelled results: a dimension for each axis of a grid, or ``point`` for a list."""
         return dataset(self)
-
-
-#: What a point's status is called where its row has another word.
-_STATUS = {"done": "run"}
-_OF_BLOCK = np.array(["computed", "run", "refused", "waiting"], dtype=object)
-
-
-def _status_of(block: Row, count: int) -> np.ndarray:
-    """(n,) of the points of a block: what the loop has left waits for its run."""
-    return _OF_BLOCK[block.content["status"]] if block.state == "done" else np.full(count, "waiting", dtype=object)
 
 
 def open_store(path: str | Path) -> SweepStore:
@@ -192,19 +123,69 @@ def open_store(path: str | Path) -> SweepStore:
         return SweepStore(folder, connected(folder))
 
 
-@attrs.frozen
-class _Table:
-    """The labelled results of a store, before any library of arrays has them.
+#: Words for the status of a block's point: what the loop has left waits for its run.
+_STATUS = np.array(["computed", "run", "refused", "waiting"], dtype=object)
+
+
+@attrs.frozen(eq=False)
+class Points:
+    """What is stored of all points, by their numbers.
 
     Attributes
     ----------
-    variables, coordinates : name -> its dimensions, values and attributes
-    attributes : of the whole
+    columns : quantity -> (n, ...), nan where a point has none;  status : (n,) words
+    reasons, warnings : of points that have some;  damaged : number of points whose rows are
     """
 
-    variables: dict[str, Labelled]
-    coordinates: dict[str, Labelled]
-    attributes: dict[str, str | int]
+    design: Design
+    columns: dict[str, np.ndarray]
+    status: np.ndarray
+    reasons: dict[int, str]
+    warnings: dict[int, list[str]]
+    damaged: int
+
+    def rows(self) -> Iterator[Tables]:
+        """``{point, status, reason, values, warnings}`` of every point."""
+        for number, status in enumerate(self.status.tolist()):
+            values = {name: column[number] for name, column in self.columns.items() if status in FINISHED}
+            yield {
+                "point": self.design.point(number),
+                "status": status,
+                "reason": self.reasons.get(number, ""),
+                "values": {name: value.tolist() for name, value in values.items() if not np.isnan(value).all()},
+                "warnings": self.warnings.get(number, []),
+            }
+
+
+def points_of(store: SweepStore) -> Points:
+    """All points of a store."""
+    size, length = store.design.size, store.facts["block"]
+    points = Points(store.design, {}, np.full(size, "waiting", dtype=object), {}, {}, 0)
+    damaged, numbers = 0, list(range(size))
+
+    def put(name: str, where: int | slice, value: ArrayLike, shape: tuple[int, ...]) -> None:
+        if name not in points.columns:
+            points.columns[name] = np.full((size, *shape), np.nan)
+        points.columns[name][where] = value
+
+    for first, last in block_edges(size, length):
+        numbers, row = [], store.get(block_key(first, last - first))
+        if row.state != "done":
+            damaged += (last - first) * (row.reason == DAMAGED)
+            continue
+        points.status[first:last] = _STATUS[row.content.pop("status")]
+        points.reasons.update({int(number): reason for number, reason in json.loads(row.reason).items()})
+        for name, column in row.content.items():
+            put(name, slice(first, last), column, column.shape[1:])
+    for number in numbers or sorted(k for k in store.keys("done") | store.keys("failed") if isinstance(k, int)):
+        row = store.get(number)
+        points.status[number] = "run" if row.state == "done" else row.state
+        damaged += row.reason == DAMAGED
+        points.reasons.update({number: row.reason} if row.reason else {})
+        points.warnings.update({number: row.content.get("warnings", [])} if row.state == "done" else {})
+        for name, value in row.content.get("values", {}).items():
+            put(name, number, value, np.shape(value))
+    return attrs.evolve(points, damaged=damaged)
 
 
 def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Dataset:
@@ -215,21 +196,17 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
     RacewayError
         xarray is missing.
     """
-    table = _table_of(store, registry)
-    return labelled_dataset(table.variables, table.coordinates, table.attributes)
-
-
-def _table_of(store: SweepStore, registry: Registry | None = None) -> _Table:
-    """The same as plain arrays: xarray, and what it imports, takes longer than a hundred points."""
     design = store.design
     dims = ("point",) if design.listed else design.keys
-    columns, status, warnings, damaged = _columns(store)
-    variables: dict[str, Labelled] = {"status": (dims, status.reshape(design.shape), {"long_name": "state of the point"})}
-    if columns:
-        variables[_WARNINGS.name] = (dims, warnings.reshape(design.shape), _WARNINGS.labels)
-    for name, column in columns.items():
-        shape, quantity = (*design.shape, *column.shape[1:]), COLUMNS[name]
-        variables[name] = ((*dims, *quantity.dims), column.reshape(shape), quantity.labels)
+    points, shape = points_of(store), design.shape
+    warnings, damaged = np.full(design.size, np.nan), points.damaged
+    warnings[list(points.warnings)] = [len(texts) for texts in points.warnings.values()]
+    variables: dict[str, Labelled] = {"status": (dims, points.status.reshape(shape), {"long_name": "state of the point"})}
+    if points.columns:
+        variables[_WARNINGS.name] = (dims, warnings.reshape(shape), _WARNINGS.labels)
+    for name in (name for name in COLUMNS if name in points.columns):
+        column, quantity = points.columns[name], COLUMNS[name]
+        variables[name] = ((*dims, *quantity.dims), column.reshape(*shape, *column.shape[1:]), quantity.labels)
     attributes = {
         "title": store.title,
         "scene": json.dumps(store.scene),
@@ -246,34 +223,7 @@ def _table_of(store: SweepStore, registry: Registry | None = None) -> _Table:
             f"`{store.path}`: {damaged} of {design.size} rows are damaged and read as waiting; --resume computes them again",
             stacklevel=3,
         )
-    return _Table(variables, _coordinates(store, registry or default_registry()), attributes)
-
-
-def _columns(store: SweepStore) -> tuple[dict[str, np.ndarray], np.ndarray, np.ndarray, int]:
-    """Variable -> (points, ...) float64, those that a finished point has; states and numbers of warnings (points,); damaged rows."""
-    size, damaged, columns = store.design.size, 0, dict[str, np.ndarray]()
-    status, warnings = np.full(size, "waiting", dtype=object), np.full(size, np.nan)
-
-    def put(name: str, where: int | slice, value: ArrayLike, shape: tuple[int, ...]) -> None:
-        if name not in columns:
-            columns[name] = np.full((size, *shape), np.nan)
-        columns[name][where] = value
-
-    for first, last, block in store.blocks():
-        status[first:last] = _status_of(block, last - first)
-        damaged += (last - first) * (block.reason == DAMAGED)
-        for name, column in block.content.items():
-            if name != "status":
-                put(name, slice(first, last), column, column.shape[1:])
-    for row in store.runs():
-        number = int(row.key)
-        status[number] = _STATUS.get(row.state, row.state)
-        damaged += row.reason == DAMAGED
-        if row.state == "done":
-            warnings[number] = len(row.content["warnings"])
-        for name, value in row.content.get("values", {}).items():
-            put(name, number, value, np.shape(value))
-    return {name: columns[name] for name in COLUMNS if name in columns}, status, warnings, damaged
+    return labelled_dataset(variables, _coordinates(store, registry or default_registry()), attributes)
 
 
 def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
@@ -286,11 +236,8 @@ def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
     coordinates: dict[str, Labelled] = {"dof": (("dof",), names, {}), "dof2": (("dof2",), names, {})}
     for axis in design.axes:
         unit, words = ("", "") if scene is None else key_facts(scene, axis.key)
-        dim, about = (
-            "point" if design.listed else axis.key,
-            {"units": unit or "1", "long_name": axis.key, "description": words},
-        )
-        coordinates[axis.key] = ((dim,), axis_labels(axis.values), about)
+        about = {"units": unit or "1", "long_name": axis.key, "description": words}
+        coordinates[axis.key] = (("point" if design.listed else axis.key,), axis_labels(axis.values), about)
     if design.listed:
         coordinates["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return coordinates
@@ -304,42 +251,19 @@ def axis_labels(values: Sequence[object]) -> np.ndarray:
 
 
 def write_netcdf(store: SweepStore) -> Path:
-    """``results.nc`` in the store, whole or not at all: what xarray writes of ``dataset(store)``, without it.
+    """``results.nc`` in the store, whole or not at all.
 
     Raises
     ------
     RacewayError
-        h5netcdf or h5py is missing, or a disk that takes no more.
+        A library is missing, or a disk that takes no more.
     """
     try:
-        import h5netcdf
-    except ImportError as why:
+        # In memory first: the HDF5 library takes the whole process down where a disk is full.
+        content = dataset(store).to_netcdf(engine="h5netcdf")
+    except (ImportError, ValueError) as why:
         raise RacewayError(f"NetCDF needs h5netcdf and h5py: {extra('sweep')} ({why})") from None
-    table, memory = _table_of(store), io.BytesIO()
-    # In memory first: the HDF5 library takes the whole process down where a disk is full.
-    with h5netcdf.File(memory, "w") as file:
-        file.attrs.update(table.attributes)
-        every = {**table.variables, **table.coordinates}
-        sizes = {dim: size for dims, values, _ in every.values() for dim, size in zip(dims, values.shape, strict=True)}
-        file.dimensions = sizes
-        beside = " ".join(sorted(name for name in table.coordinates if name not in sizes))
-        for name, (dims, values, about) in every.items():
-            _put(file, name, dims, values, about, beside if name in table.variables else "")
-    return write_whole(memory.getvalue(), store.path / RESULTS)
-
-
-def _put(
-    file: h5netcdf.File, name: str, dims: tuple[str, ...], values: np.ndarray, about: Mapping[str, str], coordinates: str
-) -> None:
-    """One variable by the conventions that xarray follows: a number that is missing is NaN."""
-    if values.dtype == bool:  # NetCDF has none
-        values, about = values.astype(np.int8), {**about, "dtype": "bool"}
-    kind = _WORDS if values.dtype == object else values.dtype
-    variable = file.create_variable(name, dims, kind, fillvalue=np.nan if values.dtype.kind == "f" else None)
-    variable[...] = values
-    variable.attrs.update(about)
-    if coordinates:
-        variable.attrs["coordinates"] = coordinates
+    return write_whole(content, store.path / RESULTS)
 
 
 def write_csv(store: SweepStore, path: Path) -> Path:

@@ -19,7 +19,7 @@ from raceway.framework.options import nearest
 from raceway.out.picture import COLOURS, MARKERS, dress, new_figure
 from raceway.out.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
-from raceway.points.dataset import open_store
+from raceway.points.dataset import FINISHED, open_store
 from raceway.scene.changes import parse_value
 from raceway.storage.files import write_whole
 from raceway.storage.tables import ReadTables, Tables
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 #: The dimension of a sweep over a list of points; a grid has one dimension for each key instead.
 LIST = "point"
-_FINISHED = ("computed", "run")
 #: Numbers of an axis that differ by less are one value [relative].
 _SAME = 1e-9
 _SHOWN = 8
@@ -225,7 +224,7 @@ def _unfinished(dataset: Dataset) -> dict[str, int]:
     if "status" not in dataset:
         return {}
     states, counts = np.unique(dataset["status"].values.astype(str), return_counts=True)
-    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state not in _FINISHED}
+    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state not in FINISHED}
 
 
 def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
@@ -263,20 +262,15 @@ _FORMATS = (".png", ".svg")
 _DOTS_PER_INCH = 150
 
 
-def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, title: str, remark: str) -> Figure:
-    """One quantity.
-
-    Parameters
-    ----------
-    data : over ``x``, ``y``, ``panels`` or over ``point``; nan where there is no result; attrs units, description
-    kind : "curves", "map" or "surface"
-    title, remark : the first line over the picture, and a second, smaller one
+def draw(layout: Layout) -> Figure:
+    """The picture of a layout.
 
     Raises
     ------
     RacewayError
         matplotlib is missing.
     """
+    data, kind, x, y, panels = layout.data, layout.kind, layout.x, layout.y, layout.panels
     factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
     name = str(data.name).replace("_", " ").replace(":", " ")
     words = str(data.attrs.get("description", ""))
@@ -318,7 +312,8 @@ def draw(data: DataArray, kind: str, x: str, y: str | None, panels: str | None, 
         )
     heading = name if words in ("", name) else f"{name}: {words}"
     figure.suptitle(
-        "\n".join(line for text in (heading, *title.splitlines(), remark) for line in wrap(text, 84)), fontsize=11.5
+        "\n".join(line for text in (heading, *layout.title.splitlines(), layout.remark) for line in wrap(text, 84)),
+        fontsize=11.5,
     )
     return figure
 
@@ -472,9 +467,10 @@ class Layout:
 
     Attributes
     ----------
-    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; units and description in its attributes
+    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; nan where there is no result; units and description in its
+        attributes
     x, y : keys; in curves y is what the colours stand for and may be None
-    panels : key of one panel a value, or None
+    panels : key of one panel a value, or None;  title, remark : first line over the picture, and a second, smaller one
     """
 
     data: DataArray
@@ -494,8 +490,7 @@ class Layout:
         RacewayError
             matplotlib is missing, or the file cannot be written.
         """
-
-        return write(draw(self.data, self.kind, self.x, self.y, self.panels, self.title, self.remark), path)
+        return write(draw(self), path)
 
 
 def selection_of(store: Path, at: Iterable[str]) -> Selection:

@@ -115,9 +115,9 @@ class Store:
         with told(self.path):
             return {key for (key,) in self._connection.execute("SELECT key FROM points WHERE state = ?", (state,))}
 
-    def costs(self) -> list[Tables]:
-        """Of finished rows whose key is a text."""
-        query = "SELECT cost FROM points WHERE state = 'done' AND typeof(key) = 'text'"
+    def costs(self, kind: type[int] | type[str]) -> list[Tables]:
+        """Of finished rows whose keys are of a type."""
+        query = f"SELECT cost FROM points WHERE state = 'done' AND typeof(key) = '{'text' if kind is str else 'integer'}'"
         with told(self.path):
             return [json.loads(cost or "{}") for (cost,) in self._connection.execute(query)]
 

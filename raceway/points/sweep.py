@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 import tempfile
 import time
 import warnings
@@ -25,7 +26,7 @@ from raceway.points.dataset import SweepStore, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.function import Function, PointStatus
 from raceway.points.store import Row, exists, written
-from raceway.points.survey import Survey, survey
+from raceway.points.survey import survey
 from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import writable
@@ -81,18 +82,16 @@ class Sweep:
     design: Design
     store: Path
     plugins: tuple[str, ...]
-    survey: Survey
     facts: Tables
     function: Function | None
 
 
-def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path, ...] = (), resume: bool = False) -> Sweep:
-    """Look over a sweep; nothing is computed or written.
+def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str | Path] = (), resume: bool = False) -> Sweep:
+    """Look over a sweep; nothing is computed or written.  Options that a change of kind leaves out are warned of.
 
     Parameters
     ----------
-    tables : plain tables of a TOML scene;  plugins : one-off plug-in files
-    resume : go on with a store that is there
+    plugins : one-off plug-in files;  resume : go on with a store that is there
 
     Raises
     ------
@@ -101,9 +100,16 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
     RacewayError
         A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
     """
-    files = tuple(str(file.resolve()) for file in plugins)
+    files = tuple(str(Path(file).resolve()) for file in plugins)
     registry = registry_of(files)
-    surveyed = survey(tables, design, registry)
+    tables = plain_tables(scene, registry=registry)
+    design = design_in_units(_design_of(axes), tables, registry)
+    try:
+        surveyed = survey(tables, design, registry)
+    except SceneError as error:
+        raise _with_static_remedy(error) from None
+    for note in surveyed.notes:
+        warnings.warn(note, stacklevel=2)
     function = None if files else column_function(tables, surveyed.scene, design, registry)
     facts = {
         "scene": surveyed.scene.to_dict(),
@@ -125,7 +131,7 @@ def prepare(tables: ReadTables, design: Design, store: Path, plugins: tuple[Path
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(dict(tables), design, store, files, surveyed, facts, function)
+    return Sweep(tables, design, store, files, facts, function)
 
 
 def fill_store(
@@ -151,24 +157,29 @@ def fill_store(
         if retry_failed:
             store.wait(store.keys("failed"))
         waiting = store.keys("waiting")
-        progress = _Progress(design.size, on_progress)
+
+        def advance(finished: int) -> int:
+            if on_progress is not None:
+                on_progress("points", finished, design.size)
+            return finished
+
         if prepared.function is not None:
             at_first = tables_at(prepared.tables, design.point(0), registry_of(prepared.plugins))
             blocks = [ends for key, ends in edges.items() if key in waiting]
-            progress.finished = design.size - sum(last - first for first, last in blocks)
+            finished = design.size - sum(last - first for first, last in blocks)
             batches = ((k, [(first, design.columns(first, last))]) for k, (first, last) in enumerate(blocks))
             for k, answer in _rows(executor, prepared, Block(at_first, prepared.function.outputs), batches):
                 row = _unfinished_block(*blocks[k]) if isinstance(answer, Lost) else answer
                 store.put([row])
-                progress.add(blocks[k][1] - blocks[k][0])
+                finished = advance(finished + blocks[k][1] - blocks[k][0])
             numbers = left_over(store, design.size, length)
         else:
             numbers = [number for number in range(design.size) if number in waiting]
-        progress.finished = design.size - len(numbers)
+        finished = design.size - len(numbers)
         batches = ((n, [(n, design.point(n))]) for n in numbers)
         for n, answer in _rows(executor, prepared, Point(prepared.tables), batches):
             store.put([Row(n, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer])
-            progress.add(1)
+            finished = advance(finished + 1)
     return open_store(prepared.store)
 
 
@@ -187,24 +198,12 @@ def _unfinished_block(first: int, last: int) -> Row:
     return block_row(first, {"status": np.full(last - first, PointStatus.FAILED)}, {}, {})
 
 
-class _Progress:
-    """How many points are finished, for whom it is reported to."""
-
-    def __init__(self, total: int, report: OnProgress | None) -> None:
-        self.finished, self._total, self._report = 0, total, report
-
-    def add(self, count: int) -> None:
-        self.finished += count
-        if self._report is not None:
-            self._report("points", self.finished, self._total)
-
-
 def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
     reasons = _changed(stored.scene, facts["scene"]) or _changed(stored.facts.get("tables", {}), facts.get("tables", {}))
     difference = "another scene"
     if not reasons:
-        difference, reasons = "another sweep", stored.design.differences(Design.from_dict(facts["design"]))
+        difference, reasons = "another sweep", _changed(stored.facts["design"], facts["design"])
     if not reasons and stored.facts["files"] != facts["files"]:
         difference, reasons = (
             "another content of the files that the scene names",
@@ -224,7 +223,7 @@ def _changed(old: object, new: object, path: str = "") -> list[str]:
     if isinstance(old, dict) and isinstance(new, dict):
         keys = [*old, *(key for key in new if key not in old)]
         return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{path}.{key}" if path else key)]
-    return [] if old == new else [f"{path}: {old!r} there, {new!r} here"]
+    return [] if old == new else [f"{path}: {reprlib.repr(old)} there, {reprlib.repr(new)} here"]
 
 
 SPEED = "excitation.speed_rpm"
@@ -293,33 +292,11 @@ def sweep(
     with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as report:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
         worker_pool = executor_of(executor, {"workers": workers}, registry_with(plugins))
-        prepared = prepared_sweep(scene, axes, folder, resume or retry_failed, plugins)
+        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed)
         with fill_store(prepared, worker_pool, retry_failed, report) as filled:
             if (failed := all_failed(filled)) is not None:
                 raise failed
             return dataset(filled, registry_with(plugins))
-
-
-def prepared_sweep(
-    scene: SceneSource, axes: Axes, store: Path, resume: bool = False, plugins: Iterable[str | Path] = ()
-) -> Sweep:
-    """A sweep that was looked over, nothing computed; options that a change of kind leaves out are warned of.
-
-    Raises
-    ------
-    SceneError, PluginError, RacewayError
-        As ``sweep``.
-    """
-    files = tuple(Path(file) for file in plugins)
-    registry = registry_with(files)
-    tables = plain_tables(scene, registry=registry)
-    try:
-        prepared = prepare(tables, design_in_units(_design_of(axes), tables, registry), store, files, resume)
-    except SceneError as error:
-        raise _with_static_remedy(error) from None
-    for note in prepared.survey.notes:
-        warnings.warn(note, stacklevel=2)
-    return prepared
 
 
 def _with_static_remedy(error: SceneError) -> SceneError:

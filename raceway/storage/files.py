@@ -43,7 +43,7 @@ def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
             scratch.unlink(missing_ok=True)
 
 
-def write_whole(content: bytes, path: Path) -> Path:
+def write_whole(content: bytes | memoryview, path: Path) -> Path:
     """Write a file beside its place and move it there; folders are made.  An interruption leaves nothing behind.
 
     Raises
