@@ -367,7 +367,7 @@ class Result(Answer):
         for name in ("failure.json", "last-good-state.npz"):
             with suppress(OSError):
                 (folder / name).unlink(missing_ok=True)
-        return paths + write_reports(self.reports, self, folder)
+        return paths + _write_reports(self.reports, self, folder)
 
 
 def _complex(z: complex) -> Tables:
@@ -479,7 +479,7 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
     return reports
 
 
-def write_reports(reports: Iterable[Chosen], result: Result, folder: Path) -> list[Path]:
+def _write_reports(reports: Iterable[Chosen], result: Result, folder: Path) -> list[Path]:
     """Write every report; one that fails stops no other.
 
     Raises

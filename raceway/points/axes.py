@@ -238,10 +238,10 @@ def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tab
 
 def axes_of(definitions: Vary, tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
     """``parse_axes`` with values in the units of the scene's keys."""
-    return tuple(in_units(axis, tables, registry) for axis in parse_axes(definitions))
+    return tuple(_in_units(axis, tables, registry) for axis in parse_axes(definitions))
 
 
-def in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
+def _in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
     """An axis whose values with a unit as text are numbers in the unit of the key."""
     if axis.numeric:
         return axis
@@ -252,7 +252,7 @@ def design_in_units(design: Design, tables: ReadTables, registry: Registry) -> D
     """A design with all values as numbers in the units of their keys."""
     if design.listed and not all(axis.numeric for axis in design.axes):
         return _of_points([numbers_at(tables, point, registry) for point in design.points()])
-    return Design(tuple(in_units(axis, tables, registry) for axis in design.axes), design.listed)
+    return Design(tuple(_in_units(axis, tables, registry) for axis in design.axes), design.listed)
 
 
 def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
@@ -322,7 +322,7 @@ class Design:
 
     def point(self, number: int) -> Tables:
         """Key -> value of one point."""
-        return {axis.key: axis.values[place] for axis, place in zip(self.axes, self._places(number), strict=True)}
+        return {axis.key: axis.values[k] for axis, k in zip(self.axes, self._places(number), strict=True)}
 
     def points(self) -> Iterator[Tables]:
         return (self.point(number) for number in range(self.size))
@@ -330,7 +330,7 @@ class Design:
     def columns(self, first: int, last: int) -> dict[str, np.ndarray]:
         """Key -> values (n,) of the points from ``first`` until before ``last``, all of them numbers."""
         places = self._places(np.arange(first, last))
-        return {axis.key: axis.column[place] for axis, place in zip(self.axes, places, strict=True)}
+        return {axis.key: axis.column[k] for axis, k in zip(self.axes, places, strict=True)}
 
     def _places(self, numbers: Any) -> Sequence[Any]:
         """Of the values of each axis, at one point or many."""

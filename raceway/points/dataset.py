@@ -20,7 +20,6 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Design, is_number
-from raceway.points.blocks import block_edges, block_key
 from raceway.points.function import PointStatus
 from raceway.points.store import DAMAGED, POINTS, Store, connected, told
 from raceway.points.survey import key_facts
@@ -108,6 +107,12 @@ class SweepStore(Store):
         return dataset(self)
 
 
+def block_edges(size: int, length: int) -> dict[str, tuple[int, int]]:
+    """Key of each block's row -> its first point and that after its last one; none where points are rows (``length`` 0)."""
+    edges = ((first, min(first + length, size)) for first in (range(0, size, length) if length else ()))
+    return {f"{first}:{last}": (first, last) for first, last in edges}
+
+
 def open_store(path: str | Path) -> SweepStore:
     """The store of a sweep to read; the sweep may be writing to it.
 
@@ -168,8 +173,8 @@ def points_of(store: SweepStore) -> Points:
             points.columns[name] = np.full((size, *shape), np.nan)
         points.columns[name][where] = value
 
-    for first, last in block_edges(size, length):
-        numbers, row = [], store.get(block_key(first, last - first))
+    for key, (first, last) in block_edges(size, length).items():
+        numbers, row = [], store.get(key)
         if row.state != "done":
             damaged += (last - first) * (row.reason == DAMAGED)
             continue

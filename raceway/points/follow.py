@@ -148,7 +148,7 @@ def _follow_branch(
     sense = 1.0 if parameter.last > parameter.first else -1.0
     try:
         start = branch.start(first, parameter.first, sense)
-        Continuation(branch, curve, parameter, mass, points, on_progress).go(start)
+        _Continuation(branch, curve, parameter, mass, points, on_progress).go(start)
         if doubled:
             _follow_doubled(branch, curve, parameter, mass, points, on_progress)
         for followed in (curve, *curve.doubled) if turns else ():
@@ -191,13 +191,13 @@ def _follow_doubled(
             halves.append(apart(point))
             return float(halves[-1] @ halves[0]) <= 0.0
 
-        if Continuation(longer, twice, parameter, mass, points, on_progress, together).go(first):
+        if _Continuation(longer, twice, parameter, mass, points, on_progress, together).go(first):
             doublings = [label.row.parameter for label in curve.labels if label.kind == DOUBLING]
             met.append(min(doublings, key=lambda p: abs(p - twice.rows[-1].parameter)))
 
 
 @attrs.define(eq=False)
-class Continuation:
+class _Continuation:
     """Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends.
 
     Attributes

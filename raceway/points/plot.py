@@ -1,4 +1,4 @@
-"""Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture."""
+"""_Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture."""
 
 from __future__ import annotations
 
@@ -262,7 +262,7 @@ _FORMATS = (".png", ".svg")
 _DOTS_PER_INCH = 150
 
 
-def draw(layout: Layout) -> Figure:
+def draw(layout: _Layout) -> Figure:
     """The picture of a layout.
 
     Raises
@@ -462,7 +462,7 @@ _MOST_PANELS = 6
 
 
 @attrs.frozen(eq=False)
-class Layout:
+class _Layout:
     """A picture of one quantity.
 
     Attributes
@@ -508,7 +508,7 @@ def head(selection: Selection) -> tuple[str, ...]:
 
 def layout(
     selection: Selection, value: str | None = None, kind: str | None = None, x: str | None = None, y: str | None = None
-) -> Layout:
+) -> _Layout:
     """Choose what was left open.
 
     Parameters
@@ -548,7 +548,7 @@ def layout(
         raise RacewayError("the points of this sweep fill no grid, and a surface needs one: choose --kind map or curves")
     fixed = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
     remark = "; ".join(part for part in (fixed, f"without result: {selection.gaps}" if selection.gaps else "") if part)
-    return Layout(data, name, kind, x, y, panels, selection.title, remark)
+    return _Layout(data, name, kind, x, y, panels, selection.title, remark)
 
 
 #: Symbol -> name.

@@ -24,7 +24,7 @@ _MOST_MISTAKES = 10
 
 
 @attrs.frozen
-class Survey:
+class _Survey:
     """Requirements of a sweep.
 
     Attributes
@@ -40,7 +40,7 @@ class Survey:
     notes: tuple[str, ...]
 
 
-def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
+def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
     """Check every value of a grid, each at the first values of the others, or every point of a list.
 
     Raises
@@ -66,7 +66,7 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> Survey:
         files |= set(files_of(scene))
     if mistakes:
         raise SceneError(mistakes)
-    return Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
+    return _Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
 
 
 def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import reprlib
 import tempfile
 import time
@@ -14,21 +15,26 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway.core.threads import usable_cores
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import telling
+from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, tables_at
-from raceway.points.blocks import Block, block_edges, block_key, block_length, block_row, column_function, left_over
-from raceway.points.dataset import SweepStore, dataset, open_store, values_of
+from raceway.points.column_quantities import MOVING, QUANTITIES
+from raceway.points.dataset import SweepStore, block_edges, dataset, open_store, values_of
+from raceway.points.derivatives import Columns
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
-from raceway.points.function import Function, PointStatus
-from raceway.points.store import Row, exists, written
+from raceway.points.function import BLOCK, Function, PointStatus
+from raceway.points.store import Row, Store, exists, written
 from raceway.points.survey import survey
+from raceway.scene.changes import continuous_keys
 from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -37,6 +43,10 @@ if TYPE_CHECKING:
 
     from raceway.framework.contracts import Executor
     from raceway.out.progress import ShowProgress
+
+
+#: Parts of a block that threads share: it takes less than a second on one core.
+_SHARED = 4
 
 
 @attrs.frozen
@@ -67,6 +77,84 @@ class Point:
             reason = f"unexpected {type(error).__name__}: {error or 'no message'}"
         cost |= {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu, "worker": worker()}
         return Row(number, state, reason, content, cost)
+
+
+@attrs.frozen
+class _Block:
+    """Callable on ``(first, columns)``, the number of the first point and the columns of the keys; the row of these points.
+
+    Attributes
+    ----------
+    tables : of the scene at the first point of the sweep;  outputs : names of quantities
+
+    Notes
+    -----
+    A row's content are the columns of quantities and ``status``, its reason is those of the points, by their numbers, as JSON.
+    """
+
+    tables: Tables
+    outputs: tuple[str, ...]
+
+    def __call__(self, task: tuple[int, Columns], registry: Registry) -> Row:
+        first, columns = task
+        wall, cpu = time.perf_counter(), time.process_time()
+        function = Function(scene_from_dict(self.tables, registry), tuple(columns), self.outputs, threads=usable_cores())
+        answer = function.with_reasons(columns, function.looped(columns))
+        texts = answer.pop("reason")
+        reasons = {first + int(k): texts[k] for k in np.flatnonzero(texts != "")}
+        times = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu, "worker": worker()}
+        return _block_row(first, answer, reasons, times)
+
+
+def _block_row(first: int, answer: Columns, reasons: dict[int, str], times: ReadTables) -> Row:
+    """The row of finished columns, with the number of points of each status."""
+    status = answer["status"]
+    counts = {how.name: int((status == how).sum()) for how in PointStatus}
+    return Row(f"{first}:{first + len(status)}", "done", json.dumps(reasons), answer, {**counts, **times})
+
+
+def _left_over(store: Store, edges: Mapping[str, tuple[int, int]]) -> list[int]:
+    """Numbers of points that the loop has left and that no run has finished."""
+    finished, numbers = store.keys("done") | store.keys("failed"), list[int]()
+    for key, (first, _) in edges.items():
+        row = store.get(key)
+        if row.state == "done" and row.cost[PointStatus.FAILED.name]:
+            numbers += (first + np.flatnonzero(row.content["status"] == PointStatus.FAILED)).tolist()
+    return [number for number in numbers if number not in finished]
+
+
+def _column_function(tables: ReadTables, scene: Scene, design: Design, registry: Registry) -> Function | None:
+    """All columns of a sweep as a function of its keys; None where points need runs of their own.
+
+    Parameters
+    ----------
+    tables : of the scene;  scene : at the first point
+    """
+    keys = {key.path for key in continuous_keys(scene)}
+    if not all(axis.numeric and axis.key in keys for axis in design.axes):
+        return None
+    moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
+    outputs = [name for name in COLUMNS if name in QUANTITIES and (moving or name not in MOVING)]
+    left_out = [] if tilts else [KYY_TILTS_FOLLOW.name]
+    if any(key.startswith("bearing.") for key in design.keys):  # rings grow by their own sections, each solved for alone
+        left_out.append(MODEL_BOUND.name)
+    outputs = [name for name in outputs if name not in left_out]
+    function = Function(scene, design.keys, tuple(outputs), threads=usable_cores())
+    return None if function.why_slow or not _alone(function, tables, design, registry) else function
+
+
+def _alone(function: Function, tables: ReadTables, design: Design, registry: Registry) -> bool:
+    """Whether the numbers of a point change nothing else in the scene, looked at where each is least and largest."""
+    for axis in design.axes:
+        for number in (int(axis.column.argmin()), int(axis.column.argmax())):
+            point = {**design.point(0), axis.key: axis.values[number]}
+            try:
+                read = scene_from_dict(tables_at(tables, point, registry), registry).to_dict()
+                if read != function.scene_at(point).to_dict():
+                    return False
+            except SceneError:  # seen where all numbers of a point are known
+                continue
+    return True
 
 
 @attrs.frozen
@@ -110,11 +198,11 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
         raise _with_static_remedy(error) from None
     for note in surveyed.notes:
         warnings.warn(note, stacklevel=2)
-    function = None if files else column_function(tables, surveyed.scene, design, registry)
+    function = None if files else _column_function(tables, surveyed.scene, design, registry)
     facts = {
         "scene": surveyed.scene.to_dict(),
         "design": design.to_dict(),
-        "block": 0 if function is None else block_length(function),
+        "block": 0 if function is None else _SHARED * BLOCK[function.moving],
         "identity": identity(registry, surveyed.used),
         "files": surveyed.files,
     }
@@ -152,7 +240,7 @@ def fill_store(
         A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
     """
     design, length = prepared.design, int(prepared.facts["block"])
-    edges = {block_key(first, last - first): (first, last) for first, last in block_edges(design.size, length)}
+    edges = block_edges(design.size, length)
     with written(prepared.store, prepared.facts, edges or range(design.size)) as store:
         if retry_failed:
             store.wait(store.keys("failed"))
@@ -168,11 +256,12 @@ def fill_store(
             blocks = [ends for key, ends in edges.items() if key in waiting]
             finished = design.size - sum(last - first for first, last in blocks)
             batches = ((k, [(first, design.columns(first, last))]) for k, (first, last) in enumerate(blocks))
-            for k, answer in _rows(executor, prepared, Block(at_first, prepared.function.outputs), batches):
-                row = _unfinished_block(*blocks[k]) if isinstance(answer, Lost) else answer
-                store.put([row])
-                finished = advance(finished + blocks[k][1] - blocks[k][0])
-            numbers = left_over(store, design.size, length)
+            for k, answer in _rows(executor, prepared, _Block(at_first, prepared.function.outputs), batches):
+                first, last = blocks[k]
+                lost = {"status": np.full(last - first, PointStatus.FAILED)}  # with its worker: to runs
+                store.put([_block_row(first, lost, {}, {}) if isinstance(answer, Lost) else answer])
+                finished = advance(finished + last - first)
+            numbers = _left_over(store, edges)
         else:
             numbers = [number for number in range(design.size) if number in waiting]
         finished = design.size - len(numbers)
@@ -184,18 +273,13 @@ def fill_store(
 
 
 def _rows(
-    executor: Executor, prepared: Sweep, function: Point | Block, batches: Iterable[Batch]
+    executor: Executor, prepared: Sweep, function: Point | _Block, batches: Iterable[Batch]
 ) -> Iterator[tuple[int, Row | Lost]]:
     """Number and row of each batch of one task."""
     work = Work(function, prepared.plugins, prepared.facts["identity"])
     with closing(answers(executor, work, batches)) as results:
         for number, answer in results:
             yield number, answer if isinstance(answer, Lost) else answer[0]
-
-
-def _unfinished_block(first: int, last: int) -> Row:
-    """Of a block that took its worker down: its points are left to runs."""
-    return block_row(first, {"status": np.full(last - first, PointStatus.FAILED)}, {}, {})
 
 
 def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
