@@ -165,12 +165,8 @@ def test_the_largest_load_and_pressure_are_those_of_both_races_with_their_race(f
     data = rw.sweep(FAST, {"load.axial": [100.0]}).isel({"load.axial": 0})
     assert float(data.peak_ball_load) == float(data.peak_ball_load_outer) == pytest.approx(outer, rel=1e-9)
     assert float(data.peak_ball_load_inner) == pytest.approx(inner, rel=1e-9)
-    assert (
-        float(data.p0)
-        == float(data.p0_outer)
-        == pytest.approx(table["largest_pressure_pa"], rel=1e-9)
-        > float(data.p0_inner)
-    )
+    assert float(data.p0) == float(data.p0_outer) == pytest.approx(table["largest_pressure_pa"], rel=1e-9)
+    assert float(data.p0_outer) > float(data.p0_inner)
     assert "147.58 N" in repr(fast) and "outer race, static" in repr(fast)
     assert (
         rw.sensitivities(FAST, ["load.axial"]).definitions["largest_ball_load"] == "static, outer race; the larger of both"

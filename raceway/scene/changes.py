@@ -76,11 +76,11 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
         table[name] = dict(inner)
         table = table[name]
     if entry := _ENTRY.fullmatch(last):  # one number of several
-        name, place = entry[1], int(entry[2])
+        name, k = entry[1], int(entry[2])
         numbers = list(table.get(name, _default(parents, name)))
-        if place >= len(numbers):
+        if k >= len(numbers):
             raise SceneError.at(key, value, f"is not there: {name} has {len(numbers)} numbers")
-        last, value = name, [*numbers[:place], value, *numbers[place + 1 :]]
+        last, value = name, [*numbers[:k], value, *numbers[k + 1 :]]
     table[last] = value
     return result
 
