@@ -139,7 +139,7 @@ class Comparison(Answer, Findings):
         return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]
 
     def table(self) -> list[dict[str, str]]:
-        """One row a run, as short text for a screen; why a run is in doubt is said in the words."""
+        """One row a run, as short text for a screen; why a run is unreliable is a sentence below."""
         names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
         return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
 
@@ -164,7 +164,7 @@ def _number_of(row: Row) -> tuple[str, str]:
     value, z = row.value(name), row.value(Z.name)
     if value is None:
         return "-", row.doubt or ""
-    doubt = f"; in doubt: {row.doubt}" if row.doubt else ""
+    doubt = f"; unreliable: {row.doubt}" if row.doubt else ""
     if z is None:
         return f"{about.symbol} {about.text(value, 4)}", about.words + doubt
     error = row.error * z
@@ -181,7 +181,7 @@ def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[s
         text[f"{C.symbol} {C.unit}"] = row.damping_words
         text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
     if noted:
-        text["note"] = row.result["status"] if row.failed else "in doubt" if row.doubt else ""
+        text["note"] = row.result["status"] if row.failed else "unreliable" if row.doubt else ""
     return text
 
 

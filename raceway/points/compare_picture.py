@@ -99,7 +99,7 @@ def _curves(
     styles: dict[str, list[str]],
     limits: tuple[float, float],
 ) -> None:
-    """One curve for each combination of the styled axes, broken where a run failed or is in doubt; those are crosses, at the edge
+    """One curve for each combination of the styled axes, broken where a run failed or is unreliable; those are crosses, at the edge
     where they lie outside."""
     for combination in product(*styles.values()):
         series = [row for row in rows if all(_text(row.point[k]) == v for k, v in zip(styles, combination, strict=True))]
@@ -116,7 +116,7 @@ def _curves(
 
 
 def _limits(rows: Sequence[Row], quantities: Collection[Quantity]) -> tuple[float, float]:
-    """Range of quantities together, so that panels of a column have one scale; runs in doubt do not count."""
+    """Range of quantities together, so that panels of a column have one scale; unreliable runs do not count."""
     counted = [row for row in rows if not _in_doubt(row)] or rows
     values = [v for row in counted for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
     margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
@@ -150,7 +150,7 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
             look |= {"marker": ""} if trait < 2 else {"linestyle": ""}
             handles.append(Line2D([], [], label=f"{key} = {value}", **look))
     if doubt:
-        handles.append(Line2D([], [], linestyle="", marker="x", color=GREY, label="in doubt: not in the effects"))
+        handles.append(Line2D([], [], linestyle="", marker="x", color=GREY, label="unreliable: not in the effects"))
     return handles
 
 
