@@ -22,6 +22,7 @@ from rich.console import Console
 
 import raceway as rw
 from raceway.cli import frame
+from raceway.cli.commands import ALIASES
 from raceway.cli.main import main
 from raceway.out.progress import ProgressBar
 from validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
@@ -246,6 +247,11 @@ def test_every_command_is_looked_at():
     assert {name.partition(",")[0] for name in COMMANDS} == set(RUNNABLE)
 
 
+@pytest.mark.parametrize("alias", ALIASES)
+def test_help_of_an_alias_shows_it(alias):
+    assert f"raceway {alias} " in invoke(alias, "--help").stdout.split("Example:")[1]
+
+
 @pytest.mark.parametrize("command", [*RUNNABLE, "study", ""])
 def test_help(command, monkeypatch):
     """Options that all have, an example where something runs, in 80 columns; a group without a command shows it."""
@@ -421,6 +427,8 @@ def test_a_plugin_in_a_file_works_in_two_processes(name, seen, folder, tmp_path)
 SLIPS = {
     "no scene": (["run"], "Missing argument 'SCENE'", "  try `raceway run --help`, which has an example"),
     "unknown command": (["rnu"], "did you mean 'run'?", ""),
+    "option for a command": (["plot", "STORE"], "no command 'plot' (it is `raceway sweep --plot`)", ""),
+    "command of a group": (["plugins"], "no command 'plugins' (it is `raceway dev plugins`)", ""),
     "unknown study": (["study", "artcle"], "did you mean 'article'", ""),
     "unknown option": (["run", ARTICLE, "--jsn"], "--json", ""),
     "no axis": (["compare", ARTICLE], "--vary", ""),

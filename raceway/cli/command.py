@@ -165,7 +165,8 @@ class Command(NamedTuple):
         if "Iterable[" in kind:
             required = parameter.default is inspect.Parameter.empty
             several = f"{text.removesuffix('.')}; repeat for more."
-            return click.option(*flags, multiple=True, required=required, metavar=about.metavar, help=several)
+            of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
+            return click.option(*flags, type=of, multiple=True, required=required, metavar=about.metavar, help=several)
         empty = default is inspect.Parameter.empty
         # None too is a value to click, also of what is required.
         start: dict[str, Any] = {} if empty else {"default": default}

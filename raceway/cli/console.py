@@ -60,8 +60,14 @@ class Commands(click.Group):
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
         known = [name for name in self.list_commands(ctx) if " " not in name]
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            raise click.UsageError(f"no command '{args[0]}'{nearest(args[0], known)}; commands: {', '.join(known)}", ctx)
+            place = self.elsewhere().get(args[0])
+            hint = f" (it is `raceway {place}`)" if place else nearest(args[0], known)
+            raise click.UsageError(f"no command '{args[0]}'{hint}; commands: {', '.join(known)}", ctx)
         return super().resolve_command(ctx, args)
+
+    def elsewhere(self) -> dict[str, str]:
+        """Words that are no commands of this group -> the command or option that they are part of."""
+        return {}
 
 
 def _guarded(command: Callable[[], object], words: list[str]) -> int:

@@ -32,7 +32,10 @@ class _CommandsByName(Commands):
         # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
         # on busy cores.  Read when numpy is imported, which is later than this.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        about = self._table().get(ALIASES.get(cmd_name, cmd_name))
+        name = ALIASES.get(cmd_name, cmd_name)
+        about = self._table().get(name)
+        if isinstance(about, Command):
+            about = about._replace(example=about.example.replace(f"raceway {name} ", f"raceway {cmd_name} "))
         return None if about is None else about.click()
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
@@ -47,6 +50,16 @@ class _CommandsByName(Commands):
         for heading, commands in self.sections.items():
             with formatter.section(heading):
                 formatter.write_dl([(about.name, about.summary) for about in commands])
+
+
+class _AllCommands(_CommandsByName):
+    """``raceway``."""
+
+    def elsewhere(self) -> dict[str, str]:
+        commands = [about for about in self._table().values() if isinstance(about, Command)]
+        flags = {o.flag: f"{about.name} --{o.flag}" for about in commands for o in about.options.values() if o and o.flag}
+        parts = {name.partition(" --")[2]: name for name in self._table() if " " in name}
+        return flags | parts | {about.name: f"dev {about.name}" for about in DEVELOPERS}
 
 
 class _DeveloperCommands(_CommandsByName):
@@ -65,7 +78,7 @@ def dev() -> None:
     """
 
 
-@click.group(cls=_CommandsByName, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(cls=_AllCommands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="raceway")
 @click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")
 def main() -> None:
