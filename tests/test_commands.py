@@ -499,7 +499,7 @@ def test_pictures_of_a_command_leave_pyplot_alone():
 
 
 def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):
-    found = invoke("run", MINIMAL, "--out", tmp_path, "--json", "-v")
+    found = invoke("run", MINIMAL, "--set", "integrator.kind=newmark", "--out", tmp_path, "--json", "-v")
     content = json.loads(found.stdout)
     assert content == json.loads((tmp_path / "result.json").read_text())
     assert {"equilibrium", "identification", "error", "cost", "stability", "environment", "plan", "scene"} <= set(content)

@@ -112,7 +112,7 @@ def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
 
 
 def test_notes_are_short_on_the_screen_and_sentences_in_the_result(tmp_path):
-    screen = invoke("run", MINIMAL, "--out", tmp_path).stdout
+    screen = invoke("run", MINIMAL, "--set", "integrator.kind=newmark", "--out", tmp_path).stdout
     error = json.loads((tmp_path / "result.json").read_text())["error"]
     assert "Hann" in error["how"]["transient"] and "Hann" not in screen
     assert error["short"].keys() == error["how"].keys() and all(len(words) <= 48 for words in error["short"].values())

@@ -185,7 +185,7 @@ def pitch() -> Rule:
 
 def integration() -> Rule:
     """An identifier that needs the equilibrium only gets a record all the same."""
-    part, changes = "time integration (newmark)", ("identifier.kind=tangent",)
+    part, changes = "time integration (newmark)", ("integrator.kind=newmark", "identifier.kind=tangent")
     return _forced("time integration", part, changes, must_save=True)
 
 

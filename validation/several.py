@@ -31,7 +31,7 @@ def heavy(mass: float, damping: float = 5000.0, **integrator: Any) -> Tables:
         "rotor": {"mass": mass, "damping": damping},
         "excitation": {"kind": "bidirectional", "speed_rpm": 15000, "amplitude": "constant", "force": 100.0},
         "contact": {"damping": 0.0},
-        "integrator": integrator,
+        "integrator": {"kind": "newmark", **integrator},
     }
 
 
@@ -40,7 +40,8 @@ def article(axial: float, **integrator: Any) -> Tables:
     force = {"kind": "unidirectional", "speed_rpm": 15000, "amplitude": "constant", "unbalance": 6.39e-4, "load_share": 0.5}
     return {
         "bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}, "rotor": {"mass": 2.0}, "load": {"axial": axial},
-        "excitation": {**force, "reference_speed_rpm": 10980.0}, "contact": {"damping": 0.0}, "integrator": integrator,
+        "excitation": {**force, "reference_speed_rpm": 10980.0}, "contact": {"damping": 0.0},
+        "integrator": {"kind": "newmark", **integrator},
     }  # fmt: skip
 
 

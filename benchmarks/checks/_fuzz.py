@@ -113,7 +113,7 @@ def planned_bytes(scene: Scene, plan: ScenePlan, before: int) -> float:
     record = 0
     if scene.excitation is not None and plan.time_step_s is not None:
         count = scene.bearing.ball_count * len(scene.bearing.rows)
-        record = record_bytes(plan.turns, resolve(scene).steps_per_turn, count, scene.integrator.method.inertial)
+        record = record_bytes(plan.turns, resolve(scene).steps_per_turn, count, resolve(scene).integrator.method.inertial)
     return before + record + (plan.mesh or {}).get("bytes", 0)
 
 
@@ -123,8 +123,9 @@ def cheap(scene: Scene, plan: ScenePlan) -> bool:
         return False
     if scene.bodies.name != "elastic" and plan.predicted_steps > _STEPS:
         return False
-    if scene.integrator.kind == "periodic" and scene.excitation is not None:
-        return resolve(scene).highest_frequency / (2.0 * math.pi * scene.excitation.frequency_hz) <= _ORDER
+    problem = resolve(scene)
+    if problem.integrator.method.steady and scene.excitation is not None:
+        return problem.highest_frequency / (2.0 * math.pi * scene.excitation.frequency_hz) <= _ORDER
     return True
 
 

@@ -92,6 +92,11 @@ _NOTES = {
     'a key that is written, `gyroscopic = "none"` too, is a decision.',
     "mounting": "How rings are fitted and how warm they run, as given numbers: what that does to the grooves is added to the preload "
     "([sets](sets.md)).",
+    "integrator": '`kind = "auto"` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn and contacts have no '
+    "memory, which is exact and costs least. `newmark` integrates over time where the force changes its speed or grows, with friction, laws with a "
+    "memory, balls that orbit, or forces that are not compiled; also where `turns`, `steps_per_turn` or `start` is given, which a transient has. "
+    "Where no steady orbit is found, or it is unstable, `newmark` is taken instead and a warning says so. `raceway plan` and the table `plan` of "
+    "result.json say which and why. A comparison whose points would differ takes `newmark` at all of them.",
     "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
     "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }

@@ -80,7 +80,7 @@ def why_not(scene: Scene, moving: bool) -> str:
     ----------
     moving : whether their motions are asked for
     """
-    bearing, law = scene.bearing, scene.contact.law
+    bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
     reasons = {
         "bodies deform": scene.bodies.name != "rigid",
         "the contact law has a memory": law.state_size > 0,
@@ -91,8 +91,8 @@ def why_not(scene: Scene, moving: bool) -> str:
         "rows are on a spring, or ground one by one": bearing.preloaded
         and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
         "balls orbit": moving and scene.kinematics.orbiting,
-        "the speed changes": resolve(scene).spin_changes,
-        "the motion is integrated over time": moving and scene.integrator.kind != "periodic",
+        "the speed changes": problem.spin_changes,
+        "the motion is integrated over time": moving and problem.integrator.kind != "periodic",
         "the identifier is not fft_1x": moving and scene.identifier.kind != "fft_1x",
     }
     return next((reason for reason, holds in reasons.items() if holds), "")

@@ -48,7 +48,7 @@ ANSWERS: tuple[Command | Later, ...] = (
         "compare",
         "raceway.points.compare:compare",
         "One scene, some keys varied, everything else the same.",
-        "raceway compare examples/b7206.toml --set integrator.kind=periodic \\\n"
+        "raceway compare examples/b7206.toml \\\n"
         "    --vary excitation.kind=unidirectional,bidirectional \\\n"
         "    --vary excitation.speed_rpm=10980:15000:5",
         {"vary": _VARY},

@@ -13,6 +13,8 @@ import click
 from raceway.cli.frame import PATH, common, show
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
+from raceway.scene.reading import options_class
+from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.files import write_whole
 
 #: Keys that a beginner decides on: value, and whether it stands there as a comment that can be taken in.
@@ -23,7 +25,7 @@ _KEYS: dict[str, dict[str, tuple[Any, bool]]] = {
     "load": {"axial": (1000.0, False), "radial": ([0.0, 0.0], False)},
     "excitation": {"speed_rpm": (12000.0, False), "unbalance": ("320 g mm", False), "load_share": (1.0, False)},
     "contact": {"damping": (0.001, False), "friction": (0.05, True)},
-    "integrator": {"turns": (12, False)},
+    "integrator": {"turns": (12, True)},
 }
 #: Plug-ins by table, and what is said of them.
 _KINDS = {
@@ -32,7 +34,7 @@ _KINDS = {
         "a force that turns; 'unidirectional': along one line.  Without this table the scene is static",
     ),
     "contact": ("hertz", "contact law; raceway dev plugins lists others"),
-    "integrator": ("newmark", "'periodic' finds the steady motion at once"),
+    "integrator": ("auto", "the steady orbit where there is one; 'newmark' and others integrate over time"),
 }
 _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  Lines that begin with # are comments;
 # every key with unit and default: docs/scene.md.  What is wrong in it: raceway check FILE
@@ -82,12 +84,10 @@ def scene_text(preset: str, registry: Registry) -> str:
 
 
 def _lines(table: str, keys: dict[str, tuple[Any, bool]], registry: Registry) -> Iterator[str]:
-    from raceway.scene.tables import PLUGIN_TABLES, TABLES
-
     classes = [TABLES[table]] if table in TABLES else []
     if table in _KINDS:
         kind, words = _KINDS[table]
-        classes.append(registry.find(PLUGIN_TABLES[table][0], kind).plugin)
+        classes.append(options_class(PLUGIN_TABLES[table][0], kind, registry))
         yield f'kind = "{kind}"  # {words}'
     fields = {field.name: field for cls in classes for field in attrs.fields(cls)}
     for key, (value, commented) in keys.items():

@@ -24,9 +24,10 @@ from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
 from raceway.core.signals import Identification, Line, lines
-from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError
+from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
+from raceway.integrators.methods import Newmark
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
 from raceway.pipeline.front import PATIENCE
@@ -40,7 +41,7 @@ from raceway.pipeline.plausible import (
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
-from raceway.planning.plan import ScenePlan, make_plan
+from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.planning.rules import scene_warnings
 from raceway.scene.scene import Scene
@@ -143,7 +144,9 @@ def _run(
     if model.excitation is None:
         answer = _Answer(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:
-        answer = _answer(model, equilibrium, _motions(model, equilibrium, progress, near, stay), allowance)
+        move = partial(_motions, equilibrium=equilibrium, progress=progress, near=near, stay=stay)
+        model, motions, doubts = _moved(model, move, allowance, registry)
+        answer = _answer(model, equilibrium, motions, allowance, doubts)
     answer.error["unresolved"] = unresolved(answer.error)
     ended, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
@@ -184,7 +187,9 @@ class _Answer:
     doubts: tuple[str, ...] = ()
 
 
-def _answer(model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: Allowance) -> _Answer:
+def _answer(
+    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: Allowance, doubts: list[str]
+) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
     Raises
@@ -199,9 +204,9 @@ def _answer(model: Model, equilibrium: Equilibrium, motions: list[Simulation], a
     if not np.isfinite(identification.dynamic_stiffness):
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
     identified = Identified(model, equilibrium, motions, identification, allowance.check)
-    started, doubts = working_clock(), list[str]()
+    started = working_clock()
     if allowance.spent:  # what is computed is kept
-        doubts.append(allowance.words("the error is not estimated, because this run went far beyond its plan"))
+        doubts = [allowance.words("the error is not estimated, because this run went far beyond its plan"), *doubts]
         error = no_error(Estimate.BEYOND_PLAN())
     else:
         error = error_table(identified)
@@ -220,6 +225,28 @@ def _motions(
         return []
     same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
     return [simulate(model, equilibrium, progress, near=near.simulation if near is not None and same else None, stay=stay)]
+
+
+def _moved(
+    model: Model, move: Callable[[Model], list[Simulation]], allowance: Allowance, registry: Registry
+) -> tuple[Model, list[Simulation], list[str]]:
+    """The motions; integrated over time, with a warning, where planning chose a steady orbit that is not found or is unstable."""
+    automatic = model.problem.integrator.method.steady and model.problem.integrator_why != ""
+    try:
+        motions = move(model)
+    except (ConvergenceError, SceneError) as fault:
+        if not automatic:
+            raise
+        why = f"no steady orbit was found ({str(fault).partition('. ')[0]})"
+    else:
+        if not automatic or all(motion.whole.counts["floquet"]["verdict"] != "unstable" for motion in motions):
+            return model, motions, []
+        why = "the steady orbit is unstable"
+    plan = plan_of(model.problem.integrated(Newmark(), why))
+    registry.notify("raceway_plan_made", plan=plan)
+    allowance.planned += plan.predicted_wall_s
+    model = attrs.evolve(model, problem=plan.problem, plan=plan)
+    return model, move(model), [f"{why}: the motion is integrated over time instead"]
 
 
 def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: Tables | None) -> tuple[str, ...]:

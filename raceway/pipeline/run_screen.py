@@ -173,12 +173,18 @@ def _bearing(result: ReadTables) -> str:
     if result.get("geometry"):
         words.append(result["geometry"]["words"])
     words += [
-        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}",
+        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
+        + _integrator(result["plan"].get("integrator")),
         f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
     ]
     if any(load["moment"]):
         words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
     return "\n".join(words)
+
+
+def _integrator(chosen: ReadTables | None) -> str:
+    """The method of the motion; ``raceway plan`` has the reason why it was chosen."""
+    return "" if chosen is None else f"; integrator {chosen['kind']}{', by default' if chosen['why'] else ''}"
 
 
 #: How the rows of a pair stand to each other.

@@ -75,9 +75,12 @@ class ScenePlan(Shown):
 
     def to_dict(self) -> Tables:
         """Content of the table ``plan`` of result.json."""
+        problem = self.problem
+        integrator = {"kind": problem.integrator.kind, "why": problem.integrator_why or None}
         return {
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],
+            "integrator": integrator if problem.recorded else None,
             "dofs": self.dofs,
             "time_step_s": self.time_step_s,
             "predicted_steps": self.predicted_steps,

@@ -11,10 +11,12 @@ from raceway.core.columns import Number, cos, is_column, largest, log, sin, some
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
+from raceway.framework.rules import Rule, speaking
+from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.scene import Scene, SceneTables
-from raceway.scene.tables import TIME_CONSTANTS
+from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
@@ -45,6 +47,7 @@ class Problem(SceneTables):
     ----------
     scene : what the user said, for messages and results
     points : (n,) where numbers are columns of n operating points, () of one
+    integrator_why : why planning chose the integrator; empty where the scene says one
 
     Notes
     -----
@@ -53,6 +56,7 @@ class Problem(SceneTables):
 
     scene: Scene
     points: tuple[int, ...] = ()
+    integrator_why: str = ""
 
     def says(self, key: str) -> bool:
         """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
@@ -62,6 +66,22 @@ class Problem(SceneTables):
                 return False
             part = part[name]
         return True
+
+    def integrated(self, method: Newmark | Periodic, why: str) -> Problem:
+        """The same problem by another integrator, and why planning chose it."""
+        integrator = attrs.evolve(self.integrator, kind=method.name, method=method)
+        return attrs.evolve(self, integrator=integrator, integrator_why=why)
+
+    @cached_property
+    def unsteady(self) -> str:
+        """Why there is no steady orbit that can be solved for by itself; empty where there is."""
+        return next((words for _, words in speaking(_UNSTEADY, self)), "")
+
+    @property
+    def force_alone_directs(self) -> bool:
+        """Whether nothing but the force tells one direction from another."""
+        moment = any(self.load.moment) and self.supports.tilt != "locked"
+        return self.excitation.sense != 0 and not any(self.load.radial) and not moment
 
     @cached_property
     def body_kind(self) -> BodyKind:
@@ -229,9 +249,47 @@ class Problem(SceneTables):
         return self.ramped or self.integrator.start != "orbit" or self.several_speeds
 
 
+#: Why there is no steady orbit that can be solved for by itself.
+_UNSTEADY: tuple[Rule[Problem], ...] = (
+    Rule("excitation", lambda p: p.excitation is None, "the scene has no [excitation]"),
+    Rule(
+        "excitation.kind", lambda p: p.excitation.period_s is None,
+        lambda p: f"the force of excitation '{p.excitation.name}' does not repeat every turn",
+    ),
+    Rule(
+        "contact.friction", lambda p: p.contact.friction > 0.0,
+        "contact.friction: where a contact sticks depends on how the motion began, there is no single one",
+    ),
+    Rule(
+        "contact.kind", lambda p: p.contact.law.state_size > 0,
+        lambda p: f"contact law '{p.contact.kind}' has a memory: its motion cannot be solved for by itself",
+    ),
+    Rule(
+        "kinematics.orbiting", lambda p: p.kinematics.orbiting and not p.force_alone_directs,
+        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
+        "force turns and no radial load acts",
+    ),
+)  # fmt: skip
+#: Why integrator.kind = "auto" integrates over time nevertheless.
+_TRANSIENT: tuple[Rule[Problem], ...] = (
+    *(
+        Rule(key, lambda p, key=key: p.says(key), f"`{key}` is given, which a transient has")  # type: ignore[misc]
+        for key in ("integrator.turns", "integrator.steps_per_turn", "integrator.start")
+    ),
+    Rule("excitation.ramp_turns", lambda p: p.ramped, "the force grows from zero"),
+    Rule("bodies.kind", lambda p: not p.traits.compiled, "forces of these bodies and contacts are not compiled"),
+)
+
+
 def resolve(scene: Scene) -> Problem:
     """What a scene asks for; pure."""
-    return Problem(scene=scene, **{table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)})
+    problem = Problem(scene=scene, **{table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)})
+    if scene.integrator.kind != AutoIntegrator.name:
+        return problem
+    why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")
+    if why:
+        return problem.integrated(Newmark(), why)
+    return problem.integrated(Periodic(), "the force repeats every turn and contacts have no memory")
 
 
 def damped_limit(limit: float, time_constant: float) -> float:

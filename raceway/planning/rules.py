@@ -73,11 +73,6 @@ def _tilts(p: Problem) -> bool:
     return p.supports.tilt != "locked"
 
 
-def _turning_force_alone(p: Problem) -> bool:
-    """Whether nothing but the force tells one direction from another."""
-    return p.excitation.sense != 0 and not any(p.load.radial) and not (any(p.load.moment) and _tilts(p))
-
-
 _DAMPS = (
     "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, "
     "or contact.damping in N s/m"
@@ -183,23 +178,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
         lambda p: f"has no driver `{missing_driver(p.integrator.method.scheme, p.traits.compiled)}`, which {_slow(p)} needs: its "
         "forces are not compiled. Use 'newmark' or 'quasi_static', or contact resultants on rigid or condensed bodies",
     ),
-    Rule(
-        "integrator.kind", lambda p: _steady(p) and p.excitation.period_s is None,
-        lambda p: f"needs a force that repeats every turn, which excitation '{p.excitation.name}' does not: use 'newmark'",
-    ),
-    Rule(
-        "integrator.kind", lambda p: _steady(p) and p.contact.friction > 0.0,
-        "contact.friction: where a contact sticks depends on how the motion began, there is no single one: use 'newmark'",
-    ),
-    Rule(
-        "integrator.kind", lambda p: _steady(p) and p.contact.law.state_size > 0,
-        lambda p: f"contact law '{p.contact.kind}' has a memory: its motion cannot be solved for by itself: use 'newmark'",
-    ),
-    Rule(
-        "integrator.kind", lambda p: _steady(p) and p.kinematics.orbiting and not _turning_force_alone(p),
-        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
-        "force turns and no radial load acts: use 'newmark'",
-    ),
+    Rule("integrator.kind", lambda p: _steady(p) and p.unsteady, lambda p: f"{p.unsteady}: use 'newmark'"),
     Rule(
         "rotor.mass", lambda p: _inertial(p) and p.inertia.mass <= 0.0,
         "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own",

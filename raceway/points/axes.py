@@ -18,7 +18,7 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.changes import parse_value, value_at, with_value
 from raceway.scene.inputs import read_toml, tidy
-from raceway.scene.reading import numbers_only, scene_from_dict
+from raceway.scene.reading import numbers_only, options_class, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.scene.units import is_quantity
 from raceway.scene.unused import without_inherited
@@ -263,7 +263,7 @@ def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registr
         return []
     words = (str(table.get("kind", default)), kind)
     try:
-        old, new = ({field.name for field in attrs.fields(registry.find(role, word).plugin)} for word in words)
+        old, new = ({field.name for field in attrs.fields(options_class(role, word, registry))} for word in words)
     except PluginError:
         return []  # the scene's own check names the unknown kind
     core = {field.name for field in attrs.fields(TABLES[name])} if name in TABLES else set()

@@ -19,6 +19,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K_ERROR, C, Quantity, Z, named
 from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
@@ -227,6 +228,39 @@ def _item(tables: ReadTables, registry: Registry) -> Item:
     return Item(key, "runs", tables)
 
 
+def _by_one_method(
+    methods: Iterable[str | None], scenes: list[Tables], registry: Registry, notes: list[str]
+) -> list[Tables]:
+    """Tables of all points with the integrator that all can take, where planning chose several; the same list where it chose one.
+
+    Parameters
+    ----------
+    methods : integrator of each point; None where there is none
+    """
+    several = sorted({name for name in methods if name})
+    automatic = all(tables.get("integrator", {}).get("kind", "auto") == "auto" for tables in scenes)
+    if len(several) < 2 or not automatic:
+        return scenes
+    notes.append(
+        f"integrator.kind = 'auto' would be {' at some points, '.join(several)} at others: all points take 'newmark'"
+    )
+    return [tables_at(tables, {"integrator.kind": "newmark"}, registry) for tables in scenes]
+
+
+def _planned(tables: Tables, registry: Registry) -> Tables:
+    """The plan of a point; empty where it is refused, which it is as it is run, too."""
+    try:
+        return {"plan": make_plan(scene_from_dict(tables, registry)).to_dict()}
+    except RacewayError:
+        return {}
+
+
+def _method(result: Tables) -> str | None:
+    """The integrator of a result."""
+    integrator = result.get("plan", {}).get("integrator")
+    return None if integrator is None else str(integrator["kind"])
+
+
 def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
         return run(scene_from_dict(tables, registry), registry).to_dict()
@@ -295,7 +329,9 @@ def compare(
     tables = plain_tables(scene, registry=registry)
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
-    items = [_item(tables_at(tables, point, registry, notes), registry) for point in places]
+    scenes = [tables_at(tables, point, registry, notes) for point in places]
+    scenes = _by_one_method([_method(_planned(scene, registry)) for scene in scenes], scenes, registry, notes)
+    items = [_item(scene, registry) for scene in scenes]
 
     def comparison(results: Iterable[Tables]) -> Comparison:
         rows = tuple(Row(point, result) for point, result in zip(places, results, strict=True) if result)
@@ -304,6 +340,10 @@ def compare(
     with telling(progress) as report, written(kept or folder) as store:
         try:
             results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
+            alike = _by_one_method(map(_method, results), scenes, registry, notes)
+            if alike is not scenes:  # a steady orbit was not found, or is unstable
+                items = [_item(scene, registry) for scene in alike]
+                results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
         except KeyboardInterrupt as stop:
             partial = comparison(store.get(item.key).content for item in items)
             raise Interrupted(partial if partial.rows else None) from stop

@@ -482,7 +482,7 @@ def function(
     Notes
     -----
     Rigid bodies with laws without memory are computed in compiled loops: equilibria, and steady orbits where
-    ``integrator.kind = "periodic"``.  That an orbit is stable and the only one is not looked at there, as ``raceway.run`` does.  Points
+    ``integrator.kind`` is "auto" or "periodic".  That an orbit is stable and the only one is not looked at there, as ``raceway.run`` does.  Points
     at which the loop finds no regular solution are run one by one: ``status`` says which.
 
     Examples

@@ -20,6 +20,7 @@ from raceway.out.picture import given_axes
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
 from raceway.out.wrapping import Words
+from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.engine import measured_once
@@ -485,8 +486,9 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Ta
             "cost": None,
         }
         return {**head, **lost}
-    if needs_motion(setting.scene) and setting.scene.integrator.method.inertial:
-        head["expected_order"] = setting.scene.integrator.method.order
+    method = resolve(setting.scene).integrator.method
+    if needs_motion(setting.scene) and method.inertial:
+        head["expected_order"] = method.order
     row, reused = measured_once(setting.scene, repeats, repeats, registry, store)
     return {**head, **row, "reused": reused}
 

@@ -22,7 +22,15 @@ from raceway.scene.inputs import Given
 from raceway.scene.scene import Scene
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
-from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, STUDY_TABLES, SWAPPED_TABLES, TABLES, Rig
+from raceway.scene.tables import (
+    OPTIONAL_TABLES,
+    PLUGIN_TABLES,
+    STUDY_TABLES,
+    SWAPPED_TABLES,
+    TABLES,
+    AutoIntegrator,
+    Rig,
+)
 from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 
@@ -273,7 +281,7 @@ def _plugin_table(
     core_keys = [] if core is None else [f.name for f in attrs.fields(core) if "plugin" not in f.metadata]
     shared = {key: value for key, value in table.items() if key in core_keys}
     try:
-        plugin = registry.find(kind, word).plugin
+        plugin = options_class(kind, word, registry)
     except PluginError as error:
         mistakes.append(Mistake(f"{name}.kind", word, str(error)))
         if core is not None:
@@ -286,6 +294,8 @@ def _plugin_table(
         options = {key: value for key, value in options.items() if key in keys or key not in elsewhere}
     for key in [k for k in options if k not in keys]:
         rule = f"unknown key{nearest(key, keys)}; known for kind '{word}': {', '.join(k for k in keys if k != 'kind')}"
+        if plugin is AutoIntegrator and (holders := _kinds_with(key, kind, registry)):
+            rule = f"belongs to a method, which kind 'auto' chooses: say kind = {' or '.join(map(repr, holders))} with it"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
     method = structure(options, plugin, name, mistakes)
     if core is None:
@@ -293,6 +303,22 @@ def _plugin_table(
     frame: Any = structure({**shared, "kind": word}, core, name, mistakes)
     slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
     return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})
+
+
+def options_class(kind: str, word: str, registry: Registry) -> Any:
+    """The class of options of a table's ``kind``.
+
+    Raises
+    ------
+    PluginError
+        No plug-in has this name.
+    """
+    return AutoIntegrator if (kind, word) == ("integrator", AutoIntegrator.name) else registry.find(kind, word).plugin
+
+
+def _kinds_with(key: str, kind: str, registry: Registry) -> list[str]:
+    """Names of the plug-ins that have an option."""
+    return [e.name for e in registry.all() if e.kind == kind and key in attrs.fields_dict(e.plugin)]
 
 
 def rig_of(scene: Scene) -> Rig:
@@ -344,6 +370,7 @@ def _plugin(name: str, tables: ReadTables, registry: Registry) -> type | None:
         return None
     kind, default = PLUGIN_TABLES[name]
     word = table.get("kind", default)
-    if not isinstance(word, str) or word not in registry.names(kind) or (kind, word) in registry.shadowed():
+    try:
+        return options_class(kind, word, registry) if isinstance(word, str) else None
+    except PluginError:
         return None
-    return registry.find(kind, word).plugin

@@ -13,6 +13,7 @@ from raceway.scene.changes import told
 from raceway.scene.inputs import Given
 from raceway.scene.tables import (
     TABLES,
+    AutoIntegrator,
     Contact,
     Identifying,
     Integration,
@@ -157,6 +158,9 @@ class Scene(SceneTables, Shown):
             part = getattr(self, name)
             if part is not None:
                 tables[name] = _plain(part)
+        if self.integrator.kind == AutoIntegrator.name:  # defaults that are written out would ask for a transient
+            keys = ("kind", *self.source.get("integrator", ()))
+            tables["integrator"] = {key: value for key, value in tables["integrator"].items() if key in keys}
         for name in ("bodies", "excitation", "mesh"):
             plugin = getattr(self, name)
             if plugin is not None:

@@ -15,7 +15,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import catalogue, materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
-from raceway.scene.tables import STUDY_TABLES, TABLES
+from raceway.scene.tables import STUDY_TABLES, TABLES, AutoIntegrator
 from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
 
@@ -69,20 +69,23 @@ def _bearing(cls: type) -> Tables:
 
 def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> Tables:
     """One branch for each installed plug-in, told apart by ``kind``."""
-    usable = [e for e in registry.all() if e.kind == kind and (e.kind, e.name) not in registry.shadowed()]
+    shadowed = registry.shadowed()
+    usable = {e.name: e.plugin for e in registry.all() if e.kind == kind and (e.kind, e.name) not in shadowed}
+    if default == AutoIntegrator.name:
+        usable = {default: AutoIntegrator, **usable}
     branches = []
-    for entry in usable:
-        branch = _table(entry.plugin)
+    for word, plugin in usable.items():
+        branch = _table(plugin)
         core = _table(TABLES[name])["properties"] if name in TABLES else {}
-        words = {"const": entry.name, "description": _first_line(entry.plugin)}
+        words = {"const": word, "description": _first_line(plugin)}
         branch["properties"] = {**core, **branch["properties"], "kind": words}
-        if entry.name != default:
+        if word != default:
             branch["required"].insert(0, "kind")
-        branches.append({"title": f"{name}: {entry.name}", **branch})
+        branches.append({"title": f"{name}: {word}", **branch})
     schema: Tables = {"type": "object"}
     if not branches:
         return {**schema, "not": {}, "description": f"no {kind.replace('_', ' ')} is installed"}
-    kinds: Tables = {"enum": [e.name for e in usable], **({} if default is None else {"default": default})}
+    kinds: Tables = {"enum": list(usable), **({} if default is None else {"default": default})}
     return {**schema, "properties": {"kind": kinds}, "oneOf": branches}
 
 

@@ -4,7 +4,7 @@ its last attribute."""
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 import attrs
 
@@ -319,8 +319,18 @@ class Contact:
 
 
 @attrs.frozen
+class AutoIntegrator:
+    """The steady orbit where the force repeats every turn and contacts have no memory, else 'newmark': planning chooses."""
+
+    name: ClassVar[str] = "auto"
+    implicit: ClassVar[bool] = True
+    inertial: ClassVar[bool] = True
+    steady: ClassVar[bool] = False
+
+
+@attrs.frozen
 class Integration:
-    kind: str = option("newmark", help="integrator")
+    kind: str = option(AutoIntegrator.name, help="integrator")
     turns: int = option(12, help="turns of the excitation", rule=between(1, 10_000_000))
     steps_per_turn: int | str = option(
         "auto", help="'auto': 360, or more where an explicit step needs it", rule=word_or(between(8, 100_000_000), "auto")
@@ -359,7 +369,7 @@ PLUGIN_TABLES = {
     "bodies": ("bodies", "rigid"),
     "mesh": ("mesher", "structured"),
     "contact": ("contact_law", "hertz"),
-    "integrator": ("integrator", "newmark"),
+    "integrator": ("integrator", AutoIntegrator.name),
     "identifier": ("identifier", "fft_1x"),
 }
 

@@ -216,7 +216,7 @@ def test_structural_approach_has_a_rate():
 
     3 allows for the third order that is left at these steps.
     """
-    case = model(tilt="locked", contact={"damping": 2000.0})
+    case = model(tilt="locked", contact={"damping": 2000.0}, integrator={"kind": "newmark"})
     soft = elastic(case.system, outer=5e-9)
     period = case.excitation.period_s
     q, _, _ = soft.settle(case.guess)
