@@ -4,7 +4,7 @@ import pytest
 
 from raceway.errors import PluginError
 from raceway.framework.registry import Registry
-from raceway.scene.reading import check_requires
+from raceway.scene.reading import _check_requires
 from tests.fake_site import LAW, FakeSite
 
 BROKEN = {
@@ -294,7 +294,7 @@ def test_a_name_that_two_kinds_have_is_ambiguous(tmp_path):
 def test_requires_refuses(site, monkeypatch, table, message):
     _three(site, monkeypatch)
     mistakes = []
-    check_requires(table, Registry(), mistakes)
+    _check_requires(table, Registry(), mistakes)
     assert len(mistakes) == 1 and message in str(mistakes[0]) and str(mistakes[0]).startswith("`requires")
 
 
@@ -302,7 +302,7 @@ def test_requires_accepts_distribution_entry_point_and_plugin(site, monkeypatch)
     _three(site, monkeypatch)
     mistakes = []
     met = {"good": ">=1.2, <2", "Good": "==1.4", "good_law": ">=1", "good-entry": "", "hertz": "", "raceway": ">=0.1"}
-    check_requires(met, Registry(), mistakes)
+    _check_requires(met, Registry(), mistakes)
     assert not mistakes
 
 

@@ -137,8 +137,8 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
     parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
     unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
-    what = "steady orbit" if integrator.method.steady else "time integration"
-    part, why = f"{what} ({integrator.kind})", problem.integrator_why or "the identifier needs recorded motion"
+    form = "steady orbit" if integrator.method.steady else "time integration"
+    part, why = f"{form} ({integrator.kind})", problem.integrator_why or "the identifier needs recorded motion"
     recorded = parts.decide(problem.recorded, part, why, unused)
     if not recorded:
         return Motion(False, 0, 0)

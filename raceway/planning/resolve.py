@@ -31,7 +31,7 @@ _MEMORY_LIMIT = 4 * 2**30
 
 
 @attrs.frozen
-class Inertia:
+class _Inertia:
     """Mass [kg], transverse and polar inertia [kg m2] of the inner rings and of the rotor's share."""
 
     mass: float
@@ -119,11 +119,11 @@ class Problem(SceneTables):
         return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
 
     @cached_property
-    def inertia(self) -> Inertia:
+    def inertia(self) -> _Inertia:
         """Of the inner rings and the rotor's share."""
         mass, transverse, polar = ring_inertia(self.bearing)
         rotor = self.rotor
-        return Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar)
+        return _Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar)
 
     @cached_property
     def running(self) -> RunningBearing:

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from packaging.specifiers import SpecifierSet
 
 
-def check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
+def _check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
     """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
 
     Parameters
@@ -259,7 +259,7 @@ def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake
         if name != "title" and not isinstance(plain[name], dict):
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
             plain[name] = {}
-    check_requires(plain.get("requires", {}), registry, mistakes)
+    _check_requires(plain.get("requires", {}), registry, mistakes)
     if "bearing" not in plain:
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     return title, plain
