@@ -36,6 +36,7 @@ def said_kind(tables, kind="auto"):
         {"identifier": {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0]}},
         {"contact": {"kind": "film", "oil": "VG 46", "temperature_c": 60.0, "roughness": 2e-7}},
         {"bodies": {"kind": "condensed"}},
+        {"kinematics": {"orbiting": True}},
     ],
 )
 def test_what_repeats_and_forgets_is_solved_for(tables):
@@ -51,7 +52,7 @@ def test_what_repeats_and_forgets_is_solved_for(tables):
         ({"excitation": {**FORCE, "ramp_turns": 3.0}}, "grows from zero"),
         ({"excitation": RUN_UP, "identifier": {"kind": "order_tracking"}}, "does not repeat"),
         ({"contact": {"friction": 0.05}}, "friction"),
-        ({"kinematics": {"orbiting": True}}, "orbit"),
+        ({"kinematics": {"orbiting": True}, "load": {"axial": 1000.0, "radial": [100.0, 0.0]}}, "orbiting"),
         ({"bodies": {"kind": "condensed"}, "contact": {"kind": "penalty", "discretisation": "nodal"}}, "not compiled"),
     ],
 )
