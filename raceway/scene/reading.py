@@ -305,7 +305,7 @@ def _plugin_table(
     return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})
 
 
-def options_class(kind: str, word: str, registry: Registry) -> Any:
+def options_class(kind: str, word: str, registry: Registry) -> type:
     """The class of options of a table's ``kind``.
 
     Raises
