@@ -5,7 +5,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import attrs
@@ -17,7 +17,7 @@ from raceway.core.columns import Number, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.jit import address_of
 from raceway.core.periodic.collocation import one_pitch
-from raceway.core.periodic.orbits import Orbits, Turning, orbits
+from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
 from raceway.core.ring.equilibria import Kernels, Points, States, equilibria
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
@@ -152,14 +152,20 @@ class ColumnBearing:
         return states
 
     def orbits(
-        self, states: States, excitations: Sequence[Excitation], which: np.ndarray, speed: np.ndarray, tolerance: float
+        self,
+        states: States,
+        excitations: Sequence[Excitation],
+        which: np.ndarray,
+        speed: np.ndarray,
+        tolerance: float,
+        loop: Callable[..., None] = orbits,
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium.
 
         Parameters
         ----------
         excitations : periodic ones;  which : (n,) the one that acts at each point;  speed : (n,) its [rad/s]
-        tolerance : of the 1x line, relative
+        tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
         """
         z, n, inertia = self.points.table.shape[1], len(which), self.problem.inertia
         out = _empty_orbits(n)
@@ -173,15 +179,14 @@ class ColumnBearing:
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
             if not len(chosen):
                 continue
-            first = chosen[0]
+            chosen = np.unique(np.append(chosen, 0)) if loop is neighbours else chosen
+            first = chosen[-1]
             symmetry = None if across[first] else one_pitch(self._system(first, turning), speed[first], states.q[first])
             if symmetry is not None:
                 sense = float(np.sign(symmetry.angle))
                 turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)
             here = _rows(out, chosen)
-            orbits(
-                self.kernels, self.linear, _rows(self.points, chosen), _rows(states, chosen), _rows(turning, chosen), here
-            )  # fmt: skip
+            loop(self.kernels, self.linear, _rows(self.points, chosen), _rows(states, chosen), _rows(turning, chosen), here)
             for column, part in zip(out, here, strict=True):
                 column[chosen] = part
         return out

@@ -35,7 +35,8 @@ def _either(number: Callable[..., float], column: str) -> Callable[..., Any]:
     return function
 
 
-cos, sin, acos = _either(math.cos, "cos"), _either(math.sin, "sin"), _either(math.acos, "arccos")
+cos, sin = _either(math.cos, "cos"), _either(math.sin, "sin")
+acos, asin = _either(math.acos, "arccos"), _either(math.asin, "arcsin")
 sqrt, log, radians = _either(math.sqrt, "sqrt"), _either(math.log, "log"), _either(math.radians, "radians")
 least, largest = _either(min, "minimum"), _either(max, "maximum")
 #: Whether a number is not 0, of a column any.

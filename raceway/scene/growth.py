@@ -27,33 +27,36 @@ def ring_inertia(bearing: Bearing) -> tuple[Number, Number, Number]:
     Notes
     -----
     Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
-    is cut out exactly.  Of a bearing with columns they are columns: each section is integrated over by itself.
+    is cut out exactly.  Of a bearing with columns they are columns.
     """
-    if has_columns(bearing):
-        each = np.array([ring_inertia(at_row(bearing, point)) for point in range(length(bearing))]).T
-        return each[0], each[1], each[2]
-    total = np.zeros(3)
+    masses, transverses, polars = [], [], []
     for (_, position), row in zip(bearing.rows, bearing.of_rows, strict=True):
-        moments = _moments(row, groove_depth(row))
+        moments = (_moments.__wrapped__ if has_columns(row) else _moments)(row, groove_depth(row))
         if moments is None:
             return 0.0, 0.0, 0.0
         mass, transverse, polar = (row.rings.density * moment for moment in moments)
-        total += mass, transverse + mass * position**2, polar
-    return float(total[0]), float(total[1]), float(total[2])
+        masses.append(mass)
+        transverses.append(transverse + mass * position**2)
+        polars.append(polar)
+    return sum(masses), sum(transverses), sum(polars)
 
 
 @cache
-def _moments(b: Bearing, depth: float) -> tuple[float, float, float] | None:
+def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
     """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
     if b.inner_profile is not None:
         from raceway.core.mesh.ring_mesh import ring_shape
 
+        if has_columns(b):
+            each = np.array([ring_shape(at_row(b, point), True).moments for point in range(length(b))])
+            return each[:, 0], each[:, 1], each[:, 2]
         return ring_shape(b, True).moments
     if b.bore is None or b.width is None:
         return None
     from raceway.core.mesh.ring_mesh import RingSection
 
-    return RingSection.of(b, depth).moments
+    volume, transverse, polar = RingSection.of(b, depth).moments
+    return volume, transverse, polar
 
 
 @cache

@@ -14,6 +14,7 @@ from typing import Any
 import attrs
 import numpy as np
 
+from raceway.core import columns
 from raceway.core.mesh.hex_mesh import HexMesh, nodes_of
 from raceway.errors import MeshError
 from raceway.storage.tables import Tables
@@ -177,16 +178,21 @@ class RingSection:
 
     @classmethod
     def of(cls, bearing: Any, shoulder_height: float) -> RingSection:
-        """From bore, width and groove of a scene's [bearing]."""
+        """From bore, width and groove of a scene's [bearing]; where these are columns, arrays have an axis of points before."""
         b = bearing
         offset, alpha = (b.conformity_inner - 0.5) * b.ball_diameter, b.contact_angle
         groove = b.conformity_inner * b.ball_diameter
-        centre_x, centre_r = offset * sin(alpha), 0.5 * b.pitch_diameter + offset * cos(alpha)
+        centre_x, centre_r = offset * columns.sin(alpha), 0.5 * b.pitch_diameter + offset * columns.cos(alpha)
         bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height
-        half = sqrt(max(groove**2 - (centre_r - land) ** 2, 0.0))
+        half = columns.sqrt(columns.largest(groove**2 - (centre_r - land) ** 2, 0.0))
         # Where the groove meets the land, or a side face before that.
-        left, right = (min(max(x, -0.5 * b.width), 0.5 * b.width) for x in (centre_x - half, centre_x + half))
-        low, high = (asin(max(min((x - centre_x) / groove, 1.0), -1.0)) for x in (left, right))
+        ends = centre_x - half, centre_x + half
+        left, right = (columns.least(columns.largest(x, -0.5 * b.width), 0.5 * b.width) for x in ends)
+        sines = (columns.largest(columns.least((x - centre_x) / groove, 1.0), -1.0) for x in (left, right))
+        low, high = (columns.per_ball(columns.asin(sine)) for sine in sines)
+        contact = centre_x - groove * columns.sin(alpha), centre_r - groove * columns.cos(alpha)
+        numbers = (centre_x, centre_r, groove, bore, land, b.width, left, right)
+        centre_x, centre_r, groove, bore, land, width, left, right = map(columns.per_ball, numbers)
         at, weight = _rule(_ALONG)
         angle = 0.5 * (low + high) + 0.5 * (high - low) * at
         tops = [
@@ -196,27 +202,27 @@ class RingSection:
                 0.5 * (high - low) * groove * np.cos(angle),
             )
         ]
-        for first, last in ((-0.5 * b.width, left), (right, 0.5 * b.width)):
+        for first, last in ((-0.5 * width, left), (right, 0.5 * width)):
             x = 0.5 * (first + last) + 0.5 * (last - first) * at
-            tops.append((x, np.full_like(x, land), np.full_like(x, 0.5 * (last - first))))
-        x, top, slope = (np.concatenate(parts) for parts in zip(*tops, strict=True))
+            tops.append((x, land, 0.5 * (last - first)))
+        shape = np.broadcast_shapes(*(np.shape(part) for parts in tops for part in parts))
+        x, top, slope = (
+            np.concatenate([np.broadcast_to(part, shape) for part in parts], axis=-1) for parts in zip(*tops, strict=True)
+        )
         along = slope * np.tile(weight, len(tops))
         up, share = _rule(_ACROSS)
         wall = 0.5 * (top - bore)
-        r = bore + wall[:, None] * (1.0 + up)
-        area = along[:, None] * wall[:, None] * share
-        contact = centre_x - groove * sin(alpha), centre_r - groove * cos(alpha)
-        return cls(np.repeat(x, _ACROSS), r.ravel(), area.ravel(), contact)
+        r = np.expand_dims(bore, -1) + wall[..., None] * (1.0 + up)
+        area = along[..., None] * wall[..., None] * share
+        each = (*shape[:-1], -1)
+        return cls(np.repeat(x, _ACROSS, axis=-1), r.reshape(each), area.reshape(each), contact)
 
     @property
-    def moments(self) -> tuple[float, float, float]:
+    def moments(self) -> tuple[columns.Number, columns.Number, columns.Number]:
         """Volume [m3], transverse inertia about x = 0 and polar inertia over density [m5]."""
         volume = 2.0 * pi * self.r * self.area
-        return (
-            float(volume.sum()),
-            float(volume @ (0.5 * self.r**2 + self.x**2)),
-            float(volume @ self.r**2),
-        )
+        by = 0.5 * self.r**2 + self.x**2, self.r**2
+        return volume.sum(axis=-1), *(np.squeeze(volume[..., None, :] @ square[..., None], (-2, -1)) for square in by)
 
     def growth(self, young: float, poisson: float) -> float:
         """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.

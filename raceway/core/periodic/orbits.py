@@ -46,6 +46,8 @@ from raceway.core.signatures import (
 SOLVED, NOT_SOLVED, UNRESOLVED = 0, 10, 11
 #: Newton's steps of a level, and the last one's size over the motion's.
 _STEPS, _CONVERGED, _ROUNDED = 12, 1e-11, 1e-8
+#: What a neighbour's steps may leave of its motion.
+_LEFT = 1e-13
 #: Unknowns up to which all harmonics are solved for at once.
 _DENSE = 48
 
@@ -284,10 +286,10 @@ def _imbalances(kernels, turning, numbers, level, work):
     return True
 
 
-@jit(boolean(LEVEL, VECTOR, float64, int64[::1]))
-def _newton_step(level, mass, speed, dofs):
-    """u of all samples by Newton's method; False where the matrix is singular."""
-    n, d, J = level.u.shape[0], dofs.size, level.J
+@jit(void(LEVEL, VECTOR, float64, int64[::1], MATRIX), inline=True)
+def _jacobian(level, mass, speed, dofs, J):
+    """Derivatives of all samples' imbalances by u, in the first columns of J."""
+    n, d = level.u.shape[0], dofs.size
     for j in range(n):
         for a in range(d):
             i, row = dofs[a], j * d + a
@@ -298,7 +300,16 @@ def _newton_step(level, mass, speed, dofs):
                 J[row, m * d + a] += speed * speed * mass[i] * d2
             for b in range(d):
                 J[row, j * d + b] += level.A0[j, i, dofs[b]]
-            J[row, n * d] = -level.r[j, i]
+
+
+@jit(boolean(LEVEL, VECTOR, float64, int64[::1]))
+def _newton_step(level, mass, speed, dofs):
+    """u of all samples by Newton's method; False where the matrix is singular."""
+    n, d, J = level.u.shape[0], dofs.size, level.J
+    _jacobian(level, mass, speed, dofs, J)
+    for j in range(n):
+        for a in range(d):
+            J[j * d + a, n * d] = -level.r[j, dofs[a]]
     if not solve(J):
         return False
     for j in range(n):
@@ -493,55 +504,144 @@ def _change(A0):
     return (high - low) / max(mean, 1e-300)
 
 
+@jit(NUMBERS(LINEAR, POINTS, STATES, TURNING, int64, VECTOR), allocates=True)
+def _numbers(linear, points, states, turning, p, weight):
+    """Of one point; ``weight`` is filled in."""
+    constants = Constants(points.scalars[p], points.table[p])
+    weight[:3] = 1.0
+    weight[3] = weight[4] = constants.scalars[TILT_ARM]
+    damped = constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0
+    return Numbers(
+        constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
+        turning.params[p], damped, states.q[p], weight,
+    )  # fmt: skip
+
+
+@jit(
+    types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX, int64[::1]),
+    allocates=True,
+)
+def _orbit(kernels, linear, turning, numbers, K, ball, work, dofs):
+    """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
+    spans, d = int(np.round(2.0 * np.pi / turning.span)), dofs.size
+    push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
+    _force_line(turning, numbers, push, mean)
+    _linear_response(K, numbers, linear.free, push, line)
+    n, u = turning.least, np.empty((turning.least, 5))
+    _first_guess(numbers.centre, line, turning, u)
+    while True:
+        start, dense = u.copy(), n * d <= _DENSE
+        level = _level(u, ball, spans, turning.span, dense, d)
+        status, step, _ = _solve(kernels, turning, numbers, level, work, dofs)
+        if status != SOLVED and not dense and n * d <= 4 * _DENSE:
+            copy_matrix(start, u)
+            level = _level(u, ball, spans, turning.span, True, d)
+            status, step, _ = _solve(kernels, turning, numbers, level, work, dofs)
+        if status != SOLVED:
+            break
+        _lines(level.u, turning.sense, mean, line)
+        error = max(_difference(line, before), step)
+        if error <= turning.tolerance:
+            break
+        before[:] = line
+        if 2 * n > turning.most:
+            status = UNRESOLVED
+            break
+        u = np.empty((2 * n, 5))
+        _doubled(level.u, u)
+        n *= 2
+    return status, error, level
+
+
+@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
+def _report(turning, numbers, level, status, error, p, out):
+    """One point's answer."""
+    push, force = np.empty((2, 5)), np.empty(5)
+    _force_line(turning, numbers, push, force)
+    _lines(level.u, turning.sense, out.mean[p], out.line[p])
+    out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
+    for i in range(5):
+        out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
+
+
 @jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
 def orbits(kernels, linear, points, states, turning, out):
     """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
-    z, dofs = points.table.shape[1], np.flatnonzero(linear.free > 0.0)
+    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    spans, d, weight, line = int(np.round(2.0 * np.pi / turning.span)), dofs.size, np.ones(5), np.empty(10)
-    before, mean = np.empty(10), np.empty(5)
-    push, force = np.empty((2, 5)), np.empty(5)
     for p in range(points.table.shape[0]):
         out.status[p] = states.status[p]
         if states.status[p] != 0:
             continue
-        constants = Constants(points.scalars[p], points.table[p])
-        weight[3] = weight[4] = constants.scalars[TILT_ARM]
-        numbers = Numbers(
-            constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
-            turning.params[p], constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0, states.q[p], weight,
-        )  # fmt: skip
-        _force_line(turning, numbers, push, force)
-        _linear_response(states.stiffness[p], numbers, linear.free, push, line)
-        n, u, error = turning.least, np.empty((turning.least, 5)), np.inf
-        for i in range(10):
-            before[i] = 0.0
-        _first_guess(states.q[p], line, turning, u)
-        while True:
-            start, dense = u.copy(), n * d <= _DENSE
-            level = _level(u, states.ball[p], spans, turning.span, dense, d)
-            status, step, size = _solve(kernels, turning, numbers, level, work, dofs)
-            if status != SOLVED and not dense and n * d <= 4 * _DENSE:
-                copy_matrix(start, u)
-                level = _level(u, states.ball[p], spans, turning.span, True, d)
-                status, step, size = _solve(kernels, turning, numbers, level, work, dofs)
-            if status != SOLVED:
-                break
-            _lines(level.u, turning.sense, mean, line)
-            error = max(_difference(line, before), step)
-            if error <= turning.tolerance:
-                break
-            for i in range(10):
-                before[i] = line[i]
-            if 2 * n > turning.most:
-                status = UNRESOLVED
-                break
-            u = np.empty((2 * n, 5))
-            _doubled(level.u, u)
-            n *= 2
-        out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, n, _change(level.A0)
-        for i in range(10):
-            out.line[p, i] = line[i]
+        numbers = _numbers(linear, points, states, turning, p, weight)
+        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work, dofs)
+        _report(turning, numbers, level, status, error, p, out)
+
+
+@jit(
+    types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]),
+    allocates=True,
+)
+def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
+    """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
+    n, d, before = level.u.shape[0], dofs.size, 0.0
+    right = np.empty(n * d)
+    for count in range(4 * _STEPS):
+        if not _imbalances(kernels, turning, numbers, level, work):
+            return NOT_SOLVED, np.inf
+        for j in range(n):
+            for a in range(d):
+                right[j * d + a] = -level.r[j, dofs[a]]
+            for i in range(5):
+                level.r[j, i] = 0.0
+        for row in range(n * d):
+            total = 0.0
+            for column in range(n * d):
+                total += inverse[row, column] * right[column]
+            level.r[row // d, dofs[row % d]] = total
+        step, size = _moved(level, turning, numbers)
+        if not step < 1e-2:
+            return NOT_SOLVED, np.inf
+        if numbers.damped:
+            _ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
+        # What is left is the last step times the rate at which steps fall.
+        left = step if count == 0 else min(step, step * step / before)
+        if left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before):
+            return SOLVED, step / max(size, 1e-300)
+        before = step
+    return NOT_SOLVED, np.inf
+
+
+@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
+def neighbours(kernels, linear, points, states, turning, out):
+    """The same of points next to the first one: its samples, and steps by the derivatives of its imbalance."""
+    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
+    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
+    out.status[:] = NOT_SOLVED
+    numbers = _numbers(linear, points, states, turning, 0, weight)
+    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work, dofs)
+    n, d = level.u.shape[0], dofs.size
+    if status != SOLVED or n * d > 4 * _DENSE:
+        return
+    _report(turning, numbers, level, status, error, 0, out)
+    inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
+    _jacobian(level, numbers.mass, numbers.speed, dofs, J)
+    for row in range(n * d):
+        J[row, n * d + row] = 1.0
+    if not solve(J):
+        return
+    inverse[:] = J[:, n * d :]
+    u, ball, rate, moved, seen = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
+    for p in range(1, points.table.shape[0]):
+        if states.status[p] != 0:
+            continue
+        numbers = _numbers(linear, points, states, turning, p, weight)
         for i in range(5):
-            out.mean[p, i] = mean[i]
-            out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
+            moved[i] = states.q[p, i] - states.q[0, i]
+        for j in range(n):  # along with the equilibrium
+            _turn(-turning.sense * turning.span * j / n, moved, seen)
+            for i in range(5):
+                level.u[j, i] = u[j, i] + seen[i]
+        level.ball[:], level.ball_rate[:] = ball, rate
+        status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
+        _report(turning, numbers, level, status, error, p, out)
