@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import pi, radians
+from math import pi
 
 import attrs
 import numpy as np
 
-from raceway.core.columns import Number, largest, per_ball
+from raceway.core.columns import Number, largest, per_ball, radians
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.ring import ChangingSpeed, Growth
@@ -64,7 +64,7 @@ def make_basis(problem: Problem) -> Basis:
     geometries = tuple(BallBearing.of(bearing) for bearing in b.of_rows)
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     azimuth = [
-        radians(bearing.first_ball_azimuth_deg) + 2.0 * pi * np.arange(bearing.ball_count) / bearing.ball_count
+        per_ball(radians(bearing.first_ball_azimuth_deg)) + 2.0 * pi * np.arange(bearing.ball_count) / bearing.ball_count
         for bearing in b.of_rows
     ]
     row = np.repeat(np.arange(len(b.rows)), [bearing.ball_count for bearing in b.of_rows])
@@ -73,7 +73,7 @@ def make_basis(problem: Problem) -> Basis:
         pairs = [geometry.ellipses(modulus) for geometry in geometries]
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = problem.axial_approach
-    azimuths = np.concatenate(azimuth)
+    azimuths = np.concatenate(azimuth, axis=-1)
     return Basis(
         geometries[0],
         geometries,
@@ -102,7 +102,7 @@ def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:
 def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
     """The contacts as a law sees them, mounted and at standstill; those of n points (n 2 Z,) one after the other."""
     inner, outer = basis.inner, basis.outer
-    rings, balls, shape = problem.bearing.rings, problem.bearing.balls, (*problem.points, len(basis.azimuth))
+    rings, balls, shape = problem.bearing.rings, problem.bearing.balls, (*problem.points, len(basis.row))
 
     def both(a: Number, b: Number) -> np.ndarray:
         halves = [np.broadcast_to(per_ball(value) if problem.points else value, shape) for value in (a, b)]

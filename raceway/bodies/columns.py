@@ -15,6 +15,7 @@ from raceway.bodies.basis import Basis, gyroscopic, make_basis
 from raceway.bodies.rigid_bearing import contact_parts
 from raceway.core.columns import Number, per_ball, some
 from raceway.core.contact.hertz import Ellipse
+from raceway.core.excitations import no_force
 from raceway.core.jit import address_of
 from raceway.core.periodic.collocation import one_pitch
 from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
@@ -27,12 +28,12 @@ from raceway.framework.duties import force_params, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem, resolve
-from raceway.scene.changes import with_column
+from raceway.scene.changes import with_columns
 from raceway.scene.growth import groove_edge
 from raceway.scene.scene import Scene
 
 #: Continuous keys whose numbers may be columns; beside them those of the excitation.
-KEYS = frozenset(
+_KEYS = frozenset(
     [
         "load.axial",
         "load.radial[0]",
@@ -46,6 +47,15 @@ KEYS = frozenset(
         "rotor.damping",
         "rotor.transverse_inertia",
         "rotor.polar_inertia",
+        "contact.damping",
+        "contact.time_constant",
+        "contact.loss_factor",
+        "bearing.bore",
+        "bearing.outer_diameter",
+        "bearing.width",
+        "bearing.first_ball_azimuth_deg",
+        "bearing.rings.thermal_expansion",
+        "bearing.balls.thermal_expansion",
         "bearing.ball_diameter",
         "bearing.pitch_diameter",
         "bearing.conformity_inner",
@@ -63,6 +73,7 @@ KEYS = frozenset(
         "mounting.inner_temperature",
         "mounting.outer_temperature",
         "mounting.ball_temperature",
+        "mounting.shaft_bore",
         "mounting.shaft_interference",
         "mounting.housing_interference",
     ]
@@ -98,10 +109,16 @@ def why_not(scene: Scene, moving: bool) -> str:
     return next((reason for reason, holds in reasons.items() if holds), "")
 
 
+def may_be_column(scene: Scene, key: str) -> bool:
+    """Whether the numbers at a continuous key may be a column."""
+    apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
+    apart |= key.startswith("bearing.") and scene.kinematics.ring_growth  # rings grow by sections of their own
+    return key.startswith("excitation.") or key in _KEYS and not apart
+
+
 def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:
     """What a scene asks for at n points, from the columns (n,) of its keys."""
-    for key, column in columns.items():
-        scene = with_column(scene, key, column)
+    scene = with_columns(scene, columns)
     return attrs.evolve(resolve(scene), points=(len(next(iter(columns.values()))),))
 
 
@@ -123,6 +140,34 @@ def conspicuous(problem: Problem) -> np.ndarray:
     loaded = sum(np.abs(load) for load in loads) + b.preload
     wrong |= ~(loaded > 0.0) | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
     return wrong
+
+
+@attrs.frozen(eq=False)
+class Excitations:
+    """The excitations that differ among n points, which of them acts at each (n,), and its speed (n,) [rad/s]."""
+
+    several: Sequence[Excitation]
+    which: np.ndarray
+    speed: np.ndarray
+
+    @classmethod
+    def of(cls, scene: Scene, columns: Mapping[str, np.ndarray]) -> Excitations:
+        """Of a scene with columns of its keys."""
+        keys = [key for key in columns if key.startswith("excitation.")]
+        several, which = [scene.excitation], np.zeros(len(next(iter(columns.values()))), dtype=int)
+        if keys:
+            numbers, which = np.unique(np.stack([columns[key] for key in keys], axis=1), axis=0, return_inverse=True)
+            names = [key.partition(".")[2] for key in keys]
+            several = [attrs.evolve(scene.excitation, **dict(zip(names, row, strict=True))) for row in numbers.tolist()]
+        which = which.ravel()
+        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
+        return cls(several, which, speed)
+
+
+def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """(n,) Z = (F^H F) / (F^H x) [N/m] of 1x lines (n, 3), see ``raceway.core.signals``."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
 
 
 @attrs.frozen(eq=False)
@@ -152,28 +197,22 @@ class ColumnBearing:
         return states
 
     def orbits(
-        self,
-        states: States,
-        excitations: Sequence[Excitation],
-        which: np.ndarray,
-        speed: np.ndarray,
-        tolerance: float,
-        loop: Callable[..., None] = orbits,
+        self, states: States, excitations: Excitations, tolerance: float, loop: Callable[..., None] = orbits
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium.
 
         Parameters
         ----------
-        excitations : periodic ones;  which : (n,) the one that acts at each point;  speed : (n,) its [rad/s]
-        tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
+        excitations : periodic ones;  tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
         """
-        z, n, inertia = self.points.table.shape[1], len(which), self.problem.inertia
+        z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
+        speed = excitations.speed
         out = _empty_orbits(n)
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
-        params = np.array([force_params(excitation) for excitation in excitations])[which]
-        force = address_of(plugin_kernel(excitations[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
+        params = np.array([force_params(excitation) for excitation in excitations.several])[excitations.which]
+        force = address_of(plugin_kernel(excitations.several[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
@@ -181,7 +220,9 @@ class ColumnBearing:
                 continue
             chosen = np.unique(np.append(chosen, 0)) if loop is neighbours else chosen
             first = chosen[-1]
-            symmetry = None if across[first] else one_pitch(self._system(first, turning), speed[first], states.q[first])
+            parts = {"mass": np.diag(mass[first]), "damping": moments[first], "force": force, "force_params": params[first]}
+            system = attrs.evolve(self._system(first), **parts)
+            symmetry = None if across[first] else one_pitch(system, speed[first], states.q[first])
             if symmetry is not None:
                 sense = float(np.sign(symmetry.angle))
                 turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)
@@ -191,14 +232,23 @@ class ColumnBearing:
                 column[chosen] = part
         return out
 
-    def _system(self, row: int, turning: Turning) -> System:
-        """The bearing at one point."""
+    def damping(self, states: States) -> np.ndarray:
+        """(n, 5, 5) of the contacts at each equilibrium, see ``System.damping_at``."""
+        out = np.zeros_like(states.stiffness)
+        for row in np.flatnonzero(self.points.scalars[:, [ring.DAMPING, ring.TIME_CONSTANT]].any(axis=1)):
+            system = self._system(row)
+            out[row] = system.damping_at(states.q[row], system.evaluate(states.q[row], ball=states.ball[row]))
+        return out
+
+    def _system(self, row: int) -> System:
+        """The bearing at one point, at rest."""
         scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
         kernel, base, _, law = self.kernels
+        none = np.zeros((5, 5))
         return System(
-            kernel=kernel, base_kernel=base, law=law, law_params=params, law_state=np.zeros((len(params), 0)), scalars=scalars,
-            table=table, load=load, stiffness=np.diag([0.0, 0.0, 0.0, shaft, shaft]), mass=np.diag(turning.mass[row]),
-            damping=turning.damping[row], free=self.linear.free, force=turning.force, force_params=turning.params[row],
+            kernel=kernel, base_kernel=base if self.plan.balls == "tangential" else kernel, law=law, law_params=params, law_state=np.zeros((len(params), 0)), scalars=scalars,
+            table=table, load=load, stiffness=np.diag([0.0, 0.0, 0.0, shaft, shaft]), mass=none, damping=none,
+            free=self.linear.free, force=no_force, force_params=np.zeros(1),
         )  # fmt: skip
 
     def _preloaded(self) -> ColumnBearing:

@@ -158,7 +158,7 @@ def _ball_table(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
     def spread(value: Number) -> Number:
         return value if several else per_ball(value)
 
-    table = np.zeros((*problem.points, len(azimuth), ring.COLUMNS))
+    table = np.zeros((*problem.points, len(row), ring.COLUMNS))
     if plan.centrifugal:
         for k, geometry in enumerate(basis.geometries):
             cage, mass = geometry.cage_speed(problem.spin_speed), geometry.ball_mass(problem.bearing.balls.density)

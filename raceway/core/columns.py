@@ -55,7 +55,7 @@ def has_columns(part: attrs.AttrsInstance) -> bool:
     return length(part) > 0
 
 
-def with_columns(part: T, **changes: object) -> T:
+def with_values(part: T, **changes: object) -> T:
     """A copy of a table with other values, which no rule of the table looks at: columns obey them point by point."""
     kind: Any = type(part)
     copy = object.__new__(kind)
@@ -74,7 +74,7 @@ def at_row(part: T, row: int) -> T:
     values = _values(part)
     numbers = {name: float(value[row]) for name, value in values.items() if is_column(value)}
     tables = {name: at_row(value, row) for name, value in values.items() if attrs.has(type(value)) and has_columns(value)}
-    return with_columns(part, **numbers, **tables)
+    return with_values(part, **numbers, **tables)
 
 
 def length(part: attrs.AttrsInstance) -> int:

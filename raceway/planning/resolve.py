@@ -109,7 +109,7 @@ class Problem(SceneTables):
             return TIME_CONSTANTS[0]
         if contact.loss_factor is not None and self.excitation is not None:
             return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
-        return contact.time_constant or 0.0
+        return 0.0 if contact.time_constant is None else contact.time_constant
 
     @cached_property
     def spin_changes(self) -> bool:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing
+from raceway.bodies.columns import ColumnBearing, Excitations, impedance
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
@@ -17,9 +16,6 @@ from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIE
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.resolve import Problem
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Excitation
 
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
 #: exist, which a run looks for.
@@ -43,17 +39,14 @@ class Computed:
         cls,
         example: Problem,
         bearing: ColumnBearing,
-        moving: bool,
-        excitations: Callable[[], tuple[list[Excitation], np.ndarray]],
+        excitations: Excitations | None,
         tolerance: float,
     ) -> Computed:
-        """Solve for them."""
+        """Solve for them; without excitations at rest."""
         states = bearing.equilibria()
-        if not moving:
+        if excitations is None:
             return cls(example, bearing, states, None, np.zeros(0))
-        several, which = excitations()
-        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
-        return cls(example, bearing, states, bearing.orbits(states, several, which, speed, tolerance), speed)
+        return cls(example, bearing, states, bearing.orbits(states, excitations, tolerance), excitations.speed)
 
     @cached_property
     def fine(self) -> np.ndarray:
@@ -86,9 +79,7 @@ class Computed:
     @cached_property
     def impedance(self) -> np.ndarray:
         """(n,) Z = (F^H F) / (F^H x), see ``raceway.core.signals``."""
-        force, line = self.force[:, :3], self.line[:, :3]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
+        return impedance(self.force[:, :3], self.line[:, :3])
 
     @cached_property
     def mass(self) -> np.ndarray:

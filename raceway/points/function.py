@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from enum import IntEnum
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +14,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raceway.bodies.columns import KEYS, build_columns, column_problem, conspicuous, why_not
+from raceway.bodies.columns import Excitations, build_columns, column_problem, conspicuous, may_be_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
@@ -29,7 +28,7 @@ from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, LOADED, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
-from raceway.scene.changes import continuous_keys, key_of, with_column, with_number
+from raceway.scene.changes import continuous_keys, key_of, with_columns, with_number
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -37,8 +36,6 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import xarray
-
-    from raceway.framework.contracts import Excitation
 
 #: Points of a block, of equilibria and of motions: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the
 #: cache of the second level.
@@ -115,9 +112,7 @@ class Function:
             return "loads along a motion are asked for"
         if is_foundation(self.scene.contact.law) and any(name.startswith("p0") for name in self.outputs):
             return "pressures are the contact law's own"
-        if self.scene.kinematics.ring_growth and any(key.startswith("bearing.") for key in self.inputs):
-            return "each point's rings grow by sections of their own"
-        strange = [key for key in self.inputs if key not in KEYS and not key.startswith("excitation.")]
+        strange = [key for key in self.inputs if not may_be_column(self.scene, key)]
         return f"{strange[0]} changes more than numbers" if strange else why_not(self.scene, self.moving)
 
     def __call__(self, *columns: ArrayLike, **by_name: ArrayLike) -> Columns | xarray.Dataset:
@@ -211,10 +206,7 @@ class Function:
 
     def _changed(self, point: Mapping[str, float]) -> Scene:
         """The scene with other numbers, which no rule looks at."""
-        scene = self.scene
-        for key, number in point.items():
-            scene = with_column(scene, key, float(number))
-        return scene
+        return with_columns(self.scene, {key: float(number) for key, number in point.items()})
 
     def _named(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
         """All inputs by their keys."""
@@ -287,7 +279,8 @@ class Function:
                 problem = column_problem(self.scene, chosen)
                 bearing = build_columns(problem, plan)
             example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
-            computed = Computed.of(example, bearing, self.moving, partial(self._excitations, chosen), self.tolerance)
+            excitations = Excitations.of(self.scene, chosen) if self.moving else None
+            computed = Computed.of(example, bearing, excitations, self.tolerance)
             fine = ~conspicuous(problem) & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:
@@ -330,18 +323,6 @@ class Function:
             if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
                 turning = columns[key][rows] > 0.0
         return [(turns, part) for turns, part in ((True, rows[turning]), (False, rows[~turning])) if len(part)]
-
-    def _excitations(self, columns: Mapping[str, np.ndarray]) -> tuple[list[Excitation], np.ndarray]:
-        """The excitations that differ, and which of them acts at each row."""
-        keys = [key for key in columns if key.startswith("excitation.")]
-        n = len(next(iter(columns.values())))
-        if not keys:
-            return [self.scene.excitation], np.zeros(n, dtype=int)
-        numbers, which = np.unique(np.stack([columns[key] for key in keys], axis=1), axis=0, return_inverse=True)
-        names = [key.partition(".")[2] for key in keys]
-        return [
-            attrs.evolve(self.scene.excitation, **dict(zip(names, row, strict=True))) for row in numbers.tolist()
-        ], which.ravel()
 
     def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """With runs of the points that the loop has left."""

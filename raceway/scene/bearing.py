@@ -7,7 +7,7 @@ from math import asin, degrees, pi
 
 import attrs
 
-from raceway.core.columns import acos, cos, has_columns, radians, sin, some, with_columns
+from raceway.core.columns import acos, cos, has_columns, radians, sin, some, with_values
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import (
     at_least,
@@ -185,7 +185,7 @@ class Bearing:
     def rows(self) -> tuple[tuple[float, float], ...]:
         """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
         word = self.arrangement if self.arrangement != "single" or not self.row else self.signs
-        rows = places_of(word, self.row_distance or self.width or 0.0)
+        rows = places_of(word, 0.0 if word == "single" else self.row_distance or self.width or 0.0)
         if not self.row:
             return rows
         places = [
@@ -198,7 +198,7 @@ class Bearing:
         """The bearing of each row by itself."""
         if has_columns(self):  # has no tables of rows
             plain = {"arrangement": "single", "preload": 0.0, "second_preload": None, "row_distance": None}
-            return (with_columns(self, **plain),) * len(signs_of(self.arrangement))
+            return (with_values(self, **plain),) * len(signs_of(self.arrangement))
         return _of_rows(self)
 
     @property

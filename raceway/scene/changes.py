@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import attrs
 
-from raceway.core.columns import Number, with_columns
+from raceway.core.columns import Number, with_values
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.tables import TABLES
@@ -118,6 +118,8 @@ _PLUGINS = ("excitation", "bodies")
 _SETTINGS = ("integrator", "identifier", "mesh")
 _ENTRY = re.compile(r"([^\[\]]+)\[(\d+)\]")
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
+#: Paths into a table, and what is to stand there.
+_Changes: TypeAlias = list[tuple[list[str | int], object]]
 
 
 @attrs.frozen
@@ -174,13 +176,18 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     ValueError
         A number that its key's or table's rule refuses.
     """
-    changed: Scene = _replaced(scene, _steps(path), value)
+    return with_numbers(scene, {path: value})
+
+
+def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
+    """The same with numbers at several keys."""
+    changed: Scene = _replaced(scene, [(_steps(path), value) for path, value in numbers.items()])
     return changed
 
 
-def with_column(scene: Scene, path: str, column: Number) -> Scene:
-    """The scene with a column (n,) at a continuous key, which no rule looks at: one scene of n operating points."""
-    changed: Scene = _replaced(scene, _steps(path), column, with_columns)
+def with_columns(scene: Scene, columns: Mapping[str, Number]) -> Scene:
+    """The scene with columns (n,) at continuous keys, which no rule looks at: one scene of n operating points."""
+    changed: Scene = _replaced(scene, [(_steps(path), column) for path, column in columns.items()], with_values)
     return changed
 
 
@@ -222,13 +229,19 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
             yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
-def _replaced(part: Any, steps: list[str | int], value: object, replace: Callable[..., Any] = attrs.evolve) -> Any:
-    if not steps:
-        return value
-    step, further = steps[0], steps[1:]
-    if isinstance(step, int):
-        return (*part[:step], _replaced(part[step], further, value, replace), *part[step + 1 :])
-    fields = attrs.fields_dict(type(part))
-    if step not in fields:  # a key of the plug-in that the table names
-        step, further = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
-    return replace(part, **{step: _replaced(getattr(part, step), further, value, replace)})
+def _replaced(part: Any, changes: _Changes, replace: Callable[..., Any] = attrs.evolve) -> Any:
+    """A table, or an element of one, with values at paths into it."""
+    if not changes[0][0]:
+        return changes[0][1]
+    groups: dict[str | int, _Changes] = {}
+    fields = attrs.fields_dict(type(part)) if attrs.has(type(part)) else {}
+    for steps, value in changes:
+        step, further = steps[0], steps[1:]
+        if fields and step not in fields:  # a key of the plug-in that the table names
+            step, further = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
+        groups.setdefault(step, []).append((further, value))
+    if not fields:
+        return tuple(_replaced(value, groups[k], replace) if k in groups else value for k, value in enumerate(part))
+    return replace(
+        part, **{str(name): _replaced(getattr(part, str(name)), group, replace) for name, group in groups.items()}
+    )

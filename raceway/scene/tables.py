@@ -310,12 +310,12 @@ class Contact:
     @property
     def dashpot(self) -> float:
         """The same dashpot at every contact [N s/m]; 0 where damping goes with the stiffness."""
-        return self.damping if isinstance(self.damping, float) else 0.0
+        return 0.0 if isinstance(self.damping, str) else self.damping
 
     @property
     def in_a_band(self) -> bool:
         """Whether both ends of the band of time constants are run."""
-        return self.damping == "band"
+        return isinstance(self.damping, str)
 
 
 @attrs.frozen

@@ -214,8 +214,8 @@ class RingSection:
         wall = 0.5 * (top - bore)
         r = np.expand_dims(bore, -1) + wall[..., None] * (1.0 + up)
         area = along[..., None] * wall[..., None] * share
-        each = (*shape[:-1], -1)
-        return cls(np.repeat(x, _ACROSS, axis=-1), r.reshape(each), area.reshape(each), contact)
+        r, area = (part.reshape(*part.shape[:-2], -1) for part in (r, area))
+        return cls(np.repeat(x, _ACROSS, axis=-1), r, area, contact)
 
     @property
     def moments(self) -> tuple[columns.Number, columns.Number, columns.Number]:
