@@ -1,4 +1,4 @@
-"""Derivatives by the implicit function theorem are those of whole runs."""
+"""Derivatives from neighbouring solutions are those of whole runs."""
 
 import attrs
 import numpy as np
@@ -6,8 +6,8 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError, build_model, scene_from_dict
-from raceway.pipeline.gradient import Gradients, SteadyOrbit, derivatives, values
-from raceway.pipeline.static_gradient import NoDerivative, derivative, static_gradient
+from raceway.bodies.columns import may_be_column
+from raceway.pipeline.gradient import _FOURTH, _SECOND, Gradients, NoDerivative, SteadyOrbit, derivatives, values
 from raceway.planning.resolve import resolve
 from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
@@ -16,6 +16,15 @@ from validation.command_line import invoke
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
 #: Whole runs are solved to 1e-11; a step of 1e-4 leaves 1e-7 of that in a difference.
 TOLERANCE = 1e-6
+
+
+def derivative(values, step):
+    """Of fourth order, of values at multiples -2, -1, 1, 2 of a step."""
+    return (8.0 * (values[1] - values[-1]) - (values[2] - values[-2])) / (12.0 * step)
+
+
+def static_gradient(model, still, key):
+    return Gradients(model, still, moving=False).by(key).statics
 
 
 def by_runs(model, path, step, of):
@@ -28,13 +37,11 @@ def by_runs(model, path, step, of):
     return derivative(found, step)
 
 
-def test_differences_are_of_fourth_order():
-    errors = []
-    for step in (0.2, 0.1):
-        found = derivative({k: np.exp(np.array([k * step])) for k in (-2, -1, 1, 2)}, step)
-        errors.append(abs(float(found[0]) - 1.0))
-    assert errors[1] == pytest.approx(0.1**4 / 30.0, rel=0.05)  # h^4 f^(5) / 30
-    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.05)
+def test_weights_of_differences_leave_the_fifth_power():
+    """Of odd powers of the step: the first once, the third not at all."""
+    for weights, third in ((_SECOND, 1.0), (_FOURTH, 0.0)):
+        assert sum(2.0 * weight * k for k, weight in weights.items()) == pytest.approx(1.0, rel=1e-15)
+        assert sum(2.0 * weight * k**3 for k, weight in weights.items()) == pytest.approx(third, abs=1e-15)
 
 
 SCENES = {
@@ -71,7 +78,7 @@ def test_derivatives_of_an_equilibrium_are_those_of_whole_runs(name):
             if found.step == 0.0:
                 assert not getattr(found, what).any()
                 continue
-            runs = by_runs(model, key.path, found.step, lambda _, e, what=what: getattr(e, what))
+            runs = by_runs(model, key.path, 10.0 * found.step, lambda _, e, what=what: getattr(e, what))
             scale = np.abs(runs).max() + np.abs(getattr(still, what)).max() / abs(key.value) * 1e-3
             assert np.abs(getattr(found, what) - runs).max() <= TOLERANCE * scale, (key.path, what)
             seen += 1
@@ -98,19 +105,56 @@ ORBIT = b7206c(
 )  # fmt: skip
 
 
+def test_a_held_displacement_moves_along_orbits():
+    """Also where the axial load that it stands for changes."""
+    model, still = settled(ORBIT | {"supports": {"axial": "displacement"}, "contact": {}, "load": {"axial": 300.0}})
+    found = Gradients(model, still).by_path("load.axial").motion.equivalent_stiffness
+    expected = by_runs(model, "load.axial", 0.1, lambda one, e: SteadyOrbit.of(one, e).line[2])
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+TURNING = {"excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4}}
+MOVING = {
+    "a pitch": b7206c(load={"axial": 300.0}, **TURNING),
+    "a turn, damped": ORBIT,
+    "a pitch, dashpots by stiffness": b7206c(load={"axial": 300.0}, contact={"time_constant": 1e-6}, **TURNING),
+    "gyroscopic moments": b7206c(kinematics={"gyroscopic": "shared"}, supports={"tilt": "free"}, **TURNING),
+    "a pair": SCENES["pair with preload and temperatures"] | {"load": {"axial": 100.0}, "supports": {}} | TURNING,
+}
+
+
+@pytest.mark.parametrize("name", MOVING)
+def test_columns_have_the_derivatives_of_models(name):
+    """Compiled loops and searches on collocation meshes."""
+    model, still = settled(MOVING[name])
+    gradients = Gradients(model, still)
+    keys = [key for key in continuous_keys(model.scene) if key.value]
+    ends = gradients._ends(keys)
+    columns = gradients._by_columns([key for key in keys if key.path not in ends and may_be_column(model.scene, key.path)])
+    assert len(columns) > 15
+    numbers = {}
+    for key in keys:
+        if key.path in columns:
+            both = columns[key.path], gradients._by_models(key)
+            numbers[key.path] = [
+                key.value * np.append(one.statics.stiffness.ravel(), [one.motion.dynamic_stiffness.real, one.motion.dynamic_stiffness.imag])
+                for one in both
+            ]  # fmt: skip
+    first, other = np.array(list(numbers.values())).transpose(1, 0, 2)
+    assert np.abs(first - other).max() <= 1e-6 * np.abs(other).max()
+
+
 @pytest.mark.parametrize(
     "path", ["excitation.speed_rpm", "excitation.unbalance", "bearing.contact_angle_deg", "contact.damping", "rotor.mass"]
 )
 def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
     model, still = settled(ORBIT)
-    orbit = SteadyOrbit.of(model, still)
-    key = key_of(model.scene, path)
-    found = orbit.gradient(static_gradient(model, still, key))
+    gradients, key = Gradients(model, still), key_of(model.scene, path)
+    orbit, found = gradients.orbit, gradients.by(key).motion
 
     def line(one, e):
         """Re Z, C, K, amplitude, Im Z."""
-        there = SteadyOrbit.of(one, e)
-        return np.append(there.line, there.line[1] * there.solved.problem.speed)
+        return SteadyOrbit.of(one, e).line
 
     runs = by_runs(model, path, 2e-4 * key.value, line)
     # Orbits are solved to 1e-10 of their size, which a step of 2e-4 makes 5e-7 of |Z|; C is a small part of |Z|.

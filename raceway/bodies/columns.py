@@ -235,7 +235,7 @@ class ColumnBearing:
     def damping(self, states: States) -> np.ndarray:
         """(n, 5, 5) of the contacts at each equilibrium, see ``System.damping_at``."""
         out = np.zeros_like(states.stiffness)
-        for row in np.flatnonzero(self.points.scalars[:, [ring.DAMPING, ring.TIME_CONSTANT]].any(axis=1)):
+        for row in np.flatnonzero(self.points.scalars[:, [ring.DAMPING, ring.TIME_CONSTANT]].any(axis=1)).tolist():
             system = self._system(row)
             out[row] = system.damping_at(states.q[row], system.evaluate(states.q[row], ball=states.ball[row]))
         return out
@@ -245,8 +245,9 @@ class ColumnBearing:
         scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
         kernel, base, _, law = self.kernels
         none = np.zeros((5, 5))
+        base = base if self.plan.balls == "tangential" else kernel
         return System(
-            kernel=kernel, base_kernel=base if self.plan.balls == "tangential" else kernel, law=law, law_params=params, law_state=np.zeros((len(params), 0)), scalars=scalars,
+            kernel=kernel, base_kernel=base, law=law, law_params=params, law_state=np.zeros((len(params), 0)), scalars=scalars,
             table=table, load=load, stiffness=np.diag([0.0, 0.0, 0.0, shaft, shaft]), mass=none, damping=none,
             free=self.linear.free, force=no_force, force_params=np.zeros(1),
         )  # fmt: skip

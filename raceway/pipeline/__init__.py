@@ -7,7 +7,6 @@ simulate         how a motion begins, and the motion
 error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults
-static_gradient  derivatives of an equilibrium by the keys of the scene
-gradient         derivatives of the dynamic stiffness, and the band over tolerances to first order
+gradient         derivatives by the keys of the scene, and the band over tolerances to first order
 result           the result: result.json, reports;  run_screen, run_parts: its tables on a screen
 """

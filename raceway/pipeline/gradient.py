@@ -2,10 +2,14 @@
 
 Notes
 -----
-The collocated orbit u solves R(u, p) = 0 with the exact tangent that Newton's iteration and branches use.  Its derivative is one
-linear problem, du/dp = -R_u^-1 dR/dp round the span, dR/dp at the fixed orbit along the derivatives of the model's arrays; the 1x line
-is then differentiated along u + h du/dp, p + h.  With dashpots the rates of the balls follow the orbit, and tangents lack how
-their forces turn with the contacts: what is left of dR/dp along the line is then taken off again, until the derivative stays.
+A derivative is the central difference of neighbouring solutions at p - h and p + h, each begun at the solution itself.  With
+h = 1e-4 p its error is h^2 / 6 of the third derivative, 1e-8 or less of it, and what iterations leave, 1e-12, over 1e-4.  Where
+differences are less even than such a step explains, a smaller one is taken; where none is, a contact opens or closes there, or the
+model has a kink.
+
+Of rigid bodies all neighbours are columns of one build and are solved in compiled loops (``raceway.bodies.columns``).  Other bodies,
+laws and keys have a model for each neighbour, equilibrium and steady orbit solved from those of the scene: two, or four with wider
+steps where building one solves for a preload or for loads of contacts and leaves its tolerance in them.
 
 Over tolerances numbers are even in their ranges and independent, as ``raceway band`` takes them; an answer is the nominal one plus the
 sum of its derivatives by each number times what that lies off.  The density of the sum is the convolution of even ones, from which the
@@ -14,41 +18,89 @@ limits of 95 % are taken.  Tolerances that bend the answer within their range ne
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
+from typing import TypeAlias
 
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model, tilts_follow
-from raceway.core.periodic.collocation import Path, Problem, Solved, renew, stiff
-from raceway.core.periodic.intervals import Change, Eliminated, condense, imbalances, spread
+from raceway.bodies.columns import (
+    Excitations,
+    build_columns,
+    column_problem,
+    impedance,
+    may_be_column,
+    why_not,
+)
+from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
+from raceway.core.periodic.collocation import Solved, solve
+from raceway.core.periodic.orbits import neighbours
 from raceway.core.periodic.search import PeriodicMotion, find, problem_of
 from raceway.core.periodic.steady import growth_of_disturbances, orbit_tables, refuse, synchronous_response
 from raceway.core.record import Schedule
-from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
-from raceway.core.ring.system import System, by_address, surrogate
-from raceway.errors import ConvergenceError, SceneError
+from raceway.core.ring.kernels.layout import CAGE
+from raceway.core.ring.system import by_address, surrogate
+from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.framework.duties import renews
 from raceway.framework.shown import Fact, race_words, tilt_words
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X, read_in
-from raceway.pipeline.equilibrium import race_of
-from raceway.pipeline.static_gradient import Direction, NoDerivative, StaticGradient, static_gradient
-from raceway.scene.changes import Key, key_of
+from raceway.pipeline.equilibrium import race_of, solve_equilibrium
+from raceway.planning.resolve import resolve
+from raceway.scene.changes import Key, key_of, with_number, with_numbers
 from raceway.scene.tolerance import stated_tolerances, tolerances_of
 from raceway.storage.tables import Tables
 
-#: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none.
-_SAMPLES, _TOLERANCE = 360, 1e-8
-#: Largest step over the number at the key, and over the step of the static differences: errors fall with its square.
-_LARGEST, _SHARE = 3e-5, 0.03
-#: Turns of orbit and rates; what the last one still changes, over the whole: the next one is a tenth of it or less; rounding of
-#: a motion over its size.
-_RATES, _LEFT, _ROUNDING = 12, 1e-7, 1e-11
-_NO_PLACE = "the balls find no place between the races"
+#: Weights of values at shifts by so many steps: their sum over the step is the derivative, of second and of fourth order.
+_SECOND = {1: 1.0 / 2.0}
+_FOURTH = {1: 8.0 / 12.0, 2: -1.0 / 12.0}
+#: Steps over the number, of the two orders; what a step is divided by where differences are uneven.
+_STEP, _WIDE, _SMALLER = 1e-4, 5e-4, 100.0
+#: Least steps by unit, unless that is more than a part of the number.
+_LEAST = {"m": 1e-9, "N": 0.02, "N m": 1e-4, "deg": 1e-3, "r/min": 1.0, "K": 1e-3, "kg": 1e-4, "s": 1e-9, "N s/m": 0.01}
+_ELSE, _PART = 1e-7, 1e-3
+#: Second difference of the stiffness over the first that calls for a smaller step, and that is a kink; rounding of a stiffness.
+_UNEVEN, _KINK, _ROUNDING = 3e-3, 0.02, 1e-11
+_BENDS = "the model has a kink there: to either side derivatives are others"
+_AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
+#: Arrays of a system that forces at rest and in motion depend on.
+_ARRAYS = ("scalars", "table", "stiffness", "load", "law_params", "mass", "damping", "force_params")
+#: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none, and of
+#: neighbouring ones; difference of Z of the same orbit in a compiled loop.
+_SAMPLES, _TOLERANCE, _SOLVED, _SAME = 360, 1e-8, 1e-12, 1e-6
 #: Part of |Z| below which w C is no number that an orbit resolves.
 _RESOLVED = 1e-6
 #: Share of the answers in a band; points of a density.
 _COVERAGE, _POINTS = 0.95, 4001
+
+#: Of m solutions: displacement (m, 5), stiffness and damping (m, 5, 5), contact_force (m, 2 Z), and in motion line (m, 5).
+_Solutions: TypeAlias = dict[str, np.ndarray]
+
+
+class NoDerivative(Exception):  # noqa: N818  (an answer, stated in the table, no failure)
+    """Why a quantity has no derivative by a key, in one sentence."""
+
+
+@attrs.frozen(eq=False)
+class _StaticGradient:
+    """Derivatives of an equilibrium by the number at one key.
+
+    Attributes
+    ----------
+    step : of the differences, in the unit of the key; 0 where it changes nothing at rest
+    displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
+    remark : why they may not be smooth; empty where they are
+    models : that were built for them, beside columns
+    """
+
+    key: Key
+    step: float
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    contact_force: np.ndarray
+    remark: str
+    models: int
 
 
 @attrs.frozen(eq=False)
@@ -66,15 +118,23 @@ class _MotionGradient:
     equivalent_damping: float
     amplitude: float
 
+
+@attrs.frozen(eq=False)
+class Gradient:
+    """Derivatives by one key: of the equilibrium, and of the steady orbit where the scene has an excitation."""
+
+    statics: _StaticGradient
+    motion: _MotionGradient | None
+
     @property
     def nothing(self) -> bool:
-        """Whether the key changes nothing of the orbit."""
-        return not (self.dynamic_stiffness or self.equivalent_stiffness or self.equivalent_damping or self.amplitude)
+        """Whether the key changes nothing at all."""
+        return self.statics.step == 0.0 and (self.motion is None or not any(attrs.astuple(self.motion)))
 
 
 @attrs.define(eq=False)
 class SteadyOrbit:
-    """The steady orbit of a model under its excitation, and how its 1x line depends on the scene.
+    """The steady orbit of a model under its excitation.
 
     Attributes
     ----------
@@ -123,132 +183,29 @@ class SteadyOrbit:
 
     @cached_property
     def line(self) -> np.ndarray:
-        """(4,) Re Z, C and K [N/m, N s/m, N/m], amplitude [m]."""
+        """(5,) Re Z, C and K [N/m, N s/m, N/m], amplitude [m], Im Z [N/m]."""
         return _line(self.solved, self.model.mass_used)
 
-    def gradient(self, statics: StaticGradient) -> _MotionGradient:
-        """By the key of a static gradient, with whose displacement coordinates that are held move.
-
-        Raises
-        ------
-        NoDerivative
-            There is none, with the reason.
-        """
-        direction = statics.direction
-        step = _LARGEST * abs(statics.key.value) or direction.first_step
-        if statics.step:
-            step = min(step, _SHARE * statics.step)
-        try:
-            real, damping, stiffness, amplitude, speed = self._differentiated(direction, step, statics.displacement)
-        except ConvergenceError as why:
-            raise NoDerivative(f"the neighbouring orbits have no balance: {why}") from None
-        omega = self.solved.problem.speed
-        imag = damping * omega + self.line[1] * speed
-        return _MotionGradient(complex(real, imag), float(stiffness), float(damping), float(amplitude))
-
-    def _differentiated(self, direction: Direction, step: float, displacement: np.ndarray) -> np.ndarray:
-        """(5,) derivatives of ``line`` and of the speed."""
-        problems = {k: self._problem(direction, k * step) for k in (-1, 1)}
-        solved, held = self.solved, np.where(self.model.system.free > 0.0, 0.0, displacement)
-        path, weight, speed = solved.path, solved.problem.weight, solved.problem.speed
-        lagging = any(solved.problem.system.scalars[entry] != 0.0 for entry in (DAMPING, TIME_CONSTANT))
-        faster = (problems[1].speed - problems[-1].speed) / (2.0 * step)
-        rounding, first = _ROUNDING * np.abs(path.a / weight).max() / step, 0.0
-        moved = {
-            k: attrs.evolve(path, q=path.q + k * step * held, rate=path.rate * (problem.speed / speed))
-            for k, problem in problems.items()
-        }
-        for turn in range(_RATES):
-            slope = (_imbalance(problems[1], moved[1]) - _imbalance(problems[-1], moved[-1])) / (2.0 * step)
-            if turn == 0 and not slope.any() and not held.any() and faster == 0.0:
-                return np.zeros(5)
-            change = self._change(slope)
-            moved = {k: _moved(neighbour, change, k * step) for k, neighbour in moved.items()}
-            size = float(np.abs(change.a / weight).max())
-            first = first or size
-            if not lagging or turn > 0 and size <= max(_LEFT * first, rounding):
-                break
-            moved = {k: attrs.evolve(neighbour, rate=_rates(problems[k], neighbour)) for k, neighbour in moved.items()}
-        lines = {
-            k: _line(attrs.evolve(solved, problem=problems[k], path=neighbour), self._mass(problems[k].system))
-            for k, neighbour in moved.items()
-        }
-        return np.append((lines[1] - lines[-1]) / (2.0 * step), faster)
-
-    def _mass(self, system: System) -> float:
-        """``Model.mass_used`` of a neighbouring system."""
-        return float(system.mass[1, 1]) if self.model.mass_used else 0.0
-
-    def _problem(self, direction: Direction, by: float) -> Problem:
-        """The boundary-value problem of a neighbouring model, on the same mesh of angles."""
-        problem = self.solved.problem
-        speed = problem.speed + by * direction.speed
-        return attrs.evolve(problem, system=direction.moved(problem.system, by), speed=speed, clock=speed)
-
-    def _change(self, slope: np.ndarray) -> Change:
-        """du/dp from dR/dp (m s, 5)."""
-        problem, path = self.solved.problem, self.solved.path
-        n = len(problem.free)
-        out = _condensed(problem, attrs.evolve(path, ball=path.ball.copy()), slope)
-        # What is left of the balance of forces is no part of the derivative.
-        out.stages[:, 2 * n] = out.transfer[:, 2 * n] = 0.0
-        first = np.linalg.solve(problem.closing - out.span_transfer[:, : 2 * n], out.span_transfer[:, 2 * n + 1])
-        change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
-        spread(problem.free, out, first, 1.0, change)
-        return change
-
-
-def _condensed(problem: Problem, path: Path, *slope: np.ndarray) -> Eliminated:
-    """The path's intervals with their inner unknowns eliminated."""
-    out = problem.eliminated(path.nodes)
-    samples = path.samples(problem.push(path.nodes), *slope)
-    if condense(problem.equations, problem.mesh(path.nodes), samples, out, np.zeros(3)) < path.intervals:
-        raise ConvergenceError(_NO_PLACE)
-    return out
-
-
-def _imbalance(problem: Problem, path: Path) -> np.ndarray:
-    push = problem.push(path.nodes)
-    out = np.zeros_like(push)
-    if imbalances(problem.equations, problem.mesh(path.nodes), path.samples(push), out) < path.intervals:
-        raise ConvergenceError(_NO_PLACE)
-    return out
-
-
-def _moved(path: Path, change: Change, by: float) -> Path:
-    return attrs.evolve(path, q=path.q + by * change.q, v=path.v + by * change.v, a=path.a + by * change.a)
-
-
-def _rates(problem: Problem, path: Path) -> np.ndarray:
-    """Rates of the balls along a path."""
-    copy = attrs.evolve(path, ball=path.ball.copy(), rate=path.rate.copy())
-    _condensed(problem, copy)
-    renew(problem, copy, stiff(problem, copy))
-    return copy.rate
+    def near(self, model: Model, moved: np.ndarray) -> np.ndarray:
+        """The same of a neighbouring model, whose equilibrium is moved by (5,)."""
+        speed, path = 2.0 * np.pi / float(model.excitation.period_s), self.solved.path
+        problem = attrs.evolve(self.solved.problem, system=by_address(surrogate(model.system)), speed=speed, clock=speed)
+        return _line(solve(problem, attrs.evolve(path, q=path.q + moved), _SOLVED), model.mass_used)
 
 
 def _line(solved: Solved, mass: float) -> np.ndarray:
     z, amplitude = synchronous_response(solved)
     omega = solved.problem.speed
-    return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude])
-
-
-@attrs.frozen(eq=False)
-class Gradient:
-    """Derivatives by one key: of the equilibrium, and of the steady orbit where the scene has an excitation."""
-
-    statics: StaticGradient
-    motion: _MotionGradient | None
-
-    @property
-    def nothing(self) -> bool:
-        """Whether the key changes nothing at all."""
-        return self.statics.step == 0.0 and (self.motion is None or self.motion.nothing)
+    return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude, z.imag])
 
 
 @attrs.frozen(eq=False)
 class Gradients:
     """Derivatives of an equilibrium, and of the steady orbit about it.
+
+    Attributes
+    ----------
+    moving : False leaves the orbit out
 
     Raises
     ------
@@ -258,6 +215,7 @@ class Gradients:
 
     model: Model
     equilibrium: Equilibrium
+    moving: bool = True
 
     def __attrs_post_init__(self) -> None:
         traits = self.model.traits
@@ -274,7 +232,8 @@ class Gradients:
         SceneError, ConvergenceError
             The force has none, or none was found.
         """
-        return None if self.model.excitation is None else SteadyOrbit.of(self.model, self.equilibrium)
+        searched = self.moving and self.model.excitation is not None
+        return SteadyOrbit.of(self.model, self.equilibrium) if searched else None
 
     def by(self, key: Key) -> Gradient:
         """By one key.
@@ -284,8 +243,10 @@ class Gradients:
         NoDerivative
             There is none, with the reason.
         """
-        statics = static_gradient(self.model, self.equilibrium, key)
-        return Gradient(statics, None if self.orbit is None else self.orbit.gradient(statics))
+        answer = self.by_all([key])[0]
+        if isinstance(answer, NoDerivative):
+            raise answer
+        return answer
 
     def by_path(self, path: str) -> Gradient:
         """By the key of a path, such as "load.axial".
@@ -300,14 +261,202 @@ class Gradients:
         except NoDerivative as why:
             raise SceneError.at(path, None, str(why)) from None
 
+    def by_all(
+        self, keys: Sequence[Key], on_progress: Callable[[str, int, int], None] | None = None
+    ) -> list[Gradient | NoDerivative]:
+        """By several keys; of those that have no derivative, why.
+
+        Parameters
+        ----------
+        on_progress : called as ``on_progress(what, done, total)``
+        """
+        answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
+        scene = self.model.scene
+        if not why_not(scene, False) and not (self.orbit and scene.kinematics.orbiting):
+            answers |= self._by_columns([key for key in keys if key.path not in answers and may_be_column(scene, key.path)])
+        for done, key in enumerate(keys):
+            if on_progress is not None:
+                on_progress("keys", done, len(keys))
+            if key.path not in answers:
+                try:
+                    answers[key.path] = self._by_models(key)
+                except NoDerivative as why:
+                    answers[key.path] = why
+        return [answers[key.path] for key in keys]
+
+    def _ends(self, keys: Sequence[Key]) -> dict[str, NoDerivative]:
+        """Keys at the end of their range, whatever they do."""
+
+        def refused(keys: Iterable[Key], side: float) -> str:
+            numbers = {key.path: key.value + side * _step(key, _WIDE) for key in keys}
+            try:
+                with_numbers(self.model.scene, numbers)
+            except ValueError as why:
+                return str(why)
+            return ""
+
+        why = {key.path: refused([key], -1.0) for key in keys if key.value == 0.0}
+        inside = [key for key in keys if not why.get(key.path)]
+        if refused(inside, -1.0) or refused(inside, 1.0):  # several at once take as long as one
+            why |= {key.path: refused([key], -1.0) or refused([key], 1.0) for key in inside}
+        zero = "is 0, the end of its range: it switches a part on, which is no small change"
+        return {
+            key.path: NoDerivative(f"is at the end of its range: {why[key.path]}" if key.value else zero)
+            for key in keys
+            if why.get(key.path)
+        }
+
+    def _by_columns(self, keys: Sequence[Key], relative: float = _STEP) -> dict[str, Gradient]:
+        """Of keys whose neighbours are solved in compiled loops."""
+        if not keys:
+            return {}
+        scene, q, steps = self.model.scene, self.equilibrium.displacement, [_step(key, relative) for key in keys]
+        columns = {key.path: np.full(1 + 2 * len(keys), key.value) for key in keys}
+        for k, (key, step) in enumerate(zip(keys, steps, strict=True)):
+            columns[key.path][1 + 2 * k : 3 + 2 * k] += -step, step
+        bearing = build_columns(column_problem(scene, columns), self.model.plan)
+        bearing.points.guess[:] = q
+        states = bearing.equilibria()
+        values = {"displacement": states.q, "stiffness": states.stiffness, "contact_force": states.force}
+        values["damping"], fine = bearing.damping(states), states.status == 0
+        if self.orbit is not None:
+            excitations = Excitations.of(scene, columns)
+            orbits = bearing.orbits(states, excitations, _TOLERANCE, neighbours)
+            line, force, w = orbits.line, orbits.force, excitations.speed
+            line, force = (part[:, :3] + 1j * part[:, 5:8] for part in (line, force))
+            z, forward = impedance(force, line), [0.5 * np.abs(line[:, 1] + sign * line[:, 2]) for sign in (1j, -1j)]
+            mass = bearing.problem.inertia.mass if self.model.mass_used else 0.0
+            values["line"] = np.stack([z.real, z.imag / w, z.real + mass * w**2, sum(forward), z.imag], axis=1)
+            fine &= orbits.status == 0
+            expected = self.orbit.line
+            fine[0] &= abs(z[0] - complex(expected[0], expected[4])) <= _SAME * abs(z[0])
+        chosen = [k for k in range(len(keys)) if fine[0] and fine[1 + 2 * k] and fine[2 + 2 * k]]
+        sides = {
+            side: {name: value[offset::2][chosen] for name, value in values.items()} for side, offset in ((-1, 1), (1, 2))
+        }
+        base = {name: value[0] for name, value in values.items()}
+        answers, uneven = _gradients([keys[k] for k in chosen], np.array(steps)[chosen], sides, base)
+        if uneven and relative == _STEP:
+            answers |= self._by_columns(uneven, relative / _SMALLER)
+        return answers
+
+    def _by_models(self, key: Key, relative: float = _STEP) -> Gradient:
+        """Of a key whose neighbours are models of their own.
+
+        Raises
+        ------
+        NoDerivative
+            There is none, with the reason.
+        """
+        wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
+        step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
+        base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
+        solutions = dict.fromkeys(shifts, base)
+        if _changed(self.model, ahead):
+            models = {k: ahead if k == 1 else self._model(key, k * step) for k in shifts}
+            try:
+                solutions = {k: self._solution(neighbour) for k, neighbour in models.items()}
+            except ConvergenceError as why:
+                raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
+        stacked = {k: {name: value[None] for name, value in solution.items()} for k, solution in solutions.items()}
+        answers, uneven = _gradients([key], np.array([step]), stacked, base, len(shifts))
+        if uneven and not wide and relative == _STEP:
+            return self._by_models(key, relative / _SMALLER)
+        return answers[key.path]
+
+    def _model(self, key: Key, by: float) -> Model:
+        """The model at another number; the plan stays."""
+        model = self.model
+        problem = resolve(with_number(model.scene, key.path, key.value + by))
+        if not model.problem.body_kind.same_bodies(problem):
+            raise NoDerivative(
+                "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. "
+                "bodies.kind = 'rigid' has one"
+            )
+        try:
+            return model_of(problem, model.plan)
+        except RacewayError as why:
+            raise NoDerivative(f"no model can be built at {key.value + by:.6g}: {why}") from None
+
+    def _solution(self, model: Model) -> _Solutions:
+        """Of a neighbouring model, from this one's."""
+        q = self.equilibrium.displacement
+        equilibrium = solve_equilibrium(model, near=q)
+        line = None if self.orbit is None else self.orbit.near(model, equilibrium.displacement - q)
+        return self._values(model, equilibrium, line)
+
+    def _values(self, model: Model, equilibrium: Equilibrium, line: np.ndarray | None = None) -> _Solutions:
+        names = ("displacement", "stiffness", "damping", "contact_force")
+        values = {name: getattr(equilibrium, name) for name in names}
+        if self.orbit is not None:
+            values["line"] = self.orbit.line if line is None else line
+        return values
+
+
+def _changed(model: Model, neighbour: Model) -> bool:
+    """Whether anything differs, to the last bit.
+
+    Raises
+    ------
+    NoDerivative
+        Parts of one that the other does not have.
+    """
+    systems = surrogate(model.system), surrogate(neighbour.system)
+    pairs = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]
+    if any(value.shape != other.shape for value, other in pairs):
+        raise NoDerivative("switches a part of the model on or off, which is no small change")
+    periods = [None if each.excitation is None else each.excitation.period_s for each in (model, neighbour)]
+    pairs.append((model.guess, neighbour.guess))
+    return periods[0] != periods[1] or not all(np.array_equal(value, other) for value, other in pairs)
+
+
+def _step(key: Key, relative: float) -> float:
+    """Of differences, in the unit of the key."""
+    size, least = abs(key.value), _LEAST.get(key.unit, _ELSE) * relative / _STEP
+    if ".conformity_" in key.path:  # acts by what it is above one half
+        size = 2.0 * abs(size - 0.5)
+    return max(relative * size, min(least, _PART * size)) if size else least
+
+
+def _gradients(
+    keys: Sequence[Key], steps: np.ndarray, solutions: Mapping[int, _Solutions], base: _Solutions, models: int = 0
+) -> tuple[dict[str, Gradient], list[Key]]:
+    """By m keys from solutions at shifts by steps (m,), and keys whose differences are uneven; ``base``: the solution between."""
+    slopes = {}
+    for name in base:
+        # In pairs, so that what does not change gives exactly nothing.
+        weights = _FOURTH if 2 in solutions else _SECOND
+        pairs = [weight * (solutions[k][name] - solutions[-k][name]) for k, weight in weights.items()]
+        slopes[name] = (np.sum(pairs, axis=0).T / steps).T
+    first = np.abs(solutions[1]["stiffness"] - solutions[-1]["stiffness"]).max(axis=(1, 2))
+    second = np.abs(solutions[1]["stiffness"] + solutions[-1]["stiffness"] - 2.0 * base["stiffness"]).max(axis=(1, 2))
+    second -= _ROUNDING * np.abs(base["stiffness"]).max()
+    turns = first < 0.1 * second  # both sides differ alike: a turning point
+    loaded = base["contact_force"] > 0.0
+    edges = np.any([((solution["contact_force"] > 0.0) != loaded).any(axis=1) for solution in solutions.values()], axis=0)
+    answers, uneven = {}, []
+    for k, key in enumerate(keys):
+        line, statics = None, {name: slope[k] for name, slope in slopes.items()}
+        if "line" in statics:
+            real, damping, stiffness, amplitude, imag = statics.pop("line").tolist()
+            line = _MotionGradient(complex(real, imag), stiffness, damping, amplitude)
+        remark = _AT_THE_EDGE if edges[k] else _BENDS if second[k] > _KINK * first[k] and not turns[k] else ""
+        step = float(steps[k]) if any(slope.any() for slope in statics.values()) else 0.0
+        answers[key.path] = Gradient(
+            _StaticGradient(key, step, remark=remark if step else "", models=models, **statics), line
+        )
+        if edges[k] or (second[k] > _UNEVEN * first[k] and not turns[k]):
+            uneven.append(key)
+    return answers, uneven
+
 
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
     """The numbers that a scene has, by their symbols: of the steady orbit, and at rest."""
     numbers: dict[str, float] = {}
     if orbit is not None:
-        real, damping, stiffness, amplitude = orbit.line.tolist()
+        real, damping, stiffness, amplitude, imag = orbit.line.tolist()
         numbers |= {K.symbol: stiffness, AMPLITUDE.symbol: amplitude}
-        if resolved(real, damping * orbit.solved.problem.speed):
+        if resolved(real, imag):
             numbers[C.symbol] = damping
     numbers |= _at_rest(equilibrium, equilibrium)
     if (follows := tilts_follow(equilibrium.stiffness, model.problem.supports.tilt)) is not None:
@@ -348,7 +497,7 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
     return slopes
 
 
-def _at_rest(equilibrium: Equilibrium, state: Equilibrium | StaticGradient) -> dict[str, float]:
+def _at_rest(equilibrium: Equilibrium, state: Equilibrium | _StaticGradient) -> dict[str, float]:
     """The numbers that every scene has, of the equilibrium or of its slopes."""
     return {
         KXX.symbol: float(state.stiffness[0, 0]),
@@ -384,23 +533,22 @@ def first_order_band(
         gradients = Gradients(model, equilibrium)
     except SceneError as refusal:
         return {"quantities": {}, "left_out": [], "why": refusal.mistakes[0].message}
-    orbit, why = None, ""
+    why = ""
     try:
-        orbit = gradients.orbit
+        gradients.orbit  # noqa: B018  (searched for here, or left out)
     except (SceneError, ConvergenceError) as failure:
         why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
+        gradients = Gradients(model, equilibrium, moving=False)
     words, slopes, left_out = definitions(model, equilibrium), {}, []
-    for tolerance in ranges:
+    answers = gradients.by_all([tolerance.key for tolerance in ranges])
+    for tolerance, answer in zip(ranges, answers, strict=True):
         key = tolerance.key
-        try:
-            statics = static_gradient(model, equilibrium, key)
-            gradient = Gradient(statics, None if orbit is None else orbit.gradient(statics))
-        except NoDerivative as reason:
-            left_out.append({"key": key.path, "reason": str(reason)})
-            continue
-        slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, derivatives(model, equilibrium, gradient)
+        if isinstance(answer, NoDerivative):
+            left_out.append({"key": key.path, "reason": str(answer)})
+        else:
+            slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, derivatives(model, equilibrium, answer)
     quantities = {}
-    for name, value in values(model, equilibrium, orbit).items():
+    for name, value in values(model, equilibrium, gradients.orbit).items():
         ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
         low, high = limits(ends)
         widths = np.array([(above - below) ** 2 for below, above in ends])

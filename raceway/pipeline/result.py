@@ -167,7 +167,7 @@ class Result(Answer):
 
         Notes
         -----
-        By the implicit function theorem: no equilibrium is solved again; the steady orbit of the excitation is, once a call.
+        Differences of neighbouring solutions; the steady orbit of the excitation is searched for once a call.
         ``raceway.sensitivities`` gives all keys at once.
 
         Raises

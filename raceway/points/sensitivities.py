@@ -26,6 +26,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import (
     Gradient,
     Gradients,
+    NoDerivative,
     definitions,
     derivatives,
     described,
@@ -34,7 +35,6 @@ from raceway.pipeline.gradient import (
     values,
 )
 from raceway.pipeline.simulate import OnProgress
-from raceway.pipeline.static_gradient import NoDerivative
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene
@@ -79,7 +79,7 @@ class Sensitivities(Answer):
     ----------
     values : quantity -> number, SI;  definitions : quantity -> what it is;  rows : of keys that change something
     without_effect : keys that change nothing;  refused : (key, why it has no derivative)
-    run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these
+    run_s, gradients_s : processor time of equilibrium and orbit, and of all derivatives [s];  models : built for these, beside columns
     warnings : what to know of the answer itself
     tolerances : the band over the scene's tolerances to first order, as result.json has it; None without tolerances
 
@@ -169,7 +169,9 @@ class Sensitivities(Answer):
             if row.influence
         ]
         yield from (f"warning: {text}" for text in self.warnings)
-        yield f"cost: {self.gradients_s:.2g} s beside {self.run_s:.2g} s of the run, {self.models} models built"
+        yield f"cost: {self.gradients_s:.2g} s beside {self.run_s:.2g} s of the run" + (
+            f", {self.models} models built" if self.models else ""
+        )
         if zero := [row.key.path for row in self.rows if not row.influence]:
             yield f"0, so without a share; derivatives in the files: {', '.join(zero)}"
         yield from _by_reason("", [(row.key, row.remark) for row in self.rows if row.remark])
@@ -210,13 +212,9 @@ def sensitivities_of(
     now = values(model, equilibrium, gradients.orbit)
     run_s, begun = run_s + working_processor_time() - begun, working_processor_time()
     rows, nothing, refused, models = [], [], [], 0
-    for number_done, key in enumerate(keys):
-        if on_progress is not None:
-            on_progress("keys", number_done, len(keys))
-        try:
-            gradient = gradients.by(key)
-        except NoDerivative as why:
-            refused.append((key, str(why)))
+    for key, gradient in zip(keys, gradients.by_all(keys, on_progress), strict=True):
+        if isinstance(gradient, NoDerivative):
+            refused.append((key, str(gradient)))
             continue
         models += gradient.statics.models
         if gradient.nothing:
@@ -324,7 +322,7 @@ def sensitivities(
 
     Notes
     -----
-    By the implicit function theorem on the exact tangents: nothing is solved again.  The motion is the steady orbit that
+    Differences of neighbouring solutions, of rigid bodies all columns of one build.  The motion is the steady orbit that
     ``integrator.kind`` = "periodic" solves for, whatever the scene's integrator.
 
     Raises

@@ -231,7 +231,7 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
 
 def _replaced(part: Any, changes: _Changes, replace: Callable[..., Any] = attrs.evolve) -> Any:
     """A table, or an element of one, with values at paths into it."""
-    if not changes[0][0]:
+    if not all(steps for steps, _ in changes):
         return changes[0][1]
     groups: dict[str | int, _Changes] = {}
     fields = attrs.fields_dict(type(part)) if attrs.has(type(part)) else {}

@@ -518,12 +518,13 @@ def _numbers(linear, points, states, turning, p, weight):
 
 
 @jit(
-    types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX, int64[::1]),
+    types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX),
     allocates=True,
 )
-def _orbit(kernels, linear, turning, numbers, K, ball, work, dofs):
+def _orbit(kernels, linear, turning, numbers, K, ball, work):
     """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
-    spans, d = int(np.round(2.0 * np.pi / turning.span)), dofs.size
+    spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
+    d = dofs.size
     push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
     _force_line(turning, numbers, push, mean)
     _linear_response(K, numbers, linear.free, push, line)
@@ -567,14 +568,14 @@ def _report(turning, numbers, level, status, error, p, out):
 @jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
 def orbits(kernels, linear, points, states, turning, out):
     """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
-    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
+    z, weight = points.table.shape[1], np.empty(5)
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     for p in range(points.table.shape[0]):
         out.status[p] = states.status[p]
         if states.status[p] != 0:
             continue
         numbers = _numbers(linear, points, states, turning, p, weight)
-        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work, dofs)
+        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
         _report(turning, numbers, level, status, error, p, out)
 
 
@@ -606,7 +607,8 @@ def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
             _ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
         # What is left is the last step times the rate at which steps fall.
         left = step if count == 0 else min(step, step * step / before)
-        if left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before):
+        converged = left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before)
+        if converged and (count > 2 or not numbers.damped):
             return SOLVED, step / max(size, 1e-300)
         before = step
     return NOT_SOLVED, np.inf
@@ -619,7 +621,7 @@ def neighbours(kernels, linear, points, states, turning, out):
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     out.status[:] = NOT_SOLVED
     numbers = _numbers(linear, points, states, turning, 0, weight)
-    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work, dofs)
+    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
     n, d = level.u.shape[0], dofs.size
     if status != SOLVED or n * d > 4 * _DENSE:
         return

@@ -16,8 +16,7 @@ from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradient, Gradients, definitions, derivatives, values
-from raceway.pipeline.static_gradient import NoDerivative, static_gradient
+from raceway.pipeline.gradient import Gradients, NoDerivative, definitions, derivatives, values
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
 from raceway.scene.scene import Scene
@@ -209,7 +208,7 @@ class _TableResiduals:
         return np.concatenate([(answers[name] - numbers) / weights[name] for name, numbers in self.measured.values.items()])
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        return np.column_stack([self._column(key.name) for key in self.free])
+        return self._columns([key.name for key in self.free]).T
 
     def answers(self, at: np.ndarray) -> dict[str, np.ndarray]:
         """Quantity -> the scene's answers (n,), SI."""
@@ -217,12 +216,12 @@ class _TableResiduals:
         for scene in self.scenes:
             loaded = with_free(scene, self.free, at)
             model = build_model(loaded, make_plan(loaded))
-            self._answers.append(Gradients(model, solve_equilibrium(model)))
+            self._answers.append(Gradients(model, solve_equilibrium(model), self._moving))
         rows = [self._values(answer) for answer in self._answers]
         return {name: np.array([row[name] for row in rows]) for name in self.measured.values}
 
     def _values(self, answer: Gradients) -> dict[str, float]:
-        row = values(answer.model, answer.equilibrium, answer.orbit if self._moving else None)
+        row = values(answer.model, answer.equilibrium, answer.orbit)
         row |= _across(answer.equilibrium.displacement)
         if missing := next((name for name in self.measured.values if name not in row), None):
             raise SceneError.at(
@@ -237,33 +236,25 @@ class _TableResiduals:
         rows = [uncertain(scene, names, keys) for scene in self.scenes]  # a range in per cent is that of each row's number
         for same in zip(*rows, strict=True):
             cause = same[0].cause
+            sizes = np.array([list(row.sizes.values()) for row in same]).T
             try:
-                parts = [self._column(path, [row.sizes[path] for row in same]) for path in same[0].sizes]
+                columns[cause] = self._columns(list(same[0].sizes), sizes).sum(axis=0)[:, None]
             except SceneError as why:
                 left_out.append(f"the uncertainty of {cause} is no part of the intervals: {why.mistakes[0].message}")
-            else:
-                columns[cause] = np.sum(parts, axis=0)[:, None]
         return columns, left_out
 
-    def _column(self, path: str, sizes: Sequence[float] | None = None) -> np.ndarray:
-        """Derivatives of the weighted residuals by a key, times a size per row."""
-        gradients = [self._gradient(answer, path) for answer in self._answers]
-        rows = [
-            derivatives(answer.model, answer.equilibrium, gradient) | _across(gradient.statics.displacement)
-            for answer, gradient in zip(self._answers, gradients, strict=True)
-        ]
-        factors = np.ones(len(rows)) if sizes is None else np.array(sizes)
-        columns = {name: factors * [row[name] for row in rows] for name in self.measured.values}
-        return np.concatenate([column / self.measured.weights[name] for name, column in columns.items()])
-
-    def _gradient(self, answer: Gradients, path: str) -> Gradient:
-        """By one key; the orbit is left out where no quantity needs it."""
-        if self._moving:
-            return answer.by_path(path)
-        try:
-            return Gradient(static_gradient(answer.model, answer.equilibrium, key_of(answer.model.scene, path)), None)
-        except NoDerivative as why:
-            raise SceneError.at(path, None, str(why)) from None
+    def _columns(self, paths: list[str], sizes: np.ndarray | float = 1.0) -> np.ndarray:
+        """Derivatives (k, n) of the weighted residuals by keys, times sizes (k, rows)."""
+        slopes = {name: np.empty((len(paths), len(self._answers))) for name in self.measured.values}
+        for row, answer in enumerate(self._answers):
+            for k, gradient in enumerate(answer.by_all([key_of(answer.model.scene, path) for path in paths])):
+                if isinstance(gradient, NoDerivative):
+                    raise SceneError.at(paths[k], None, str(gradient))
+                numbers = derivatives(answer.model, answer.equilibrium, gradient) | _across(gradient.statics.displacement)
+                for name in slopes:
+                    slopes[name][k, row] = numbers[name]
+        weights = self.measured.weights
+        return np.concatenate([sizes * slope / weights[name] for name, slope in slopes.items()], axis=1)
 
     def notes(self) -> list[str]:
         """Definitions of measured numbers whose names may mean another quantity to the reader."""
