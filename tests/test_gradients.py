@@ -7,7 +7,16 @@ import pytest
 import raceway as rw
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.bodies.columns import may_be_column
-from raceway.pipeline.gradient import _FOURTH, _SECOND, Gradients, NoDerivative, SteadyOrbit, derivatives, values
+from raceway.pipeline.gradient import (
+    _FOURTH,
+    _SECOND,
+    Gradients,
+    NoDerivative,
+    SteadyOrbit,
+    _unevenness,
+    derivatives,
+    values,
+)
 from raceway.planning.resolve import resolve
 from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
@@ -21,6 +30,18 @@ TOLERANCE = 1e-6
 def derivative(values, step):
     """Of fourth order, of values at multiples -2, -1, 1, 2 of a step."""
     return (8.0 * (values[1] - values[-1]) - (values[2] - values[-2])) / (12.0 * step)
+
+
+def test_kinks_and_turning_points_are_told_apart():
+    """By x^3 at 1, where half the second derivative over the first is 1, by a kink, and by x^2 at 0."""
+    h = 1e-3
+    for function, at, expected in (
+        (lambda x: x**3, 1.0, 3.0 * h / (3.0 + h**2)),
+        (lambda x: max(x, 0.0), 0.0, 1.0),
+        (lambda x: x**2, 0.0, 0.0),
+    ):
+        before, middle, after = (np.array([function(at + k * h)]) for k in (-1, 0, 1))
+        assert _unevenness([before[None], after[None]], middle)[0] == pytest.approx(expected, rel=1e-6)
 
 
 def static_gradient(model, still, key):

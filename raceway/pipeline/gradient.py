@@ -54,13 +54,13 @@ from raceway.storage.tables import Tables
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative, of second and of fourth order.
 _SECOND = {1: 1.0 / 2.0}
 _FOURTH = {1: 8.0 / 12.0, 2: -1.0 / 12.0}
-#: Steps over the number, of the two orders; what a step is divided by where differences are uneven.
-_STEP, _WIDE, _SMALLER = 1e-4, 5e-4, 100.0
+#: Steps over the number, of the two orders; what a step is divided by where differences are uneven, down to the least.
+_STEP, _WIDE, _SMALLER, _LEAST_STEP = 1e-4, 5e-4, 10.0, 2e-6
 #: Least steps by unit, unless that is more than a part of the number.
 _LEAST = {"m": 1e-9, "N": 0.02, "N m": 1e-4, "deg": 1e-3, "r/min": 1.0, "K": 1e-3, "kg": 1e-4, "s": 1e-9, "N s/m": 0.01}
 _ELSE, _PART = 1e-7, 1e-3
-#: Second difference of the stiffness over the first that calls for a smaller step, and that is a kink; rounding of a stiffness.
-_UNEVEN, _KINK, _ROUNDING = 3e-3, 0.02, 1e-11
+#: Second difference over the first that calls for a smaller step, and that is a kink; rounding of a stiffness.
+_UNEVEN, _KINK, _ROUNDING = 5e-4, 0.02, 1e-11
 _BENDS = "the model has a kink there: to either side derivatives are others"
 _AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
 #: Arrays of a system that forces at rest and in motion depend on.
@@ -331,12 +331,14 @@ class Gradients:
             expected = self.orbit.line
             fine[0] &= abs(z[0] - complex(expected[0], expected[4])) <= _SAME * abs(z[0])
         chosen = [k for k in range(len(keys)) if fine[0] and fine[1 + 2 * k] and fine[2 + 2 * k]]
+        if not chosen:
+            return {}
         sides = {
             side: {name: value[offset::2][chosen] for name, value in values.items()} for side, offset in ((-1, 1), (1, 2))
         }
         base = {name: value[0] for name, value in values.items()}
         answers, uneven = _gradients([keys[k] for k in chosen], np.array(steps)[chosen], sides, base)
-        if uneven and relative == _STEP:
+        if uneven and relative > _LEAST_STEP:
             answers |= self._by_columns(uneven, relative / _SMALLER)
         return answers
 
@@ -360,7 +362,7 @@ class Gradients:
                 raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
         stacked = {k: {name: value[None] for name, value in solution.items()} for k, solution in solutions.items()}
         answers, uneven = _gradients([key], np.array([step]), stacked, base, len(shifts))
-        if uneven and not wide and relative == _STEP:
+        if uneven and not wide and relative > _LEAST_STEP:
             return self._by_models(key, relative / _SMALLER)
         return answers[key.path]
 
@@ -428,10 +430,9 @@ def _gradients(
         weights = _FOURTH if 2 in solutions else _SECOND
         pairs = [weight * (solutions[k][name] - solutions[-k][name]) for k, weight in weights.items()]
         slopes[name] = (np.sum(pairs, axis=0).T / steps).T
-    first = np.abs(solutions[1]["stiffness"] - solutions[-1]["stiffness"]).max(axis=(1, 2))
-    second = np.abs(solutions[1]["stiffness"] + solutions[-1]["stiffness"] - 2.0 * base["stiffness"]).max(axis=(1, 2))
-    second -= _ROUNDING * np.abs(base["stiffness"]).max()
-    turns = first < 0.1 * second  # both sides differ alike: a turning point
+    bends = largest = _unevenness([solutions[k]["stiffness"] for k in (-1, 1)], base["stiffness"])
+    if "line" in base:  # Z
+        largest = np.maximum(bends, _unevenness([solutions[k]["line"][:, ::4] for k in (-1, 1)], base["line"][::4]))
     loaded = base["contact_force"] > 0.0
     edges = np.any([((solution["contact_force"] > 0.0) != loaded).any(axis=1) for solution in solutions.values()], axis=0)
     answers, uneven = {}, []
@@ -440,14 +441,22 @@ def _gradients(
         if "line" in statics:
             real, damping, stiffness, amplitude, imag = statics.pop("line").tolist()
             line = _MotionGradient(complex(real, imag), stiffness, damping, amplitude)
-        remark = _AT_THE_EDGE if edges[k] else _BENDS if second[k] > _KINK * first[k] and not turns[k] else ""
+        remark = _AT_THE_EDGE if edges[k] else _BENDS if bends[k] > _KINK else ""
         step = float(steps[k]) if any(slope.any() for slope in statics.values()) else 0.0
         answers[key.path] = Gradient(
             _StaticGradient(key, step, remark=remark if step else "", models=models, **statics), line
         )
-        if edges[k] or (second[k] > _UNEVEN * first[k] and not turns[k]):
+        if edges[k] or largest[k] > _UNEVEN:
             uneven.append(key)
     return answers, uneven
+
+
+def _unevenness(sides: Sequence[np.ndarray], middle: np.ndarray) -> np.ndarray:
+    """(m,) second difference over the first, of values (m, ...) before and after those in the middle; 0 of a turning point."""
+    before, after = (side.reshape(len(side), -1) for side in sides)
+    first = np.abs(after - before).max(axis=1)
+    second = np.abs(after + before - 2.0 * middle.ravel()).max(axis=1) - _ROUNDING * np.abs(middle).max()
+    return np.where(first > 0.1 * second, np.maximum(second, 0.0) / np.maximum(first, 1e-300), 0.0)
 
 
 def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
