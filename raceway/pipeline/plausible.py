@@ -27,7 +27,7 @@ from raceway.bodies.columns import ColumnBearing
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import add_moments
-from raceway.core.columns import with_columns
+from raceway.core.columns import with_values
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
@@ -274,7 +274,7 @@ def _bound(
         bound += _MOMENTS * np.divide(table[..., CENTRIFUGAL], inner, out=np.zeros_like(inner), where=loaded).max(axis=-1)
     if "ring_growth" in keys:
         running = problem.running
-        grown = attrs.evolve(running, kinematics=with_columns(running.kinematics, ring_growth=True))
+        grown = attrs.evolve(running, kinematics=with_values(running.kinematics, ring_growth=True))
         more, now = growth_of(grown, basis.row), basis.growth
         radial = np.abs(more.common[..., None, 1] + more.by_ball[..., 1] - now.common[..., None, 1] - now.by_ball[..., 1])
         with np.errstate(invalid="ignore"):  # of points without a load
