@@ -41,7 +41,7 @@ def test_kinks_and_turning_points_are_told_apart():
         (lambda x: x**2, 0.0, 0.0),
     ):
         before, middle, after = (np.array([function(at + k * h)]) for k in (-1, 0, 1))
-        assert _unevenness([before[None], after[None]], middle)[0] == pytest.approx(expected, rel=1e-6)
+        assert _unevenness([before[None], after[None]], middle)[0] == pytest.approx(expected, rel=1e-5)
 
 
 def static_gradient(model, still, key):
