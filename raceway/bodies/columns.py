@@ -109,11 +109,13 @@ def why_not(scene: Scene, moving: bool) -> str:
     return next((reason for reason, holds in reasons.items() if holds), "")
 
 
-def may_be_column(scene: Scene, key: str) -> bool:
-    """Whether the numbers at a continuous key may be a column."""
+def why_no_column(scene: Scene, key: str) -> str:
+    """Why the numbers at a continuous key can not be a column; empty where they can."""
+    if key.startswith("bearing.") and scene.kinematics.ring_growth:
+        return "each point's rings grow by sections of their own"
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
-    apart |= key.startswith("bearing.") and scene.kinematics.ring_growth  # rings grow by sections of their own
-    return key.startswith("excitation.") or key in _KEYS and not apart
+    known = key.startswith("excitation.") or key in _KEYS and not apart
+    return "" if known else f"{key} changes more than numbers"
 
 
 def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:

@@ -30,7 +30,7 @@ from raceway.bodies.columns import (
     build_columns,
     column_problem,
     impedance,
-    may_be_column,
+    why_no_column,
     why_not,
 )
 from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
@@ -273,7 +273,9 @@ class Gradients:
         answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
         scene = self.model.scene
         if not why_not(scene, False) and not (self.orbit and scene.kinematics.orbiting):
-            answers |= self._by_columns([key for key in keys if key.path not in answers and may_be_column(scene, key.path)])
+            answers |= self._by_columns(
+                [key for key in keys if key.path not in answers and not why_no_column(scene, key.path)]
+            )
         for done, key in enumerate(keys):
             if on_progress is not None:
                 on_progress("keys", done, len(keys))

@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raceway.bodies.columns import Excitations, build_columns, column_problem, conspicuous, may_be_column, why_not
+from raceway.bodies.columns import Excitations, build_columns, column_problem, conspicuous, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
@@ -112,8 +112,8 @@ class Function:
             return "loads along a motion are asked for"
         if is_foundation(self.scene.contact.law) and any(name.startswith("p0") for name in self.outputs):
             return "pressures are the contact law's own"
-        strange = [key for key in self.inputs if not may_be_column(self.scene, key)]
-        return f"{strange[0]} changes more than numbers" if strange else why_not(self.scene, self.moving)
+        whys = (why_no_column(self.scene, key) for key in self.inputs)
+        return next(filter(None, whys), "") or why_not(self.scene, self.moving)
 
     def __call__(self, *columns: ArrayLike, **by_name: ArrayLike) -> Columns | xarray.Dataset:
         """The outputs at points.
