@@ -114,3 +114,14 @@ def test_a_window_whose_halves_differ_by_more_than_it_sees_is_not_believed():
     assert unresolved(4.0, orbit=object()), "with friction the orbit of the start is none"
     assert not unresolved(4.0, orbit=object(), friction=0.0), "it began on its steady orbit"
     assert unresolved(0.0, orbit=object(), settled=False, friction=0.0), "an unstable one"
+
+
+@pytest.mark.parametrize(
+    "tables", [{}, {"excitation": None}, {"friction": 0.0}, {"kind": "central_difference", "friction": 0.0}]
+)
+def test_each_derived_quantity_says_what_decides_it(tables):
+    said = {name: table for name, table in rubbing(**tables).items() if table is not None}
+    problem = make_plan(scene_from_dict(said)).problem
+    for name, quantity in problem.derived().items():
+        assert quantity["value"] is not None and len(quantity["why"]) > 10, name
+    assert problem.why("turns") == "integrator.turns" and problem.why("tilts") == "supports.tilt lets the ring tilt"

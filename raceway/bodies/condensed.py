@@ -14,7 +14,7 @@ from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem
-from raceway.scene.scene import Scene
+from raceway.scene.scene import SceneTables
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -253,10 +253,10 @@ class Condensed:
         parts.leave_out("other mirror half", why)
         parts.leave_out("stress recovery", "no stress inside the bodies is asked for")
 
-    def unused(self, scene: Scene) -> list[tuple[str, str]]:
+    def unused(self, tables: SceneTables) -> list[tuple[str, str]]:
         """Points stick by themselves."""
         why = "points stick by the compliance of rings and balls themselves"
-        return [("contact.stick_stiffness", why)] if scene.contact.discretisation == "nodal" else []
+        return [("contact.stick_stiffness", why)] if tables.contact.discretisation == "nodal" else []
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Sections or patches first, then the motion."""

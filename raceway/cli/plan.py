@@ -42,6 +42,8 @@ class _Planned(Answer):
             ("Size and cost, predicted", "", ""),
             ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
             ("time step", step, f"{plan['predicted_steps']} steps"),
+            *([_derived(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
+            _derived(plan, "spin_speed", "spin speed", "rad/s"),
             _wall_time(plan),
         ]
         yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
@@ -58,6 +60,11 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
     for text in checked.warnings:
         warnings.warn(text, stacklevel=2)
     return _Planned(scene.title, make_plan(scene))
+
+
+def _derived(plan: ReadTables, name: str, words: str, unit: str = "") -> Row:
+    """A derived quantity and what decides it."""
+    return (words, number(plan["derived"][name]["value"], unit, 4), plan["derived"][name]["why"])
 
 
 def _wall_time(plan: ReadTables) -> Row:

@@ -384,7 +384,7 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     5. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
     6. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
     7. The fields of the class are the keys of the table [bodies] beside ``kind``.
-    8. May be left out: ``unused(scene)``: (key, reason) for each key of the scene that changes nothing with these bodies.
+    8. May be left out: ``unused(tables)``: (key, reason) for each key of a scene's tables that changes nothing with these bodies.
     9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
     10. May be left out: ``same_bodies(problem, changed)``: whether nothing that is meshed differs between two of this kind, so

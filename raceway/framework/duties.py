@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
-    from raceway.scene.scene import Scene
+    from raceway.scene.scene import SceneTables
 
 T = TypeVar("T")
 
@@ -68,11 +68,11 @@ class BodyKind:
         return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._problem, changed), object))
 
 
-def unused_with_bodies(scene: Scene) -> list[tuple[str, str]]:
+def unused_with_bodies(tables: SceneTables) -> list[tuple[str, str]]:
     """(key, reason) for each key of a scene that changes nothing with its kind of bodies, or ``PluginError``; none unless it says so."""
-    if not hasattr(scene.bodies, "unused"):
+    if not hasattr(tables.bodies, "unused"):
         return []
-    return _answer(f"bodies '{scene.bodies.name}'", "unused", lambda: scene.bodies.unused(scene), list)
+    return _answer(f"bodies '{tables.bodies.name}'", "unused", lambda: tables.bodies.unused(tables), list)
 
 
 def renews(law: ContactLaw) -> bool:

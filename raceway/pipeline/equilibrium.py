@@ -124,7 +124,7 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
 
 def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
     warnings, problem = _seating(model, inner), model.problem
-    if any(problem.load.moment) and problem.supports.tilt == "locked":
+    if any(problem.load.moment) and not problem.tilts:
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
     if problem.contact.friction > 0.0 and model.traits.every_node:
         warnings.append(

@@ -68,7 +68,7 @@ def _orbit(problem: Problem) -> float:
     """Time [s] for the steady orbit of rigid rings that is the answer, or that a transient starts on."""
     if not problem.integrator.method.inertial:
         return 0.0
-    searched = problem.supports.tilt != "locked" and problem.excitation.sense == 0
+    searched = problem.tilts and problem.excitation.sense == 0
     searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
     return _SEARCH_S if searched else _ORBIT_S
 

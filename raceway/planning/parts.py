@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from math import pi
 
 import attrs
 
@@ -31,10 +30,10 @@ class Decisions:
         self.kept: list[Part] = []
         self.left_out: list[Part] = []
 
-    def decide(self, needed: bool, part: str, why: str, why_not: str) -> bool:
-        """Keep a part or leave it out; whether it is kept."""
+    def decide(self, needed: bool, part: str, why: str, why_not: str = "") -> bool:
+        """Keep a part or leave it out, with ``why`` for both unless ``why_not`` differs; whether it is kept."""
         stays = needed or part in self.force
-        (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not))
+        (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not or why))
         return stays
 
     def keeps(self, name: str) -> bool:
@@ -79,15 +78,9 @@ class Motion:
     steps_per_turn: int
 
 
-def _off(problem: Problem, key: str, value: str) -> str:
-    """A key as the reason of what is left out, and whether nobody asked for that."""
-    return f"{key} is {value}{'' if problem.says(key) else ', by default'}"
-
-
 def decide_tilts(problem: Problem, parts: Decisions) -> bool:
     """Whether the ring tilts."""
-    why_not = _off(problem, "supports.tilt", "locked")
-    return parts.decide(problem.supports.tilt != "locked", "tilts", "supports.tilt lets the ring tilt", why_not)
+    return parts.decide(problem.tilts, "tilts", problem.why("tilts"))
 
 
 def decide_balls(problem: Problem, parts: Decisions) -> Balls:
@@ -98,34 +91,32 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
         inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
     )
     if problem.spin_speed > 0.0 and problem.sweeps:
-        rpm = problem.spin_speed * 30.0 / pi
-        why = f"balls, ring and rotor follow the speed of excitation '{problem.excitation.name}'"
-        why_not = f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
-        parts.decide(problem.spin_changes, "change of centrifugal and gyroscopic terms with the speed", why, why_not)
+        part = "change of centrifugal and gyroscopic terms with the speed"
+        parts.decide(problem.spin_changes, part, problem.why("spin_changes"))
     rates = problem.excitation is not None and (problem.integrator.method.inertial or not problem.recorded)
     damped = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
-    why_not = "nothing moves, or no rates: a series of equilibria" if damped else _off(problem, "contact.damping", "0")
+    why_not = "nothing moves, or no rates: a series of equilibria" if damped else problem.said("contact.damping", "0")
     why = "contact.damping is set" if problem.contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
     parts.decide(damped and rates, "contact damping", why, why_not)
     rubbing = problem.contact.friction > 0.0
-    why_not = _off(problem, "contact.friction", "0")
+    why_not = problem.said("contact.friction", "0")
     if rubbing and not problem.recorded and problem.traits.every_node:
         rubbing = False
         why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
     hypothesis = problem.kinematics.gyroscopic != "none"
     still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
-    why_not = still if hypothesis else _off(problem, "kinematics.gyroscopic", "none")
+    why_not = still if hypothesis else problem.said("kinematics.gyroscopic", "none")
     moments = parts.decide(
         hypothesis and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not
     )
     grows, part, key = problem.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
-    why_not = still if grows else _off(problem, key, "false")
+    why_not = still if grows else problem.said(key, "false")
     parts.decide(grows and problem.spin_speed > 0.0, part, f"{key} is true", why_not)
-    why_not = _off(problem, "kinematics.orbiting", "false")
+    why_not = problem.said("kinematics.orbiting", "false")
     parts.decide(problem.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
     rows = f"bearing.arrangement is {problem.bearing.arrangement if not problem.bearing.row else problem.bearing.signs}"
-    parts.decide(len(problem.bearing.rows) > 1, "further rows of balls", rows, rows)
+    parts.decide(len(problem.bearing.rows) > 1, "further rows of balls", rows)
     kind = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     return Balls(kind, inertia, moments, friction)
 
@@ -136,11 +127,8 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     spins = problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
     part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
     parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
-    unused = "the scene is static" if not dynamic else f"identifier '{identifier.kind}' needs the equilibrium only"
     form = "steady orbit" if integrator.method.steady else "time integration"
-    part, why = f"{form} ({integrator.kind})", problem.integrator_why or "the identifier needs recorded motion"
-    recorded = parts.decide(problem.recorded, part, why, unused)
-    if not recorded:
+    if not parts.decide(problem.recorded, f"{form} ({integrator.kind})", problem.why("recorded")):
         return Motion(False, 0, 0)
     turns = problem.turns
     # Only what turns alike every turn needs one turn; a window over several turns needs them.
@@ -152,9 +140,7 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
         motion = "the steady motion" if steady else "a series of equilibria without memory"
         parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats itself every turn")
         turns = 1
-    why = "friction: the answer depends on how the motion began, the error is how far"
-    why_not = "contact.friction is 0" if not friction else "the transient of this scene is not estimated"
-    parts.decide(problem.depends_on_start, "run from another start", why, why_not)
+    parts.decide(problem.depends_on_start, "run from another start", problem.why("depends_on_start"))
     return Motion(True, turns, problem.steps_per_turn)
 
 

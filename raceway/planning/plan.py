@@ -81,6 +81,7 @@ class ScenePlan(Shown):
             "kept": [attrs.asdict(p) for p in self.kept],
             "left_out": [attrs.asdict(p) for p in self.left_out],
             "integrator": integrator if problem.recorded else None,
+            "derived": self.problem.derived(),
             "dofs": self.dofs,
             "time_step_s": self.time_step_s,
             "predicted_steps": self.predicted_steps,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 from math import ceil, pi
+from typing import Any, Generic, TypeVar, overload
 
 import attrs
 
@@ -17,6 +19,7 @@ from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.scene import Scene, SceneTables
 from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
+from raceway.storage.tables import Tables
 
 #: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
 STEPS_PER_TURN = 360
@@ -28,6 +31,31 @@ _SAMPLES = 72_000
 #: What a record takes at the peak over its own arrays: 3.7 times measured with 12 balls and 400 turns.  Records above the limit are refused [bytes].
 _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
+
+
+T = TypeVar("T")
+
+
+class Derived(Generic[T]):
+    """A quantity that follows from a scene: ``compute`` gives its value and what decides it, once a problem."""
+
+    def __init__(self, compute: Callable[[Any], tuple[T, str]]) -> None:
+        self._compute, self._name, self.__doc__ = compute, compute.__name__, compute.__doc__
+
+    def reasoned(self, problem: Problem) -> tuple[T, str]:
+        """Its value, and what decides it."""
+        answers = problem._derived
+        if self._name not in answers:
+            answers[self._name] = self._compute(problem)
+        answer: tuple[T, str] = answers[self._name]
+        return answer
+
+    @overload
+    def __get__(self, problem: None, owner: type) -> Derived[T]: ...
+    @overload
+    def __get__(self, problem: Problem, owner: type) -> T: ...
+    def __get__(self, problem: Problem | None, owner: type) -> Derived[T] | T:
+        return self if problem is None else self.reasoned(problem)[0]
 
 
 @attrs.frozen
@@ -57,6 +85,24 @@ class Problem(SceneTables):
     scene: Scene
     points: tuple[int, ...] = ()
     integrator_why: str = ""
+    _derived: dict[str, tuple[Any, str]] = attrs.field(factory=dict, init=False, eq=False, repr=False)
+
+    def why(self, quantity: str) -> str:
+        """What decides a derived quantity: a key of the scene, a default, a plug-in."""
+        derived: Derived[object] = getattr(Problem, quantity)
+        return derived.reasoned(self)[1]
+
+    def derived(self) -> Tables:
+        """``value`` and ``why`` of each derived quantity."""
+        reasons = {name: item.reasoned(self) for name, item in vars(Problem).items() if isinstance(item, Derived)}
+        return {
+            name: {"value": attrs.asdict(value) if attrs.has(type(value)) else value, "why": why}
+            for name, (value, why) in reasons.items()
+        }
+
+    def said(self, key: str, value: str = "") -> str:
+        """A key as a reason, with a value, and whether that is a default."""
+        return f"{key}{value and f' is {value}'}{'' if self.says(key) else ', by default'}"
 
     def says(self, key: str) -> bool:
         """Whether a key such as "kinematics.gyroscopic" was said, by the user or a preset; else its value is a default."""
@@ -80,8 +126,7 @@ class Problem(SceneTables):
     @property
     def force_alone_directs(self) -> bool:
         """Whether nothing but the force tells one direction from another."""
-        moment = any(self.load.moment) and self.supports.tilt != "locked"
-        return self.excitation.sense != 0 and not any(self.load.radial) and not moment
+        return self.excitation.sense != 0 and not any(self.load.radial) and not (any(self.load.moment) and self.tilts)
 
     @cached_property
     def body_kind(self) -> BodyKind:
@@ -93,37 +138,54 @@ class Problem(SceneTables):
         """Of the bodies."""
         return self.body_kind.traits
 
-    @cached_property
-    def spin_speed(self) -> float:
+    @Derived
+    def spin_speed(self) -> tuple[float, str]:
         """Speed of the inner ring [rad/s]."""
         rpm = self.kinematics.spin_speed_rpm
-        if rpm is None:
-            rpm = speed_rpm(self.excitation)
-        return 0.0 if rpm is None else rpm * pi / 30.0
+        if rpm is not None:
+            return rpm * pi / 30.0, "kinematics.spin_speed_rpm"
+        rpm = speed_rpm(self.excitation)
+        if rpm is not None:
+            return rpm * pi / 30.0, f"the speed of excitation '{self.excitation.name}'"
+        return 0.0, "no speed is given"
 
-    @cached_property
-    def time_constant(self) -> float:
+    @Derived
+    def time_constant(self) -> tuple[float, str]:
         """Of the contacts' dashpots c = tau k [s]; 0 where there are none of this kind, of a band the low end."""
         contact = self.contact
         if contact.in_a_band:
-            return TIME_CONSTANTS[0]
+            return TIME_CONSTANTS[0], "the low end of contact.damping = 'band'"
         if contact.loss_factor is not None and self.excitation is not None:
-            return contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
-        return 0.0 if contact.time_constant is None else contact.time_constant
+            factor = contact.loss_factor / (2.0 * pi * float(self.excitation.frequency_hz))
+            return factor, "contact.loss_factor at the frequency of the excitation"
+        constant = 0.0 if contact.time_constant is None else contact.time_constant
+        return constant, self.said("contact.time_constant")
 
-    @cached_property
-    def spin_changes(self) -> bool:
+    @Derived
+    def tilts(self) -> tuple[bool, str]:
+        """Whether the ring tilts."""
+        if self.supports.tilt == "locked":
+            return False, self.said("supports.tilt", "locked")
+        return True, "supports.tilt lets the ring tilt"
+
+    @Derived
+    def spin_changes(self) -> tuple[bool, str]:
         """Whether the spin speed is that of an excitation that changes its speed, and changes with it."""
         excitation = self.excitation
-        changing = excitation is not None and excitation.period_s is None and has_phase(excitation)
-        return changing and self.kinematics.spin_speed_rpm is None and self.spin_speed > 0.0
+        if excitation is None or excitation.period_s is not None or not has_phase(excitation) or not self.spin_speed > 0.0:
+            return False, "no excitation changes the speed"
+        if self.kinematics.spin_speed_rpm is not None:
+            rpm = self.kinematics.spin_speed_rpm
+            return False, f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
+        return True, f"balls, ring and rotor follow the speed of excitation '{excitation.name}'"
 
-    @cached_property
-    def inertia(self) -> _Inertia:
+    @Derived
+    def inertia(self) -> tuple[_Inertia, str]:
         """Of the inner rings and the rotor's share."""
         mass, transverse, polar = ring_inertia(self.bearing)
         rotor = self.rotor
-        return _Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar)
+        why = "[rotor], and the inner rings where bearing.bore and bearing.width are given"
+        return _Inertia(rotor.mass + mass, rotor.transverse_inertia + transverse, rotor.polar_inertia + polar), why
 
     @cached_property
     def running(self) -> RunningBearing:
@@ -150,15 +212,22 @@ class Problem(SceneTables):
             best = max(best, tilting / inertia.transverse)
         return sqrt(best) + 1e-6 * pi
 
-    @property
-    def recorded(self) -> bool:
+    @Derived
+    def recorded(self) -> tuple[bool, str]:
         """Whether anything is integrated: there is a force, and the identifier needs a record of the motion."""
-        return self.excitation is not None and "record" in self.identifier.method.needs
+        if self.excitation is None:
+            return False, "the scene is static"
+        if "record" not in self.identifier.method.needs:
+            return False, f"identifier '{self.identifier.kind}' needs the equilibrium only"
+        return True, self.integrator_why or "the identifier needs recorded motion"
 
-    @property
-    def several_speeds(self) -> bool:
+    @Derived
+    def several_speeds(self) -> tuple[bool, str]:
         """Whether the identifier compares motions at several whirl speeds."""
-        return self.excitation is not None and "speeds" in self.identifier.method.needs
+        if self.excitation is None:
+            return False, "the scene is static"
+        several = "speeds" in self.identifier.method.needs
+        return several, f"identifier '{self.identifier.kind}' needs {'several speeds' if several else 'one speed'}"
 
     @property
     def period(self) -> float:
@@ -180,48 +249,60 @@ class Problem(SceneTables):
         """Whether contacts depend on what was before: by friction, or by a law with a state."""
         return self.contact.friction > 0.0 or self.contact.law.state_size > 0
 
-    @cached_property
-    def turns(self) -> int:
+    @Derived
+    def turns(self) -> tuple[int, str]:
         """Turns that are integrated: the scene's, or as many as the excitation lasts."""
         duration = duration_s(self.excitation)
         if duration is None:
-            return self.integrator.turns
-        return max(int(duration * self.excitation.frequency_hz + 0.5), 1)
+            return self.integrator.turns, self.said("integrator.turns")
+        turns = max(int(duration * self.excitation.frequency_hz + 0.5), 1)
+        return turns, f"excitation '{self.excitation.name}' lasts so long"
 
-    @cached_property
-    def steps_per_turn(self) -> int:
+    @Derived
+    def steps_per_turn(self) -> tuple[int, str]:
         """The scene's number; for 'auto' 360, or the multiple of it that a rough stiffness asks of an explicit method."""
-        steps = self.integrator.steps_per_turn
+        steps, key = self.integrator.steps_per_turn, self.said("integrator.steps_per_turn")
         if isinstance(steps, int):
-            return steps
-        stable = None if self.integrator.method.implicit else self.stable_step
-        return (
-            STEPS_PER_TURN
-            if stable is None
-            else stable_steps_per_turn(self.period, damped_limit(stable, self.time_constant))
-        )
+            return steps, key
+        explicit = self.excitation is not None and not self.integrator.method.implicit
+        stable = self.stable_step if explicit else None
+        if stable is None:
+            return STEPS_PER_TURN, f"'auto' ({key})"
+        steps = stable_steps_per_turn(self.period, damped_limit(stable, self.time_constant))
+        return steps, f"'auto' ({key}): the stable step of '{self.integrator.kind}'"
 
     @cached_property
     def stable_step(self) -> float | None:
         """Rough stable limit of explicit steps [s], by the bodies; None where nothing is known."""
         return self.body_kind.stable_step()
 
-    @cached_property
-    def has_orbits(self) -> bool:
+    @Derived
+    def has_orbits(self) -> tuple[bool, str]:
         """Whether steady orbits of a transient, or of it without friction, can be searched for."""
         method, excitation = self.integrator.method, self.excitation
-        if excitation is None or method.steady or not method.inertial:
-            return False
-        repeats = excitation.period_s is not None or steady_form(excitation) is not None
-        return repeats and self.traits.compiled and self.contact.law.state_size == 0
+        if excitation is None:
+            return False, "the scene is static"
+        if method.steady or not method.inertial:
+            return False, f"integrator '{self.integrator.kind}' integrates no transient"
+        if excitation.period_s is None and steady_form(excitation) is None:
+            return False, f"excitation '{excitation.name}' does not repeat"
+        if not self.traits.compiled:
+            return False, f"forces of bodies '{self.bodies.name}' are not compiled"
+        if self.contact.law.state_size > 0:
+            return False, f"contact law '{self.contact.kind}' has a memory"
+        return True, "the force repeats, and the contacts' forces are compiled"
 
-    @property
-    def searches_orbits(self) -> bool:
+    @Derived
+    def searches_orbits(self) -> tuple[bool, str]:
         """Whether a transient begins on a steady orbit that can be searched for: forces are compiled and have no memory."""
-        return self.integrator.start == "orbit" and not self.ramped and self.has_orbits
+        if self.integrator.start != "orbit":
+            return False, f"integrator.start is {self.integrator.start}"
+        if self.ramped:
+            return False, "the force grows from zero"
+        return self.has_orbits, self.why("has_orbits")
 
-    @cached_property
-    def depends_on_start(self) -> bool:
+    @Derived
+    def depends_on_start(self) -> tuple[bool, str]:
         """Whether the answer depends on how the motion began, and a second run tells how far.
 
         Notes
@@ -229,11 +310,14 @@ class Problem(SceneTables):
         With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
         fits over several speeds no transient is estimated: a second run of them would tell nothing more.
         """
-        rubbing = self.contact.friction != 0.0 and self.recorded and not self.several_speeds
-        return rubbing and not self.traits.every_node
+        if self.contact.friction == 0.0:
+            return False, "contact.friction is 0"
+        if not self.recorded or self.several_speeds or self.traits.every_node:
+            return False, "the transient of this scene is not estimated"
+        return True, "friction: the answer depends on how the motion began, the error is how far"
 
-    @cached_property
-    def compared_with_steady(self) -> bool:
+    @Derived
+    def compared_with_steady(self) -> tuple[bool, str]:
         """Whether the error of a transient is its distance from the steady motion.
 
         Notes
@@ -241,12 +325,13 @@ class Problem(SceneTables):
         A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
         have no steady motion that can be solved for by itself.
         """
-        method, excitation = self.integrator.method, self.excitation
-        if excitation is None or not method.inertial or method.steady or not self.traits.compiled or self.remembers:
-            return False
-        if excitation.period_s is None:
-            return steady_form(excitation) is not None
-        return self.ramped or self.integrator.start != "orbit" or self.several_speeds
+        if self.contact.friction > 0.0:
+            return False, "contact.friction: there is no single steady motion"
+        if not self.has_orbits:
+            return False, self.why("has_orbits")
+        if self.excitation.period_s is None or self.ramped or self.several_speeds or self.integrator.start != "orbit":
+            return True, "the motion does not start on its steady orbit"
+        return False, "the motion starts on its steady orbit"
 
 
 #: Why there is no steady orbit that can be solved for by itself.

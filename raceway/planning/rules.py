@@ -69,10 +69,6 @@ def _inertial(p: Problem) -> bool:
     return p.recorded and p.integrator.method.inertial
 
 
-def _tilts(p: Problem) -> bool:
-    return p.supports.tilt != "locked"
-
-
 _DAMPS = (
     "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, "
     "or contact.damping in N s/m"
@@ -184,7 +180,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
         "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own",
     ),
     Rule(
-        "rotor.transverse_inertia", lambda p: _inertial(p) and _tilts(p) and p.inertia.transverse <= 0.0,
+        "rotor.transverse_inertia", lambda p: _inertial(p) and p.tilts and p.inertia.transverse <= 0.0,
         "free tilts need an inertia: set it, or give bearing.bore and bearing.width",
     ),
 )  # fmt: skip
@@ -208,7 +204,7 @@ _ROUGH = 2.0
 
 
 def _unloaded(p: Problem) -> bool:
-    load = p.load.axial or any(p.load.radial) or (any(p.load.moment) and _tilts(p)) or p.bearing.preloaded
+    load = p.load.axial or any(p.load.radial) or (any(p.load.moment) and p.tilts) or p.bearing.preloaded
     return p.supports.axial != "displacement" and not load
 
 

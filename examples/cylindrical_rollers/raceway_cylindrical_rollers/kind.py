@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
-    from raceway.scene.scene import Scene
+    from raceway.scene.scene import SceneTables
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
 _TIMES = Times({"weightless": 3.0e-6, "inertial": 4.0e-6}, sample=8.0e-6, search=1.0)
@@ -120,7 +120,7 @@ class CylindricalRollers:
         """No part of a body that deforms."""
         parts.leave_out("elastic rings and rollers", "bodies.kind is cylindrical_rollers: only line contacts deform")
 
-    def unused(self, scene: Scene) -> list[tuple[str, str]]:
+    def unused(self, tables: SceneTables) -> list[tuple[str, str]]:
         """Keys of grooves."""
         keys = ("bearing.shoulder_height", "bearing.tilt_arm", "load.moment")
         return [(key, "cylindrical rollers have no grooves, and the ring does not tilt") for key in keys]

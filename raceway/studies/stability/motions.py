@@ -293,17 +293,17 @@ def _around_the_limit(
 def orbit_at_the_safe_limit(rows: Rows, bench: Bench, integrator: str) -> None:
     """A large orbit with the steps that a run takes by itself, at most ``SAFETY`` of its limit, is followed for 50 turns."""
     model = bench.over(UNDAMPED).changed({"integrator.kind": integrator}).model()
-    scene, system = model.scene, surrogate(model.system)
-    if scene.excitation is None or scene.excitation.period_s is None:
+    excitation, system = model.excitation, surrogate(model.system)
+    if excitation is None or excitation.period_s is None:
         return  # of a user's scene: without a period there is no orbit
-    period = scene.excitation.period_s
+    period = excitation.period_s
     orbit = steady_orbit(system, period, solve_equilibrium(model).displacement, samples=129)
     limit = min(system.damped_time_step(k, c) for k, c in zip(orbit.stiffness, orbit.damping, strict=True))
     steps = ceil(period / (SAFETY * limit))
     states = [system.evaluate(q, ball=ball) for q, ball in zip(orbit.displacement, orbit.ball, strict=True)]
     opens = bool((np.array([now.contact_force for now in states]) <= 0.0).any())
     schedule = Schedule(period / steps, steps, _TURNS)
-    record = integrate(scene.integrator.method, system, from_orbit(system, orbit, schedule.dt), schedule)
+    record = integrate(model.problem.integrator.method, system, from_orbit(system, orbit, schedule.dt), schedule)
     true = np.array([at_time(orbit.displacement, period, t) for t in record.time[-steps:]])
     size = np.abs(orbit.displacement - orbit.displacement.mean(axis=0)).max(axis=0)[1:3].max()
     away = float(np.abs(record.displacement[-steps:, 1:3] - true[:, 1:3]).max() / size)

@@ -281,11 +281,11 @@ def _widened(bearing: Bearing, state: State) -> str:
 
 
 def _bearing_words(result: Result) -> str:
-    b, scene = result.model.problem.bearing, result.model.scene
+    b, problem = result.model.problem.bearing, result.model.problem
     name = f"{b.preset}: " if b.preset else ""
     return (
         f"{name}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, contact angle "
-        f"{scene.bearing.contact_angle * 57.29577951308232:.4g} deg; {scene.bodies.name} bodies, tilt {scene.supports.tilt}"
+        f"{b.contact_angle * 57.29577951308232:.4g} deg; {problem.bodies.name} bodies, tilt {problem.supports.tilt}"
     )
 
 
