@@ -16,16 +16,16 @@ from raceway.storage.tables import ReadTables
 _SHOWN = 10
 
 
-def _cache_screen(found: ReadTables) -> RenderableType:
-    rows = [("Compiled kernels", "", f"in {found['root']}")]
-    for folder in found["folders"]:
+def _cache_screen(caches: ReadTables) -> RenderableType:
+    rows = [("Compiled kernels", "", f"in {caches['root']}")]
+    for folder in caches["folders"]:
         size = f"{folder['bytes'] / 2**20:.1f} MiB"
         rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
-    if not any(folder["current"] for folder in found["folders"]):
-        rows.append((found["current"], "empty", "current: the next run compiles, which takes some 20 s of a processor"))
-    total, most = found["arrays_bytes"] / 2**20, found["arrays_limit_bytes"] / 2**20
-    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {found['arrays_root']}"))
-    arrays = sorted(found["arrays"], key=lambda entry: -entry["used"])
+    if not any(folder["current"] for folder in caches["folders"]):
+        rows.append((caches["current"], "empty", "current: the next run compiles, which takes some 20 s of a processor"))
+    total, most = caches["arrays_bytes"] / 2**20, caches["arrays_limit_bytes"] / 2**20
+    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {caches['arrays_root']}"))
+    arrays = sorted(caches["arrays"], key=lambda entry: -entry["used"])
     for entry in arrays[:_SHOWN]:
         used = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
         remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"

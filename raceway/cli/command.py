@@ -134,10 +134,10 @@ class Command(NamedTuple):
             command = self._option(parameter, _kind(front, parameter), words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             required = signature.parameters["scene"].default is inspect.Parameter.empty
-            given = click.argument("scene", type=PATH, required=required)
+            scene_input = click.argument("scene", type=PATH, required=required)
             if "scene" in self.options:
-                given = click.option("--scene", type=PATH, metavar="SCENE", help=_option_help(words["scene"]))
-            command = set_keys(given(command))
+                scene_input = click.option("--scene", type=PATH, metavar="SCENE", help=_option_help(words["scene"]))
+            command = set_keys(scene_input(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
                 command = _argument(parameter, self._about(parameter).metavar)(command)
@@ -206,8 +206,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
     out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())
     registry, signature, title = registry_with(plugins), inspect.signature(front), ""
-    known = signature.parameters
-    changed_by_front = "changes" in known and known["scene"].default is None
+    parameters = signature.parameters
+    changed_by_front = "changes" in parameters and parameters["scene"].default is None
     if arguments.get("scene") is not None and not changed_by_front:
         arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
     elif changed_by_front:
@@ -224,13 +224,13 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     if folder is not None:
         writable(folder)
     tell_faults(registry)
-    kept = folder if "kept" in known else None
-    shared = {"plugins": plugins, "kept": kept, "registry": registry, "pictures": folder if pictures else None}
-    arguments |= {name: value for name, value in shared.items() if name in known}
+    state_folder = folder if "kept" in parameters else None
+    shared = {"plugins": plugins, "kept": state_folder, "registry": registry, "pictures": folder if pictures else None}
+    arguments |= {name: value for name, value in shared.items() if name in parameters}
     stopped = None
-    with keeping(kept):
+    with keeping(state_folder):
         with show_progress(about.remaining) as progress:
-            if "progress" in known:
+            if "progress" in parameters:
                 arguments["progress"] = progress
             try:
                 bound = signature.bind_partial()

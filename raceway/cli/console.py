@@ -58,11 +58,11 @@ class Commands(click.Group):
             raise _Stopped from stop
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
-        known = [name for name in self.list_commands(ctx) if " " not in name]
+        names = [name for name in self.list_commands(ctx) if " " not in name]
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            place = self.elsewhere().get(args[0])
-            hint = f" (it is `raceway {place}`)" if place else nearest(args[0], known)
-            raise click.UsageError(f"no command '{args[0]}'{hint}; commands: {', '.join(known)}", ctx)
+            full_name = self.elsewhere().get(args[0])
+            hint = f" (it is `raceway {full_name}`)" if full_name else nearest(args[0], names)
+            raise click.UsageError(f"no command '{args[0]}'{hint}; commands: {', '.join(names)}", ctx)
         return super().resolve_command(ctx, args)
 
     def elsewhere(self) -> dict[str, str]:
@@ -161,9 +161,9 @@ def _help_hint(error: click.UsageError) -> str:
 
 
 def _os_message(error: OSError) -> str:
-    what = f"`{error.filename}`: " if error.filename else ""
+    file = f"`{error.filename}`: " if error.filename else ""
     remedy = " Free some space, or choose another folder." if error.errno == errno.ENOSPC else ""
-    return f"{what}{error.strerror or error}.{remedy}"
+    return f"{file}{error.strerror or error}.{remedy}"
 
 
 def _origin(error: Exception) -> str:

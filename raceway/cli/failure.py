@@ -43,5 +43,5 @@ def keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
         error.add_note(f"the last good state is lost: {why}")
         return
     error.files = {path.stem.replace("-", "_"): str(path) for path in paths}
-    what = "failure and last good state" if len(paths) > 1 else "failure"
-    error.add_note(f"{what} written: {', '.join(str(path) for path in paths)}")
+    contents = "failure and last good state" if len(paths) > 1 else "failure"
+    error.add_note(f"{contents} written: {', '.join(str(path) for path in paths)}")

@@ -103,14 +103,14 @@ def keeping(folder: Path | None) -> Iterator[None]:
 
 def faults(registry: Registry) -> list[str]:
     """Plug-ins that could not be loaded, and names that two of them claim; a sentence each."""
-    found = [str(fault) for fault in registry.faults]
+    sentences = [str(fault) for fault in registry.faults]
     for kind, name in registry.shadowed():
         owners = " and ".join(f"{e.plugin.__qualname__} of {e.distribution}" for e in registry.entries[kind, name])
-        found.append(
+        sentences.append(
             f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in "
             "RACEWAY_DISABLE"
         )
-    return found
+    return sentences
 
 
 def tell_faults(registry: Registry) -> None:
@@ -121,8 +121,8 @@ def tell_faults(registry: Registry) -> None:
 
 def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
-    given, mistakes = _changed(scene, changes)
-    return given.plain(registry), mistakes
+    scene_input, mistakes = _changed(scene, changes)
+    return scene_input.plain(registry), mistakes
 
 
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
@@ -133,9 +133,9 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     SceneError
         With the mistakes of both.
     """
-    given, mistakes = _changed(scene, changes)
+    scene_input, mistakes = _changed(scene, changes)
     try:
-        loaded = given.scene(registry)
+        loaded = scene_input.scene(registry)
     except SceneError as error:
         raise SceneError([*mistakes, *error.mistakes]) from None
     if mistakes:
@@ -146,14 +146,14 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
 def _changed(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
     from raceway.scene.inputs import as_given
 
-    given = as_given(scene)
+    scene_input = as_given(scene)
     mistakes: list[Mistake] = []
     for change in changes:
         try:
-            given = given.changed(change)
+            scene_input = scene_input.changed(change)
         except SceneError as error:
             mistakes += [Mistake(f"--set {m.path}", m.value, m.message) for m in error.mistakes]
-    return given, mistakes
+    return scene_input, mistakes
 
 
 def require_matplotlib(otherwise: str) -> None:
@@ -163,9 +163,9 @@ def require_matplotlib(otherwise: str) -> None:
 
 def has_matplotlib(by_default: bool) -> bool:
     """Whether pictures can be drawn; says what is missing where they are no more than the default, else raises it."""
-    there = find_spec("matplotlib") is not None
-    if not there and not by_default:
+    installed = find_spec("matplotlib") is not None
+    if not installed and not by_default:
         require_matplotlib("leave out --pictures")
-    if not there:
+    if not installed:
         warn(f"no picture: it needs matplotlib, {extra('pictures')}")
-    return there
+    return installed

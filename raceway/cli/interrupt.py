@@ -135,10 +135,10 @@ class Interrupts:
         if not again:
             raise KeyboardInterrupt
 
-    def _later(self, seconds: float, what: Callable[[signal.Signals], None], number: int) -> None:
+    def _later(self, seconds: float, action: Callable[[signal.Signals], None], number: int) -> None:
         if self._timer is not None:
             self._timer.cancel()
-        self._timer = threading.Timer(seconds, what, (signal.Signals(number),))
+        self._timer = threading.Timer(seconds, action, (signal.Signals(number),))
         self._timer.daemon = True
         self._timer.start()
 

@@ -154,18 +154,18 @@ def _plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
     return Group(*parts)
 
 
-def _conformity_screen(found: Conformity) -> RenderableType:
+def _conformity_screen(report: Conformity) -> RenderableType:
     """One line a check, with the duty and what was found."""
     table = Table.grid(padding=(0, 2))
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column()
-    for row in found.rows:
+    for row in report.rows:
         status = Text(row.status, style="green" if row.good else "bold red")
         table.add_row(escape(row.name), status, Words(f"{row.duty}: {row.message}" if row.message else row.duty, "dim"))
-    good = sum(row.good for row in found.rows)
-    verdict = "conforms" if found.conforms else "does not conform"
-    title = f"{found.kind.replace('_', ' ')} '{found.name}' {verdict}: {good} of {len(found.rows)} checks"
+    good = sum(row.good for row in report.rows)
+    verdict = "conforms" if report.conforms else "does not conform"
+    title = f"{report.kind.replace('_', ' ')} '{report.name}' {verdict}: {good} of {len(report.rows)} checks"
     return Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2)))
 
 

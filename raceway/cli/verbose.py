@@ -30,9 +30,9 @@ class _Lines(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         from raceway.out.wrapping import lines_of
 
-        first, *others = lines_of(record.getMessage(), shutil.get_terminal_size().columns - _TIME) or [""]
+        first, *following = lines_of(record.getMessage(), shutil.get_terminal_size().columns - _TIME) or [""]
         click.echo(f"{time.perf_counter() - self._begun:{_TIME - 4}.2f} s  {first}", err=True)
-        for line in others:
+        for line in following:
             click.echo(" " * _TIME + line, err=True)
 
 
@@ -66,9 +66,9 @@ class _Listener:
 _PARTS = {"compiling": "compile_s", "building": "build_s", "solving": "solve_s", "error": "error_s"}
 
 
-def listen(context: click.Context, _option: click.Parameter, wanted: bool) -> None:
+def listen(context: click.Context, _option: click.Parameter, verbose: bool) -> None:
     """Begin to tell, until the command ends."""
-    if not wanted:
+    if not verbose:
         return
     from raceway.framework.registry import default_registry
 

@@ -198,6 +198,6 @@ def _shown(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _class(**chosen: bool) -> str:
-    names = " ".join(name for name, there in chosen.items() if there)
+def _class(**classes: bool) -> str:
+    names = " ".join(name for name, shown in classes.items() if shown)
     return f' class="{names}"' if names else ""

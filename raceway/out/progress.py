@@ -41,12 +41,12 @@ class ProgressBar:
     _shown: ClassVar[ProgressBar | None] = None
 
     def __init__(
-        self, what: str, console: Console | None = None, patience: float = _PATIENCE_S, remaining: bool = False
+        self, label: str, console: Console | None = None, patience: float = _PATIENCE_S, remaining: bool = False
     ) -> None:
         from rich.console import Console
 
         self.console = console or Console(stderr=True)
-        self._what, self._remaining = what, remaining
+        self._label, self._remaining = label, remaining
         self._bar: Progress | None = None
         self._around: ProgressBar | None = None
         self._told = ""
@@ -58,9 +58,9 @@ class ProgressBar:
     def __enter__(self) -> Self:
         self._around, ProgressBar._shown = ProgressBar._shown, self
         if self._around is not None:
-            self(self._what, 0, 0)
+            self(self._label, 0, 0)
             return self
-        self._log(self._what)
+        self._log(self._label)
         if self.console.is_terminal:
             from rich.progress import (
                 BarColumn,
@@ -82,7 +82,7 @@ class ProgressBar:
             if self._remaining:
                 columns += [MofNCompleteColumn(), TextColumn("left"), TimeRemainingColumn()]
             self._bar = Progress(*columns, console=self.console, transient=True)
-            self._task = self._bar.add_task(self._what, total=None)
+            self._task = self._bar.add_task(self._label, total=None)
             self._timer.start()
         return self
 
@@ -95,19 +95,19 @@ class ProgressBar:
             self._over.set()
             self._bar.stop()
 
-    def __call__(self, what: str, done: int, total: int) -> None:
+    def __call__(self, label: str, done: int, total: int) -> None:
         if self._around is not None:
-            self._around(what, done, total)
+            self._around(label, done, total)
             return
-        self._log(what)
+        self._log(label)
         if self._bar is not None:
-            self._bar.update(self._task, description=what or self._what, completed=done, total=total or None)
+            self._bar.update(self._task, description=label or self._label, completed=done, total=total or None)
 
-    def _log(self, what: str) -> None:
-        thing = _NEWS.split(what)[0]
-        if what and thing != self._told:
+    def _log(self, label: str) -> None:
+        thing = _NEWS.split(label)[0]
+        if label and thing != self._told:
             self._told = thing
-            _LOGGER.info("%s", what)
+            _LOGGER.info("%s", label)
 
     def _draw(self) -> None:
         with self._lock:
@@ -140,26 +140,26 @@ class RemainingTime:
     def begin(self, run: int, name: str, case: str) -> None:
         """A run starts, and the one before has ended; its ``case`` is shown once, its short ``name`` with all that it does."""
         if self._run in self._seconds:
-            taken = self._seconds[self._run] = time.monotonic() - self._begun
+            elapsed_s = self._seconds[self._run] = time.monotonic() - self._begun
             for later in self._seconds:
                 if later > self._run and self._kinds[later] == self._kinds[self._run]:
-                    self._seconds[later] = min(self._seconds[later], taken)
+                    self._seconds[later] = min(self._seconds[later], elapsed_s)
         self._run, self._name, self._begun = run, name, time.monotonic()
         self(case, 0, 0)
 
-    def __call__(self, what: str, done: int, total: int) -> None:
+    def __call__(self, label: str, done: int, total: int) -> None:
         """Called by the run: ``what`` is done, ``done`` of ``total``, 0 where nobody knows how many."""
         if self._tell is None:
             return
-        planned, taken = self._seconds[self._run], time.monotonic() - self._begun
-        gone = sum(s for run, s in self._seconds.items() if run < self._run) + min(taken, planned)
+        planned, elapsed_s = self._seconds[self._run], time.monotonic() - self._begun
+        gone = sum(s for run, s in self._seconds.items() if run < self._run) + min(elapsed_s, planned)
         total_s = sum(self._seconds.values())
-        left = total_s - gone
-        words = f"{left:.0f} s left" if left < 90.0 else f"{left / 60.0:.0f} min left"
+        remaining_s = total_s - gone
+        words = f"{remaining_s:.0f} s left" if remaining_s < 90.0 else f"{remaining_s / 60.0:.0f} min left"
         progress = f" {done} of {total}" if total else ""
         # A terminal cuts what is longer than 76 characters: the time first, then what is done.
-        head = f"run {self._order[self._run]} of {len(self._order)}: {'end unknown' if taken > planned else words}"
-        self._tell(f"{head}, {self._name}: {what}{progress}", round(gone), round(total_s))
+        head = f"run {self._order[self._run]} of {len(self._order)}: {'end unknown' if elapsed_s > planned else words}"
+        self._tell(f"{head}, {self._name}: {label}{progress}", round(gone), round(total_s))
 
 
 @contextmanager

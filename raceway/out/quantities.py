@@ -25,14 +25,14 @@ def read_in(value: float, unit: str) -> tuple[float, str]:
 
 def _at(source: object, path: str) -> Any:
     """What lies there, steps with dots between; of several paths at the first that leads anywhere, else None."""
-    first, _, others = path.partition(" | ")
-    place: Any = source
+    first, _, alternatives = path.partition(" | ")
+    value: Any = source
     for step in first.split("."):
-        if isinstance(place, Mapping):
-            place = place.get(step)
-        elif place is not None:
-            place = place[int(step)] if step.isdigit() else getattr(place, step)
-    return _at(source, others) if place is None and others else place
+        if isinstance(value, Mapping):
+            value = value.get(step)
+        elif value is not None:
+            value = value[int(step)] if step.isdigit() else getattr(value, step)
+    return _at(source, alternatives) if value is None and alternatives else value
 
 
 @attrs.frozen
@@ -111,10 +111,10 @@ def named(*quantities: Quantity) -> dict[str, Quantity]:
 
 def entry_unit(unit: str, entry: Sequence[str]) -> str:
     """The unit of one entry of an array over coordinates of the ring, such as ("y", "tilt_z"); any other unit as it is."""
-    place = 0
+    index = 0
     for coordinate in entry:
-        place = 2 * place + coordinate.startswith("tilt")
-    return unit.split(", ")[place] if ", " in unit else unit
+        index = 2 * index + coordinate.startswith("tilt")
+    return unit.split(", ")[index] if ", " in unit else unit
 
 
 def nested(quantities: Iterable[Quantity], result: object) -> Tables:

@@ -82,16 +82,16 @@ def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
     """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
     rows: list[tuple[str, T]] = []
     balls: list[tuple[T, int]] = []
-    for name, said in bodies.items():
+    for name, value in bodies.items():
         if not name.startswith("ball"):
-            rows.append((name, said))
+            rows.append((name, value))
             continue
-        at = next((i for i, (other, _) in enumerate(balls) if other == said), None)
+        at = next((i for i, (value_of_line, _) in enumerate(balls) if value_of_line == value), None)
         if at is None:
-            balls.append((said, 1))
+            balls.append((value, 1))
         else:
-            balls[at] = said, balls[at][1] + 1
-    return rows + [(f"balls ({count})", said) for said, count in balls]
+            balls[at] = value, balls[at][1] + 1
+    return rows + [(f"balls ({count})", value) for value, count in balls]
 
 
 _NUMBER = re.compile(r"[+\-−]?\d[\d.]*(e[+-]?\d+)?([ \u202f]%)?[*~]*")
@@ -111,8 +111,8 @@ def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     cells = {key: [_cell(row.get(key)) for row in rows] for key in keys}
     same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
     columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
-    told = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
-    return _Rows(columns, title, f"the same in all rows: {told}" if told else "")
+    constants = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
+    return _Rows(columns, title, f"the same in all rows: {constants}" if constants else "")
 
 
 @attrs.frozen
@@ -180,14 +180,14 @@ class _Rows:
         if len(blocks) == 1:
             return blocks
         count = len(self.columns[0].cells)
-        place = _Column(_PLACE, tuple(str(row + 1) for row in range(count)))
-        return [[place, *block] for block in _packed(self.columns, width - place.least - _BETWEEN)]
+        numbers = _Column(_PLACE, tuple(str(row + 1) for row in range(count)))
+        return [[numbers, *block] for block in _packed(self.columns, width - numbers.least - _BETWEEN)]
 
 
 def _packed(columns: Sequence[_Column], width: int) -> list[list[_Column]]:
     blocks: list[list[_Column]] = [[]]
     for column in columns:
-        if blocks[-1] and sum(one.least + _BETWEEN for one in (*blocks[-1], column)) > width + _BETWEEN:
+        if blocks[-1] and sum(member.least + _BETWEEN for member in (*blocks[-1], column)) > width + _BETWEEN:
             blocks.append([])
         blocks[-1].append(column)
     return blocks

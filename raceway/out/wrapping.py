@@ -30,11 +30,11 @@ def fixed(text: str) -> str:
 
 def lines_of(text: str, width: int) -> list[str]:
     """The text in lines of at most ``width`` signs; a single word is broken only where it is longer than a line."""
-    found: list[str] = []
+    lines: list[str] = []
     for line in text.splitlines():
         wrapped = textwrap.wrap(fixed(line), max(width, 1), break_on_hyphens=False) or [""]
-        found += [one.replace(_FIXED, " ") for one in wrapped]
-    return found
+        lines += [piece.replace(_FIXED, " ") for piece in wrapped]
+    return lines
 
 
 @attrs.frozen
@@ -57,5 +57,5 @@ class Words:
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         words = fixed(self.text).split() or [""]
         longest = max(map(len, re.split(r"[ \n]", fixed(self.text)) or words))
-        whole = max(map(len, self.text.splitlines()), default=0)
-        return Measurement(min(longest, options.max_width), min(whole, options.max_width))
+        widest = max(map(len, self.text.splitlines()), default=0)
+        return Measurement(min(longest, options.max_width), min(widest, options.max_width))

@@ -49,14 +49,14 @@ def folder() -> Path:
 
 
 def kept(
-    kind: str, what: str, inputs: ReadTables, sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
+    kind: str, label: str, inputs: ReadTables, sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
     """The arrays that ``make`` returns, from the cache where they are there.
 
     Parameters
     ----------
     kind : what sort of entry, one word
-    what : one short line for people
+    label : one short line for people
     inputs : everything that the arrays depend on, by name: numbers, strings, None, arrays, and sequences of these
     sources : files or folders of this package, such as "core/revolution", whose code makes the arrays
     make : makes them, when they are not there
@@ -78,7 +78,7 @@ def kept(
         return stored
     start = time.process_time()
     computed = _contiguous(make())
-    _write(path, kind, what, computed, time.process_time() - start)
+    _write(path, kind, label, computed, time.process_time() - start)
     return computed
 
 
@@ -222,10 +222,10 @@ def _padded(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
         yield bytes(-array.nbytes % _ALIGNED)
 
 
-def _write(path: Path, kind: str, what: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
+def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
     words = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
     digest = _digest(path.stem, words, _padded(arrays))
-    head = {"kind": kind, "what": what, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
+    head = {"kind": kind, "what": label, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
     line = json.dumps(head).encode()
     scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
     try:

@@ -189,7 +189,7 @@ def slug(title: str) -> str:
     if len(text) > 80 or any(sign.isalnum() and not sign.isascii() for sign in latin):  # titles stay apart
         name += f"-{hashlib.sha256(first.encode()).hexdigest()[:8]}"
     plain = changes.replace(" = ", "=").replace(", ", ",")
-    told = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)
-    if told != plain or len(told) > 100:
-        told = f"{told[:100]}-{hashlib.sha256(plain.encode()).hexdigest()[:8]}"
-    return f"{name}-{told}" if told else name
+    label = re.sub(r"[^A-Za-z0-9._=,+-]+", "-", plain)
+    if label != plain or len(label) > 100:
+        label = f"{label[:100]}-{hashlib.sha256(plain.encode()).hexdigest()[:8]}"
+    return f"{name}-{label}" if label else name

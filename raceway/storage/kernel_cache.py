@@ -163,16 +163,16 @@ def opened(folder: Path) -> OpenFolder | str:
 
 def _linked(folder: Path) -> Path:
     """A temporary folder with links to all files of another one, for this process: numba reads in no folder that it cannot write."""
-    place = Path(tempfile.mkdtemp(prefix="raceway-kernels-"))
-    atexit.register(shutil.rmtree, place, ignore_errors=True)
+    links = Path(tempfile.mkdtemp(prefix="raceway-kernels-"))
+    atexit.register(shutil.rmtree, links, ignore_errors=True)
     for path in folder.rglob("*"):
-        beside = place / path.relative_to(folder)
+        beside = links / path.relative_to(folder)
         if path.is_dir():
             beside.mkdir(parents=True, exist_ok=True)
         else:
             beside.parent.mkdir(parents=True, exist_ok=True)
             beside.symlink_to(path.resolve())
-    return place
+    return links
 
 
 @attrs.frozen
@@ -182,11 +182,11 @@ class FilesOfKernel:
     Attributes
     ----------
     base : how their names begin
-    place : folder of numba's for the function's source file
+    folder : folder of numba's for the function's source file
     """
 
     base: str
-    place: Path
+    folder: Path
 
     def discard_damaged(self) -> None:
         """Remove what is not what was written; ``OSError`` for what cannot be removed."""
@@ -211,7 +211,7 @@ class FilesOfKernel:
                 _remove(path)
 
     def _files(self) -> list[Path]:
-        return [path for path in (self.place / f"{self.base}{end}" for end in (".nbi", ".1.nbc")) if path.exists()]
+        return [path for path in (self.folder / f"{self.base}{end}" for end in (".nbi", ".1.nbc")) if path.exists()]
 
     def _sound(self, path: Path) -> bool:
         try:
