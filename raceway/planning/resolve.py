@@ -244,11 +244,6 @@ class Problem(SceneTables):
         """Whether the force runs through speeds."""
         return changes_speed(self.excitation)
 
-    @property
-    def remembers(self) -> bool:
-        """Whether contacts depend on what was before: by friction, or by a law with a state."""
-        return self.contact.friction > 0.0 or self.contact.law.state_size > 0
-
     @Derived
     def turns(self) -> tuple[int, str]:
         """Turns that are integrated: the scene's, or as many as the excitation lasts."""
