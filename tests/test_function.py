@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway.storage.tables import Tables
 from validation.columns import case, difference
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
@@ -34,6 +35,7 @@ def test_sets_and_gyroscopic_moments_are_among_the_cases() -> None:
     cases = [case(seed) for seed in range(24)]
     assert {"DB", "DF", "DT", "single"} <= {c.scene.bearing.arrangement for c in cases}
     assert any(c.scene.kinematics.gyroscopic != "none" for c in cases)
+    assert {"rigid", "condensed"} == {c.scene.bodies.name for c in cases}
     assert {"hertz", "penalty"} <= {c.scene.contact.kind for c in cases}
     assert {"unidirectional", "bidirectional"} <= {c.scene.excitation.name for c in cases if c.scene.excitation}
 
@@ -164,6 +166,19 @@ def test_what_the_loop_cannot_do_is_run() -> None:
     assert answer["kyy"][1] == rw.run(f.scene_at({"load.axial": 900.0})).stiffness[1, 1]
     with pytest.raises(rw.RacewayError, match=r"would take about .* s, one run after another, because contacts rub"):
         f(np.full(1_000_000, 400.0))
+
+
+@pytest.mark.parametrize(
+    ("tables", "key", "words"),
+    [
+        ({}, "bearing.conformity_inner", "changes the finite elements"),
+        ({"contact": {"discretisation": "nodal"}}, "load.axial", "surface points"),
+        ({"supports": {"inner_seat": 1e12}}, "load.axial", "act on each other"),
+    ],
+)
+def test_condensed_bodies_that_points_do_not_share(tables: Tables, key: str, words: str) -> None:
+    f = rw.function({**STATIC, "bodies": {"kind": "condensed"}, **tables}, [key], ["kyy"])
+    assert words in f.why_slow
 
 
 @pytest.mark.parametrize(

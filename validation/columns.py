@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 import raceway as rw
+from raceway.bodies.columns import why_no_column
 from raceway.points.column_quantities import of_result
 
 _BEARINGS: list[dict[str, Any]] = [
@@ -72,6 +73,9 @@ def case(seed: int, points: int = 4) -> Case:
     }  # fmt: skip
     if tables["kinematics"]["ball_inertia"] and rng.integers(2):
         tables["kinematics"]["gyroscopic"] = str(rng.choice(["outer_race", "shared"]))
+    if "preset" in bearing and not seed % 4:
+        mesh = {"kind": "structured", "element_size": 2.5e-3, "nodes_per_semi_axis": 1}
+        tables |= {"bodies": {"kind": "condensed"}, "mesh": mesh}
     if moving:
         kind = str(rng.choice(["unidirectional", "bidirectional"]))
         tables["excitation"] = {"kind": kind, "speed_rpm": 9000.0, "unbalance": 2e-5}
@@ -81,7 +85,7 @@ def case(seed: int, points: int = 4) -> Case:
     scene = rw.Scene.from_dict(tables)
     speed = "excitation.speed_rpm" if moving else "kinematics.spin_speed_rpm"
     ranges = {**_RANGES, speed: (1000.0, 18_000.0)} | ({"excitation.unbalance": (1e-6, 5e-5)} if moving else {})
-    keys = [key for key in ranges if _has(scene, key, ring_growth)]
+    keys = [key for key in ranges if _has(scene, key, ring_growth) and not why_no_column(scene, key)]
     chosen = sorted(rng.choice(keys, size=min(len(keys), int(rng.integers(1, 6))), replace=False).tolist())
     columns = {key: rng.uniform(*ranges[key], size=points) for key in chosen}
     return Case(scene, columns, (*_OUTPUTS, *(_MOTION if moving else ())))
@@ -106,7 +110,7 @@ def _has(scene: rw.Scene, key: str, ring_growth: bool) -> bool:
 def difference(seed: int) -> tuple[float, float, list[str]]:
     """Largest relative difference of a random case: of all numbers but the displacement, of that, and the status of its points."""
     c, worst, moved = case(seed), 0.0, 0.0
-    f = rw.function(c.scene, c.columns, c.outputs, tolerance=1e-11, threads=1)
+    f = rw.function(c.scene, c.columns, c.outputs, tolerance=3e-10, threads=1)
     answer = f(**c.columns)
     for row, status in enumerate(answer["status"]):
         if status != rw.PointStatus.COMPUTED:

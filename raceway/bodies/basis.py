@@ -7,7 +7,7 @@ from math import pi
 import attrs
 import numpy as np
 
-from raceway.core.columns import Number, largest, per_ball, radians
+from raceway.core.columns import Number, largest, per_ball, radians, where
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
 from raceway.core.ring.ring import ChangingSpeed, Growth
@@ -184,17 +184,13 @@ def seat_of(problem: Problem, inner: bool) -> str | float:
 
 
 def first_guess(problem: Problem, basis: Basis) -> np.ndarray:
-    """(5,) displacement to look for the equilibrium from [m, rad]."""
-    geometry, x = basis.geometry, basis.axial
-    guess = np.zeros(5)
-    axial, radial = problem.load.axial, np.array(problem.load.radial)
+    """(..., 5) displacement to look for the equilibrium from [m, rad]."""
+    geometry, x, axial, radial = basis.geometry, basis.axial, problem.load.axial, problem.load.radial
     rest_axial, rest_radial = geometry.rest
-    size = float(np.hypot(*radial))
-    if axial > 0.0:
-        guess[0] = x
-    elif axial < 0.0:
-        guess[0] = -2.0 * rest_axial - x
-    elif size > 0.0:
-        guess[0] = -rest_axial
-        guess[1:3] = radial / size * (geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance)
+    size, guess = np.hypot(*radial), np.zeros((*problem.points, 5))
+    across = (axial == 0.0) & (size > 0.0)
+    guess[..., 0] = where(axial > 0.0, x, where(axial < 0.0, -2.0 * rest_axial - x, where(across, -rest_axial, 0.0)))
+    reach = geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance
+    for i, force in enumerate(radial):
+        guess[..., 1 + i] = where(across, force / where(across, size, 1.0) * reach, 0.0)
     return guess

@@ -1,4 +1,4 @@
-"""A bearing with rigid bodies at n operating points at once: its numbers as columns, for the compiled loops over points.
+"""A bearing with rigid or condensed bodies at n operating points at once: its numbers as columns, for the compiled loops over points.
 
 The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.rigid_bearing``): arrays have a first axis more.
 """
@@ -11,7 +11,9 @@ from typing import Any, TypeVar
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, gyroscopic, make_basis
+from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
+from raceway.bodies.condensed_bearing import elastic_parts
+from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
 from raceway.core.columns import Number, per_ball, some
 from raceway.core.contact.hertz import Ellipse
@@ -19,8 +21,9 @@ from raceway.core.excitations import no_force
 from raceway.core.jit import address_of
 from raceway.core.periodic.collocation import one_pitch
 from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
-from raceway.core.ring.equilibria import Kernels, Points, States, equilibria
+from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria
 from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW_POINTER, SYSTEM_POINTER, Linear
 from raceway.framework.contracts import Excitation
@@ -28,6 +31,7 @@ from raceway.framework.duties import force_params, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem, resolve
+from raceway.scene.bearing import DIMENSIONS
 from raceway.scene.changes import with_columns
 from raceway.scene.growth import groove_edge
 from raceway.scene.scene import Scene
@@ -78,9 +82,15 @@ _KEYS = frozenset(
         "mounting.housing_interference",
     ]
 )
+#: Those that change the finite elements of condensed bodies.
+_SHAPES = frozenset(
+    key
+    for key in _KEYS
+    if key.startswith("bearing.") and not key.endswith(("preload", "density", "expansion", "azimuth_deg"))
+)
 R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
-MOST_SAMPLES = 128
+_MOST_SAMPLES = 128
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 
@@ -92,8 +102,11 @@ def why_not(scene: Scene, moving: bool) -> str:
     moving : whether their motions are asked for
     """
     bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
+    deform = scene.bodies.name == "condensed"
     reasons = {
-        "bodies deform": scene.bodies.name != "rigid",
+        "bodies are in full": scene.bodies.name not in ("rigid", "condensed"),
+        "contacts have surface points": deform and scene.contact.discretisation != "resultant",
+        "balls act on each other through elastic rings": deform and scene.bodies.balls_meet(problem),
         "the contact law has a memory": law.state_size > 0,
         "the contact law follows the running state": renews(law),
         "contacts rub": scene.contact.friction > 0.0,
@@ -113,35 +126,18 @@ def why_no_column(scene: Scene, key: str) -> str:
     """Why the numbers at a continuous key can not be a column; empty where they can."""
     if key.startswith("bearing.") and scene.kinematics.ring_growth:
         return "each point's rings grow by sections of their own"
+    if key in _SHAPES and scene.bodies.name == "condensed":
+        return f"{key} changes the finite elements"
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
     known = key.startswith("excitation.") or key in _KEYS and not apart
     return "" if known else f"{key} changes more than numbers"
 
 
+@np.errstate(all="ignore")
 def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:
     """What a scene asks for at n points, from the columns (n,) of its keys."""
     scene = with_columns(scene, columns)
     return attrs.evolve(resolve(scene), points=(len(next(iter(columns.values()))),))
-
-
-def conspicuous(problem: Problem) -> np.ndarray:
-    """(n,) whether numbers of a point contradict each other, or leave no bearing: the rules of a scene then say what is wrong."""
-    b, n = problem.bearing, problem.points[0]
-    d, dm = b.ball_diameter, b.pitch_diameter
-    distance = (b.conformity_inner + b.conformity_outer - 1.0) * d
-    wrong = np.zeros(n, dtype=bool) | (d >= dm) | (np.sin(np.pi / b.ball_count) * dm < d) & (b.ball_count > 1)
-    wrong |= False if b.bore is None else b.bore >= dm - d
-    wrong |= False if b.outer_diameter is None else b.outer_diameter <= dm + d
-    wrong |= False if b.shoulder_height is None else b.shoulder_height >= 0.5 * d
-    wrong |= False if b.radial_clearance is None else b.radial_clearance >= 2.0 * distance
-    edge = groove_edge(b)
-    for row in range(len(b.rows)):
-        room, radial = problem.running.centre_distance(row)
-        wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
-    loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
-    loaded = sum(np.abs(load) for load in loads) + b.preload
-    wrong |= ~(loaded > 0.0) | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
-    return wrong
 
 
 @attrs.frozen(eq=False)
@@ -190,6 +186,21 @@ class ColumnBearing:
     kernels: Kernels
     faults: np.ndarray
 
+    @property
+    def conspicuous(self) -> np.ndarray:
+        """(n,) whether numbers contradict each other, or leave no bearing: the rules of a scene then say what is wrong."""
+        p, b = self.problem, self.problem.bearing
+        wrong = np.zeros(p.points, dtype=bool)
+        for rule in DIMENSIONS:
+            wrong |= rule.when(b)
+        edge = groove_edge(b)
+        for row in range(len(b.rows)):
+            room, radial = p.running.centre_distance(row)
+            wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
+        loads = (p.load.axial, *p.load.radial, *p.load.moment)
+        loaded = sum(np.abs(load) for load in loads) + b.preload
+        return wrong | ~(loaded > 0.0) | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
+
     def equilibria(self) -> States:
         """The static state of each point."""
         columns = self.kernels.columns + (2 if self.plan.balls == "tangential" else 0)
@@ -215,7 +226,7 @@ class ColumnBearing:
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
         params = np.array([force_params(excitation) for excitation in excitations.several])[excitations.which]
         force = address_of(plugin_kernel(excitations.several[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
-        turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, MOST_SAMPLES, tolerance)
+        turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, _MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
             if not len(chosen):
@@ -272,7 +283,7 @@ class ColumnBearing:
             guess[:, 0], load[:, 0] = 0.05 * basis.geometry.centre_distance, force
             contacts = np.concatenate([balls, balls + len(sides)])
             rows = Points(scalars, table[:, balls].copy(), points.params[:, contacts].copy(), load, np.zeros(n), guess)
-            states = _empty_states(n, len(balls), 2)
+            states = _empty_states(n, len(balls), self.kernels.columns)
             equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
             points.table[:, balls, ring.SHIFT] = np.where(pressed[:, None], states.q[:, :1], 0.0)
             faults = np.where(pressed & (states.status != 0), states.status, faults)
@@ -288,12 +299,7 @@ class ColumnBearing:
         axial = axial + side * (q[:, :1] + reach * turned)
         radial = scalars[:, ring.REST_RADIAL, None] + table[..., ring.OWN_REST_RADIAL]
         radial = radial + q[:, 1:2] * cosine + q[:, 2:3] * sine - lever * turned
-        z = table.shape[1]
-        inner = outer = np.arctan2(axial, radial)
-        if self.plan.balls != "weightless":
-            inner = np.arctan2(axial - states.ball[..., 0], radial - states.ball[..., 1])
-            outer = np.arctan2(states.ball[..., 0], states.ball[..., 1])
-        return np.where(states.force[:, :z] > 0.0, inner, np.nan), np.where(states.force[:, z:] > 0.0, outer, np.nan)
+        return contact_angles(np.stack([axial, radial], axis=-1), self.plan.balls != "weightless", states.ball, states.force)
 
     def pressures(self, force: np.ndarray) -> np.ndarray:
         """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""
@@ -318,43 +324,35 @@ class ColumnBearing:
         return inner, outer
 
 
+@np.errstate(all="ignore")  # of points that contradict themselves
 def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     """The bearing of ``column_problem``; ``plan`` is that of a scene with the numbers of one point."""
     n, basis = problem.points[0], make_basis(problem)
     parts = contact_parts(problem, plan, basis)
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
+    faults = np.zeros(n, dtype=np.int64)
+    if problem.bodies.name != "rigid":
+        parts, too_stiff = elastic_parts(problem, basis, parts)
+        faults[too_stiff] = LOOSE
     kernel, base = (address_of(parts[name], SYSTEM_POINTER) for name in ("kernel", "base_kernel"))
-    kernels = Kernels(kernel, base, 2, address_of(parts["law"], LAW_POINTER))
+    columns = 2 + elastic_columns(parts["scalars"][0])
+    kernels = Kernels(kernel, base, columns, address_of(parts["law"], LAW_POINTER))
     load = _columns(n, problem.load.axial, *problem.load.radial, *problem.load.moment)
     tilt = problem.supports.tilt
     shaft = np.broadcast_to(0.0 if isinstance(tilt, str) else tilt, n).astype(float)
     none = np.zeros((5, 5))
     linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
     points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
-    bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, np.zeros(n, dtype=np.int64))
+    bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, faults)
     if some(problem.bearing.preload):
         return bearing._preloaded()
-    points.guess[:] = _first_guess(problem, basis, load)
+    points.guess[:] = first_guess(problem, basis)
     return bearing
 
 
 def _columns(n: int, *numbers: Number) -> np.ndarray:
     """(n, k) of k numbers."""
     return np.stack([np.broadcast_to(number, n) for number in numbers], axis=1).astype(float)
-
-
-def _first_guess(problem: Problem, basis: Basis, load: np.ndarray) -> np.ndarray:
-    """(n, 5) displacement to look for the equilibrium from [m, rad], see ``raceway.bodies.basis.first_guess``."""
-    geometry, size = basis.geometry, np.hypot(load[:, 1], load[:, 2])
-    rest_axial, rest_radial = geometry.rest
-    x, axial, guess = basis.axial, load[:, 0], np.zeros_like(load)
-    guess[:, 0] = np.where(
-        axial > 0.0, x, np.where(axial < 0.0, -2.0 * rest_axial - x, np.where(size > 0.0, -rest_axial, 0.0))
-    )
-    reach = (1.0 + 1e-3) * geometry.centre_distance - rest_radial
-    share = np.where((axial == 0.0) & (size > 0.0), reach / np.where(size > 0.0, size, 1.0), 0.0)
-    guess[:, 1:3] = load[:, 1:3] * share[:, None]
-    return guess
 
 
 def _rows(record: R, chosen: np.ndarray) -> R:

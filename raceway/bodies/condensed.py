@@ -244,7 +244,7 @@ class Condensed:
             why_not = (
                 "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
             )
-            parts.decide(_balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
+            parts.decide(self.balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
             if problem.excitation is not None:
                 why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
                 parts.leave_out("inertia of the bodies' deformation", why)
@@ -280,6 +280,21 @@ class Condensed:
         first, second = (sections(each, make_basis(each)) for each in (problem, changed))
         return first == second
 
+    def balls_meet(self, problem: Problem) -> bool:
+        """Whether one ball's load reaches the next one through a ring.
+
+        Notes
+        -----
+        On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
+        at 3.7 t (B7206C).
+        """
+        b = problem.bearing
+        if problem.supports.inner_seat != "rigid" or problem.supports.outer_seat != "rigid":
+            return True
+        walls = [0.5 * (b.pitch_diameter - b.ball_diameter - (b.bore or 0.0))]
+        walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))
+        return bool(pi * (b.pitch_diameter - b.ball_diameter) / b.ball_count < 2.5 * max(walls))
+
     def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
         """See ``raceway.bodies.condensed_bearing`` and ``raceway.bodies.patch_bearing``."""
         if _nodal(problem):
@@ -293,19 +308,3 @@ class Condensed:
 
 def _nodal(problem: Problem) -> bool:
     return problem.contact.discretisation == "nodal"
-
-
-def _balls_meet(problem: Problem) -> bool:
-    """Whether one ball's load reaches the next one through a ring.
-
-    Notes
-    -----
-    On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
-    at 3.7 t (B7206C).
-    """
-    b = problem.bearing
-    if problem.supports.inner_seat != "rigid" or problem.supports.outer_seat != "rigid":
-        return True
-    walls = [0.5 * (b.pitch_diameter - b.ball_diameter - (b.bore or 0.0))]
-    walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))
-    return bool(pi * (b.pitch_diameter - b.ball_diameter) / b.ball_count < 2.5 * max(walls))

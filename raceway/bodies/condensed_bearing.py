@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import nan
+from threading import Lock
 from typing import TYPE_CHECKING
 
 import attrs
@@ -19,11 +20,13 @@ from raceway.core.contact.hertz import ball_compliance
 from raceway.core.mesh.ring_mesh import ring_shape
 from raceway.core.patches.patch import RingBody, Solid
 from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.kernels.structural import condensed
 from raceway.core.ring.system import System, surrogate
 from raceway.core.structural import (
     SURFACE,
     ElasticBodies,
     calibrated,
+    elastic_scalars,
     elastic_system,
     first_frequency,
     reach,
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable
 
     from raceway.bodies.model import Equilibrium, Model
+    from raceway.core.jit import Kernel
     from raceway.core.mesh.ring_mesh import RingShape
     from raceway.core.revolution.sections import Profile
 
@@ -93,6 +97,7 @@ _CALIBRATED_BULK = 0.4
 #: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
 _KEPT = 8
 _BODIES: dict[Hashable, ElasticBodies] = {}
+_LOCK = Lock()
 
 
 def sections(problem: Problem, basis: Basis) -> Hashable:
@@ -120,10 +125,11 @@ def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> Elas
         Bodies so soft that their contacts are as large as a ball.
     """
     key = (sections(problem, basis), coarser)
-    bodies = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
-    _BODIES[key] = bodies  # the last in, and the last to go
-    if len(_BODIES) > _KEPT:
-        del _BODIES[next(iter(_BODIES))]
+    with _LOCK:
+        bodies = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
+        _BODIES[key] = bodies  # the last in, and the last to go
+        if len(_BODIES) > _KEPT:
+            del _BODIES[next(iter(_BODIES))]
     b, (a, across) = problem.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     direct, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
     if not abs(direct) * basis.ball_load < b.ball_diameter:
@@ -296,23 +302,40 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
     compliance = min(bodies.at(problem.bearing.contact_angle))
     if compliance >= 0.0:
         return
-    basis, system = stiff.basis, surrogate(stiff.system)
-    for load in (1.0, 5.0):
-        ellipse = basis.inner
-        gap = -ellipse.approach(load * basis.ball_load) * np.ones(2 * system.ball_count)
-        force, d_gap, d_rate = np.empty_like(gap), np.empty_like(gap), np.empty_like(gap)
-        system.law(
-            gap, np.zeros_like(gap), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, d_gap, d_rate
+    system = surrogate(stiff.system)
+    stiffness = float(_law_stiffness(problem, stiff.basis, system.law, system.law_params))
+    if stiffness * -compliance >= 1.0:
+        thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
+        remedy = thin if problem.contact.kind == "hertz" else "Use 'hertz', or a softer law"
+        raise SceneError.at(
+            "contact.kind",
+            problem.contact.kind,
+            f"its contact of {1e-6 * stiffness:.3g} N/µm is stiffer than elastic bodies allow: they take "
+            f"{-1e9 * compliance:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
         )
-        if (-d_gap * -compliance).max() >= 1.0:
-            thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
-            remedy = thin if problem.contact.kind == "hertz" else "Use 'hertz', or a softer law"
-            raise SceneError.at(
-                "contact.kind",
-                problem.contact.kind,
-                f"its contact of {1e-6 * -d_gap.min():.3g} N/µm is stiffer than elastic bodies allow: they take "
-                f"{-1e9 * compliance:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
-            )
+
+
+def _law_stiffness(problem: Problem, basis: Basis, law: Kernel, params: np.ndarray) -> np.ndarray:
+    """(...) largest stiffness [N/m] of a law with params (..., 2 Z, k), at one and five times a ball's rough load."""
+    largest, contacts = np.zeros(params.shape[:-2]), params.shape[:-1]
+    memory = np.zeros((np.prod(contacts), problem.contact.law.state_size))
+    for load in (1.0, 5.0):
+        approach = np.asarray(basis.inner.approach(load * basis.ball_load))[..., None]
+        gap = -np.broadcast_to(approach, contacts).ravel()
+        force, d_gap, d_rate = np.empty_like(gap), np.empty_like(gap), np.empty_like(gap)
+        law(gap, np.zeros_like(gap), params.reshape(len(gap), -1), memory, memory.copy(), 0.0, force, d_gap, d_rate)
+        largest = np.maximum(largest, -d_gap.reshape(contacts).min(axis=-1))
+    return largest
+
+
+def elastic_parts(problem: Problem, basis: Basis, parts: Tables) -> tuple[Tables, np.ndarray]:
+    """The ``contact_parts`` of n points that share condensed bodies, from those of rigid ones; (n,) whether the law is too stiff."""
+    # Loads make themselves felt in a ball's own compliance only, which contacts calibrated at surface points have in them.
+    bodies = elastic_bodies(problem, attrs.evolve(basis, ball_load=float(np.min(basis.ball_load))))
+    compliance = min(bodies.at(problem.bearing.contact_angle))
+    too_stiff = _law_stiffness(problem, basis, parts["law"], parts["law_params"]) * -compliance >= 1.0
+    kernels = {name: condensed(parts[name]) for name in ("kernel", "base_kernel")}
+    return {**parts, **kernels, "scalars": elastic_scalars(parts["scalars"], bodies)}, too_stiff
 
 
 def _refuse_dashpots(problem: Problem, plan: ScenePlan, stiff: RigidBearing, bodies: ElasticBodies) -> None:

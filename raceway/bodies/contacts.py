@@ -24,18 +24,15 @@ if TYPE_CHECKING:
     from raceway.core.structural import ElasticBodies
 
 
-def contact_angles(
-    system: Ring, placed: bool, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Inner and outer contact angles (Z,) [rad]; nan where the contact carries nothing.  Of several states: (n, Z).
+def contact_angles(centre: np.ndarray, placed: bool, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Inner and outer contact angles (..., Z) [rad]; nan where the contact carries nothing.
 
     Parameters
     ----------
+    centre : (..., Z, 2) from the outer to the inner groove centres, axial and radial
     placed : whether ``ball[..., :2]`` are the balls' places; else they lie between the groove centres
     """
-    z = system.ball_count
-    centre = system.centre_vectors(q, t, ball)[0]
-    axial, radial = centre[..., 0], centre[..., 1]
+    z, axial, radial = centre.shape[-2], centre[..., 0], centre[..., 1]
     if not placed:
         inner = outer = np.arctan2(axial, radial)
     else:

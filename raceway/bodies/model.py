@@ -113,7 +113,7 @@ class Bearing(ABC):
 
         Of several states (n, 5), (n, Z, k), (n, 2 Z) at times (n,): (n, Z).
         """
-        return contact_angles(model.system, self.has_places(model.plan.balls), q, ball, force, t)
+        return contact_angles(model.system.centre_vectors(q, t, ball)[0], self.has_places(model.plan.balls), ball, force)
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Peak pressure [Pa] and semi-axes [m] (n,) of the contacts of a race (0 inner, 1 outer) at loads (n,) [N]."""

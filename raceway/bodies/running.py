@@ -110,7 +110,7 @@ def renew(
         if np.abs(force - before).max() <= _TOLERANCE * max(force.max(), 1e-300):
             return q
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
-        angles = contact_angles(system, bool(now.ball[:, 1].any()), q, now.ball, force)
+        angles = contact_angles(system.centre_vectors(q, ball=now.ball)[0], bool(now.ball[:, 1].any()), now.ball, force)
         pairs = running_pairs(problem, basis, force, angles)
         renewed = system.running(law_params(law, pairs), reach_of(law, pairs))
         system.table, system.law_params = renewed.table, renewed.law_params

@@ -450,11 +450,21 @@ class ElasticBodies:
 
 
 def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | None = None) -> System:
-    """The system of rigid rings with elastic ones in their place.
+    """The system of rigid rings with elastic ones in their place; ``angles`` as in ``elastic_scalars``."""
+    return attrs.evolve(
+        rigid,
+        kernel=condensed(plain(rigid.kernel)),
+        base_kernel=condensed(plain(rigid.base_kernel)),
+        scalars=elastic_scalars(rigid.scalars, bodies, angles),
+        table=rigid.table.copy(),
+    )
+
+
+def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray | None = None) -> np.ndarray:
+    """The scalars (..., k) of kernels of condensed bodies, from those of the rigid ones.
 
     Parameters
     ----------
-    rigid : with kernels of rigid bodies
     angles : (Z,) contact angles [rad] about which balls act on each other through the rings; None leaves that out
 
     Notes
@@ -477,13 +487,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     head = [bodies.ball_opposite, 0.0 if angles is None else 1.0, count, knots[0], distance, len(knots)]
     if angles is not None:
         tables.append(np.column_stack([rings[0] + rings[1], rings[1][:, 1:]]).ravel())
-    return attrs.evolve(
-        rigid,
-        kernel=condensed(plain(rigid.kernel)),
-        base_kernel=condensed(plain(rigid.base_kernel)),
-        scalars=np.concatenate([rigid.scalars, head, *tables]),
-        table=rigid.table.copy(),
-    )
+    elastic = np.concatenate([head, *tables])
+    return np.concatenate([rigid, np.broadcast_to(elastic, (*rigid.shape[:-1], len(elastic)))], axis=-1)
 
 
 def between_grooves(ring: RingCompliance, angles: np.ndarray) -> np.ndarray:

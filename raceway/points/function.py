@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raceway.bodies.columns import Excitations, build_columns, column_problem, conspicuous, why_no_column, why_not
+from raceway.bodies.columns import Excitations, build_columns, column_problem, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
@@ -275,13 +275,14 @@ class Function:
             if plan is None:
                 continue
             chosen = {key: column[rows] for key, column in columns.items()}
-            with np.errstate(all="ignore"):  # of points that contradict themselves
-                problem = column_problem(self.scene, chosen)
-                bearing = build_columns(problem, plan)
+            try:
+                bearing = build_columns(column_problem(self.scene, chosen), plan)
+            except RacewayError:  # of elastic bodies that no point has
+                continue
             example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
             excitations = Excitations.of(self.scene, chosen) if self.moving else None
             computed = Computed.of(example, bearing, excitations, self.tolerance)
-            fine = ~conspicuous(problem) & computed.fine
+            fine = ~bearing.conspicuous & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:
                 part = QUANTITIES[name](computed)

@@ -20,6 +20,7 @@ from raceway.framework.options import (
     optional,
     positive,
 )
+from raceway.framework.rules import Rule, speaking
 from raceway.scene.sets import GEOMETRY, Row, arrangement, check_set, places_of, signs_of, travel
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
@@ -129,26 +130,9 @@ class Bearing:
     balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
 
     def __attrs_post_init__(self) -> None:
-        d, dm = self.ball_diameter, self.pitch_diameter
-        if d >= dm:
-            raise ValueError(f"`ball_diameter` = {d:g} m must be smaller than `pitch_diameter` = {dm:g} m")
-        if self.ball_count > 1 and sin(pi / self.ball_count) * dm < d:
-            most = int(pi / asin(d / dm))
-            raise ValueError(
-                f"`ball_count` = {self.ball_count} balls of {d:g} m do not fit a pitch circle of {dm:g} m: at most {most}"
-            )
-        if self.bore is not None and self.bore >= dm - d:
-            raise ValueError(f"`bore` = {self.bore:g} m cuts the inner raceway: it must be below d_m - D = {dm - d:g} m")
-        if self.outer_diameter is not None and self.outer_diameter <= dm + d:
-            raise ValueError(
-                f"`outer_diameter` = {self.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {dm + d:g} m"
-            )
-        if self.shoulder_height is not None and self.shoulder_height >= 0.5 * d:
-            raise ValueError(
-                f"`shoulder_height` = {self.shoulder_height:g} m must be below half the ball's diameter, {0.5 * d:g} m: "
-                "no groove is deeper than its ball's centre"
-            )
-        self._check_clearance()
+        for _, words in speaking(DIMENSIONS, self):
+            raise ValueError(words)
+        self._check_angle()
         check_set(self)
         self._check_profiles()
 
@@ -227,16 +211,13 @@ class Bearing:
         plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
         return attrs.evolve(self, **{**plain, **geometry})
 
-    def _check_clearance(self) -> None:
-        clearance, angle = self.radial_clearance, self.contact_angle_deg
-        distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
-        if clearance is None:
-            return
-        if clearance >= 2.0 * distance:
-            raise ValueError(
-                f"`radial_clearance` = {clearance:g} m must be below twice the groove-centre distance, {2 * distance:g} m"
-            )
-        if not angle:
+    @property
+    def _centre_distance(self) -> float:
+        return (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+
+    def _check_angle(self) -> None:
+        clearance, angle, distance = self.radial_clearance, self.contact_angle_deg, self._centre_distance
+        if clearance is None or not angle:
             return
         fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
         if abs(fitting - clearance) > 1e-3 * distance:
@@ -251,9 +232,41 @@ class Bearing:
         """Free contact angle [rad]: given, or from the radial clearance."""
         clearance, angle = self.radial_clearance, self.contact_angle_deg
         if clearance is not None and some(clearance) and (angle is None or not some(angle)):
-            distance = (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
-            return acos(1.0 - clearance / (2.0 * distance))
+            return acos(1.0 - clearance / (2.0 * self._centre_distance))
         return radians(angle) if angle is not None else 0.0
+
+
+#: Dimensions that leave no bearing; ``when`` of a bearing with columns is one of each point.
+DIMENSIONS: tuple[Rule[Bearing], ...] = (
+    Rule(
+        "ball_diameter", lambda b: b.ball_diameter >= b.pitch_diameter,
+        lambda b: f"`ball_diameter` = {b.ball_diameter:g} m must be smaller than `pitch_diameter` = {b.pitch_diameter:g} m",
+    ),
+    Rule(
+        "ball_count", lambda b: (b.ball_count > 1) & (sin(pi / b.ball_count) * b.pitch_diameter < b.ball_diameter),
+        lambda b: f"`ball_count` = {b.ball_count} balls of {b.ball_diameter:g} m do not fit a pitch circle of {b.pitch_diameter:g} m: "
+        f"at most {int(pi / asin(b.ball_diameter / b.pitch_diameter))}",
+    ),
+    Rule(
+        "bore", lambda b: b.bore is not None and b.bore >= b.pitch_diameter - b.ball_diameter,
+        lambda b: f"`bore` = {b.bore:g} m cuts the inner raceway: it must be below d_m - D = {b.pitch_diameter - b.ball_diameter:g} m",
+    ),
+    Rule(
+        "outer_diameter", lambda b: b.outer_diameter is not None and b.outer_diameter <= b.pitch_diameter + b.ball_diameter,
+        lambda b: f"`outer_diameter` = {b.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = "
+        f"{b.pitch_diameter + b.ball_diameter:g} m",
+    ),
+    Rule(
+        "shoulder_height", lambda b: b.shoulder_height is not None and b.shoulder_height >= 0.5 * b.ball_diameter,
+        lambda b: f"`shoulder_height` = {b.shoulder_height:g} m must be below half the ball's diameter, {0.5 * b.ball_diameter:g} m: "
+        "no groove is deeper than its ball's centre",
+    ),
+    Rule(
+        "radial_clearance", lambda b: b.radial_clearance is not None and b.radial_clearance >= 2.0 * b._centre_distance,
+        lambda b: f"`radial_clearance` = {b.radial_clearance:g} m must be below twice the groove-centre distance, "
+        f"{2 * b._centre_distance:g} m",
+    ),
+)  # fmt: skip
 
 
 @lru_cache(maxsize=256)

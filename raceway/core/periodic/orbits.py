@@ -161,7 +161,7 @@ def _ball_rates(ball, order, first, speed, rate):
             follower = order[follower]
 
 
-class Level(NamedTuple):
+class _Level(NamedTuple):
     """Arrays of one number of samples n: motion u and its derivatives u1, u2 by the angle, imbalance r (n, 5), in the frame; derivatives
     of r by u and u1, A0, A1 (n, 5, 5); places of balls and their rates (n, Z, b); columns of the derivatives over the span d1, d2 (n,)
     and over a turn, twice (2 m,); J the scratch of the step."""
@@ -197,7 +197,7 @@ class Numbers(NamedTuple):
     weight: np.ndarray
 
 
-LEVEL = record(Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, VECTOR, VECTOR, VECTOR, MATRIX)
+LEVEL = record(_Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, VECTOR, VECTOR, VECTOR, MATRIX)
 NUMBERS = record(Numbers, CONSTANTS, MATRIX, VECTOR, VECTOR, MATRIX, float64, float64, VECTOR, boolean, VECTOR, VECTOR)
 
 
@@ -360,7 +360,7 @@ def _harmonic_step(level, mass, speed, wave, dofs):
 def _level(u, ball, spans, span, dense, d):
     """Arrays for the samples u (n, 5), balls beginning at their places (Z, b) of the equilibrium."""
     n, (z, columns) = u.shape[0], ball.shape
-    level = Level(
+    level = _Level(
         u, np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5, 5)), np.empty((n, 5, 5)),
         np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
         np.zeros((n * d, n * d + 1) if dense else (1, 2)),
