@@ -9,7 +9,7 @@ import attrs
 import pytest
 from matplotlib.figure import Figure
 
-from raceway import build_model, make_plan, scene_from_dict
+from raceway import build_model, scene_from_dict
 from raceway.testing import Model, b7206c, default_registry
 from tests.figures import outside
 
@@ -38,7 +38,7 @@ def built():
 
     def build(**tables: Any) -> Model:
         scene = scene_from_dict(b7206c(**tables))
-        return build_model(scene, make_plan(scene))
+        return build_model(scene)
 
     return build
 

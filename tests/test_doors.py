@@ -132,7 +132,7 @@ def test_what_runs_away_is_not_meshed():
 
     far = BeyondPatch(-1.0, 0.26, 1e13, across=False)
     reach = Reach((0.2, 0.3), (0.2, 0.3), 1e-4, 100.0, 100.0)
-    bearing = rw.build_model(scene := rw.scene_from_dict(SCENE), rw.make_plan(scene)).basis
+    bearing = rw.build_model(rw.scene_from_dict(SCENE)).basis
     assert isinstance(bearing.inner, Ellipse)
     with pytest.raises(rw.ConvergenceError, match="run away"):
         reach.grown(far, bearing.inner, 4e-3, 1.2)

@@ -47,7 +47,7 @@ def scene(**tables):
 
 def built(**tables):
     found = scene(**tables)
-    return build_model(found, make_plan(found))
+    return build_model(found)
 
 
 @pytest.fixture(scope="module")

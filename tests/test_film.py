@@ -181,9 +181,9 @@ def test_the_film_follows_a_speed_that_changes():
     changing = rw.Scene.from_dict(
         {**tables, "excitation": {**up, "duration_s": 1.0}, "identifier": {"kind": "order_tracking"}}
     )
-    system = rw.build_model(changing, make_plan(changing)).system
+    system = rw.build_model(changing).system
     steady = scene(OIL, kinematics={"ball_inertia": False, "spin_speed_rpm": 6000.0})
-    wanted = rw.build_model(steady, make_plan(steady)).system
+    wanted = rw.build_model(steady).system
     assert system.spin.constants(system, 6000.0 * np.pi / 30.0).reach == pytest.approx(wanted.reach, rel=2e-3)
 
 
@@ -205,7 +205,7 @@ def test_a_loss_factor_is_w_c_over_the_stiffness_of_the_springs():
 
 def test_the_dashpot_is_the_derivative_of_the_force_by_the_rate():
     one = scene({"kind": "hertz", "time_constant": 1e-5}, kinematics={"ball_inertia": False})
-    model = rw.build_model(one, make_plan(one))
+    model = rw.build_model(one)
     q, ball, _ = model.system.settle(model.guess)
     v, h = np.array([1e-3, 2e-3, -1e-3, 0.0, 0.0]), 1e-6
     now = model.system.evaluate(q, v, ball)

@@ -223,7 +223,7 @@ def scene(bodies, integrator):
 def test_a_foreign_integrator_has_its_order_on_every_kind_of_bodies(bodies, integrator):
     """A force that grows over 0.1 ms: the error falls with the square of the step, from 10 to 20 and 40 steps."""
     chosen = scene(bodies, integrator)
-    model = build_model(chosen, make_plan(chosen))
+    model = build_model(chosen)
     still = solve_equilibrium(model)
     start = model.bearing.at_rest(model.system, still.displacement, still.ball, True)
     time = 1e-4

@@ -158,7 +158,7 @@ def test_the_plan_of_explicit_steps_knows_a_tilt_stiffness():
     _, free = planned("free")
     assert resolve(scene).highest_frequency >= (1e9 / 2e-4) ** 0.5
     assert steps > 20 * free
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene)
     real = model.system.critical_time_step(model.system.evaluate(model.guess).stiffness)
     # 12 turns of 5 ms in steps of 0.8 of the limit: the plan is to know their number within a factor of two.
     assert steps == pytest.approx(12 * 5e-3 / (0.8 * real), rel=0.5)

@@ -28,7 +28,7 @@ from raceway.core.ring.system import compiled
 from raceway.errors import PluginError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door
-from raceway.planning.plan import ScenePlan
+from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -228,8 +228,12 @@ class Model:
 
 
 @door
-def build_model(scene: Scene, plan: ScenePlan) -> Model:
+def build_model(scene: Scene, plan: ScenePlan | None = None) -> Model:
     """Arrays and kernels of a scene, by its kind of bodies.
+
+    Parameters
+    ----------
+    plan : of this scene, or of one with other numbers; None: ``make_plan(scene)``
 
     Raises
     ------
@@ -242,9 +246,10 @@ def build_model(scene: Scene, plan: ScenePlan) -> Model:
     --------
     >>> import raceway as rw
     >>> scene = rw.Scene.from_toml("examples/b7206.toml")
-    >>> round(rw.build_model(scene, rw.make_plan(scene)).mass_used, 2)  # of ring and rotor [kg]
+    >>> round(rw.build_model(scene).mass_used, 2)  # of ring and rotor [kg]
     2.06
     """
+    plan = make_plan(scene) if plan is None else plan
     return model_of(plan.problem if plan.problem.scene is scene else resolve(scene), plan)
 
 

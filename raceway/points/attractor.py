@@ -32,7 +32,6 @@ from raceway.errors import ConvergenceError, RacewayError
 from raceway.integrators.methods import Newmark
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import Result
-from raceway.planning.plan import make_plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
@@ -118,7 +117,7 @@ def attractor_beside_run(result: Result, parameter: float, turns: int) -> Attrac
 
 def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor:
     """From rest under a force that grows within some turns, for ``turns`` turns from then on."""
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene)
     equilibrium, period = solve_equilibrium(model), scene.excitation.period_s
     schedule = Schedule(period / _STEPS, _STEPS, _RAMP + turns, _STEPS // _RECORDED, _RAMP * period)
 

@@ -30,7 +30,6 @@ from raceway.out.table import sections
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
-from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
 from raceway.scene.inputs import Change, SceneSource, as_given
 from raceway.scene.tables import TIME_CONSTANTS
@@ -316,7 +315,7 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     if scene.bodies.name != "rigid":
         rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene)
     still, ring = solve_equilibrium(model), compiled(model.system)
     assert ring is not None, "rings of rigid bodies are compiled"
     count = ring.ball_count

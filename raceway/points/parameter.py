@@ -24,7 +24,6 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.contracts import Excitation
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.plan import make_plan
 from raceway.points.axes import numbers_at
 from raceway.scene.changes import key_of, parse_value, with_number, with_value
 from raceway.scene.reading import scene_from_dict
@@ -111,7 +110,7 @@ class Parameter:
     def model(self, p: float) -> Model:
         """Model of the scene at a value of the key."""
         scene = self.scene(p)
-        return build_model(scene, make_plan(scene))
+        return build_model(scene)
 
     def settled(self, p: float) -> tuple[Model, Equilibrium]:
         """Model and static equilibrium."""
@@ -173,7 +172,7 @@ class Parameter:
             raise SceneError.at(
                 "excitation.kind", excitation.name, "does not repeat itself every turn: there is no steady orbit"
             )
-        model = build_model(scene, make_plan(scene))
+        model = build_model(scene)
         refuse(model.system, Schedule(excitation.period_s / 36, 36, 1))
         if model.system.scalars[CAGE] != 0.0:
             words = (

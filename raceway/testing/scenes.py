@@ -21,10 +21,10 @@ def b7206c(**tables: object) -> Tables:
 
 def model_of(scene: Scene | Tables) -> Model:
     """The built model of a scene, or of its tables."""
-    from raceway import build_model, make_plan, scene_from_dict
+    from raceway import build_model, scene_from_dict
 
     scene = scene_from_dict(scene) if isinstance(scene, dict) else scene
-    return build_model(scene, make_plan(scene))
+    return build_model(scene)
 
 
 def settled(scene: Scene | Tables) -> tuple[Model, Equilibrium]:

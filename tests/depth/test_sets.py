@@ -31,7 +31,7 @@ def scene(arrangement="TBT", preload=200.0, bearing=None, **tables):
 
 def built(*args, **more):
     one = scene(*args, **more)
-    model = build_model(one, make_plan(one))
+    model = build_model(one)
     return model, solve_equilibrium(model)
 
 
@@ -162,7 +162,7 @@ def test_two_bearings_on_a_shaft():
     rows = [{"direction": "+", "position": -0.1, "preset": "B7206C"}, {"direction": "-", "position": 0.1, "preset": "7206A"}]
     one = scene_from_dict({"bearing": {"row": rows, "preload": 250.0}, "kinematics": {"ball_inertia": False}})
     assert one.bearing.preset == "B7206C"
-    model = build_model(one, make_plan(one))
+    model = build_model(one)
     now = solve_equilibrium(model)
     alone = [settled_alone(preset).stiffness for preset in ("B7206C", "7206A")]
     np.testing.assert_allclose(np.diag(now.stiffness)[:3], sum(np.diag(k)[:3] for k in alone), rtol=SAME)

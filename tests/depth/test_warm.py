@@ -30,7 +30,7 @@ def scene(word="DB", preload=300.0, kinematics=None, bearing=None, **mounting):
 
 
 def settled(one):
-    model = build_model(one, make_plan(one))
+    model = build_model(one)
     return model, solve_equilibrium(model)
 
 
@@ -224,10 +224,10 @@ def test_a_changing_speed_takes_its_part_of_a_fit(fit):
     tables = scene(kinematics={"ring_growth": True}, shaft_interference=fit).to_dict()
     tables |= {"excitation": excitation, "identifier": {"kind": "order_tracking"}, "rotor": {"mass": 2.0}}
     moving = scene_from_dict(tables)
-    model = build_model(moving, make_plan(moving))
+    model = build_model(moving)
     steady = scene(kinematics={"ring_growth": True, "spin_speed_rpm": 12000.0}, shaft_interference=fit)
     found = model.system.spin.constants(model.system, 12000.0 * np.pi / 30.0)
-    expected = build_model(steady, make_plan(steady)).system
+    expected = build_model(steady).system
     np.testing.assert_allclose(found.scalars[:5], expected.scalars[:5], rtol=1e-12)
 
 

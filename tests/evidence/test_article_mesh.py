@@ -188,7 +188,7 @@ def test_ball_loads_displacement_and_stiffness_of_condensed_bodies(claim):
 def test_reduced_and_unreduced_solver(claim):
     """Every unknown of both, of one discretisation."""
     scene = load_scene(SCENE, [f"{key}={value}" for key, value in TINY.items()])
-    ring = build_model(scene, make_plan(scene)).system
+    ring = build_model(scene).system
     assert isinstance(ring, ElasticRing)
     system, start = ring.bodies.system, ring._undeformed(ring.surrogate, np.zeros(5))
     reduced, full = (one.settle(start, 1e-10).y for one in (system, iterative(system)))

@@ -16,7 +16,7 @@ import numba
 import numpy as np
 import pytest
 
-from raceway import build_model, load_scene, make_plan
+from raceway import build_model, load_scene
 from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
@@ -125,7 +125,7 @@ def compared(law: str, integrator: str, inertia: bool, repeats: int) -> SimpleNa
         f"kinematics.ball_inertia={str(inertia).lower()}",
     )  # fmt: skip
     scene = load_scene(ARTICLE, changes)
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene)
     s, z, period, method = model.system, model.geometry.ball_count, model.excitation.period_s, scene.integrator.method
     schedule = Schedule(period / steps, steps, turns)
     start = from_orbit(s, steady_orbit(s, period, solve_equilibrium(model).displacement), schedule.dt)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway import build_model, load_scene, make_plan, scene_from_dict
+from raceway import build_model, load_scene, scene_from_dict
 from raceway.core.jit import working_processor_time
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.equilibrium import solve_equilibrium
@@ -47,7 +47,7 @@ def drawn(rng, bodies):
 
 
 def model_of(scene):
-    return build_model(scene, make_plan(scene))
+    return build_model(scene)
 
 
 def scales(model):

@@ -125,7 +125,7 @@ def test_block_on_a_plane(claim):
 def bearing():
     """Model and the start on its orbit."""
     scene = scene_from_dict(BEARING)
-    built = build_model(scene, make_plan(scene))
+    built = build_model(scene)
     found = solve_equilibrium(built)
     orbit = steady_orbit(built.bearing.orbiting(built.system), built.excitation.period_s, found.displacement)
     return built, found, from_orbit(built.system, orbit)

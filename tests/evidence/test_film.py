@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from raceway import build_model, make_plan, scene_from_dict
+from raceway import build_model, scene_from_dict
 from raceway.contact_laws.film import GRADES, Film, Walther
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.pipeline.equilibrium import solve_equilibrium
@@ -238,7 +238,7 @@ def test_cost(claim):
         ready, spent = [], [[], [], []]
         for law in laws:
             one = scene(law, integrator={"turns": 40, "steps_per_turn": 360}, kinematics={"ball_inertia": inertia})
-            model = build_model(one, make_plan(one))
+            model = build_model(one)
             ready.append((model, solve_equilibrium(model)))
         for _ in range(9):
             for (model, still), times in zip(ready, spent, strict=True):

@@ -8,7 +8,7 @@ from time import process_time
 import numpy as np
 import pytest
 
-from raceway import build_model, load_scene, make_plan, run, scene_from_dict
+from raceway import build_model, load_scene, run, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.pipeline.equilibrium import solve_equilibrium
 from validation.reference.mounted import FORCE, approach, axial, row, secant
@@ -37,7 +37,7 @@ def scene_of(word, **tables):
 
 
 def built(scene):
-    return build_model(scene, make_plan(scene))
+    return build_model(scene)
 
 
 def ground(word, preset="B7206E"):

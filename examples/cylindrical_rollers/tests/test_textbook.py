@@ -37,7 +37,7 @@ def found(clearance=0.0, growth=0.0, force=FORCE, bearing=None, **tables):
     changed = {**TABLES, "bearing": {**TABLES["bearing"], "radial_clearance": clearance, **(bearing or {})}, **tables}
     changed["kinematics"] = {"ball_inertia": False, "radial_expansion": growth, **tables.get("kinematics", {})}
     scene = scene_from_dict({**changed, "load": {"radial": [force, 0.0]}}, REGISTRY)
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene)
     return model, solve_equilibrium(model)
 
 

@@ -11,13 +11,12 @@ from collections.abc import Mapping, Sequence
 import attrs
 import numpy as np
 
-from raceway.bodies.model import build_model
+from raceway import build_model
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, NoDerivative, definitions, derivatives, values
-from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in
@@ -215,7 +214,7 @@ class _TableResiduals:
         self._answers = []
         for scene in self.scenes:
             loaded = with_free(scene, self.free, at)
-            model = build_model(loaded, make_plan(loaded))
+            model = build_model(loaded)
             self._answers.append(Gradients(model, solve_equilibrium(model), self._moving))
         rows = [self._values(answer) for answer in self._answers]
         return {name: np.array([row[name] for row in rows]) for name in self.measured.values}

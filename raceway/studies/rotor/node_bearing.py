@@ -6,21 +6,24 @@ Independent of ROSS; x is the bearing's axis.
 from __future__ import annotations
 
 from math import pi
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model, build_model
+from raceway import build_model
 from raceway.bodies.mounting import evaluate_following
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import simulate
-from raceway.planning.plan import make_plan
 from raceway.plugins.excitations import harmonic_load
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Integration, Rotor
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Equilibrium, Model
 
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3
@@ -74,7 +77,7 @@ class NodeBearing:
             self._equilibria.clear()  # calls in a row are for one speed; models of elastic bodies are large
             kinematics = attrs.evolve(self.scene.kinematics, spin_speed_rpm=speed * 30.0 / pi)
             scene = attrs.evolve(self.scene, kinematics=kinematics)
-            model = build_model(scene, make_plan(scene))
+            model = build_model(scene)
             self._equilibria[speed] = model, solve_equilibrium(model)
         return self._equilibria[speed]
 
@@ -107,7 +110,7 @@ class NodeBearing:
         full = np.zeros(5, dtype=complex)
         full[self.moving] = load
         scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, full))
-        model = build_model(scene, make_plan(scene))
+        model = build_model(scene)
         record = simulate(model, solve_equilibrium(model)).record
         turning = np.exp(-1j * speed * record.time) * (2.0 / len(record.time))
         return np.asarray(turning @ record.displacement[:, self.moving])

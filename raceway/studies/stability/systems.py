@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, cast
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model, build_model
+from raceway import build_model
+from raceway.bodies.model import Equilibrium, Model
 from raceway.core.contact.damping import stored_energy
 from raceway.core.excitations import no_force
 from raceway.core.record import Motion
@@ -16,7 +17,6 @@ from raceway.core.ring.system import System, surrogate
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
 from raceway.points.axes import tables_at
 from raceway.scene.changes import without
 from raceway.scene.reading import scene_from_dict
@@ -87,7 +87,7 @@ class Bench:
         return scene_from_dict(tables, self.registry)
 
     def model(self) -> Model:
-        return build_model(scene := self.scene, make_plan(scene))
+        return build_model(self.scene)
 
     def result(self) -> Result:
         return run(self.scene, self.registry)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Model, build_model
+from raceway import build_model
 from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.record import Motion, Schedule
 from raceway.core.ring.kernels.impact import impact_system
@@ -33,7 +33,6 @@ from raceway.out.table import micro
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -41,6 +40,7 @@ from raceway.studies.stability.catalogue import transient_integrators
 from raceway.studies.verify.reference import BASES, Case, Row, reference_cases
 
 if TYPE_CHECKING:
+    from raceway.bodies.model import Model
     from raceway.framework.contracts import Excitation, Integrator
 
 
@@ -272,7 +272,7 @@ def _article_pressures(case: Case, registry: Registry) -> Rows:
 
 
 def _model(scene: Scene) -> Model:
-    return build_model(scene, make_plan(scene))
+    return build_model(scene)
 
 
 def _hertz(model: Model) -> dict[str, float]:
