@@ -229,11 +229,7 @@ class Model:
 
 @door
 def build_model(scene: Scene, plan: ScenePlan | None = None) -> Model:
-    """Arrays and kernels of a scene, by its kind of bodies.
-
-    Parameters
-    ----------
-    plan : of this scene, or of one with other numbers; None: ``make_plan(scene)``
+    """Arrays and kernels of a scene, by its kind of bodies, and by ``make_plan(scene)`` where no plan is given.
 
     Raises
     ------

@@ -17,13 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from itertools import product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, growth_of
-from raceway.bodies.columns import ColumnBearing
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import add_moments
@@ -43,6 +42,9 @@ from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.resolve import Problem
 from raceway.planning.rules import refuse_what_cannot_run
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
 
 #: Samples of the last turn that are looked at.
 _SAMPLES = 60
