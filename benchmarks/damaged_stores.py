@@ -29,7 +29,7 @@ _POINTS, _LOADS = 32, ("400:1200:2", "500:1300:2")
 def words(store: Path, loads: str = _LOADS[0]) -> list[str]:
     """The command line of a sweep."""
     axes = ["--grid", f"excitation.speed_rpm=10980:15000:{_POINTS // 2}", "--grid", f"load.axial={loads}"]
-    return ["sweep", str(SCENE), "--set", "integrator.kind=periodic", *axes, "--out", str(store)]
+    return ["sweep", str(SCENE), "--set", "integrator.kind=quasi_static", *axes, "--out", str(store)]
 
 
 def _sql(*statements: str) -> harm.Harm:

@@ -21,7 +21,7 @@ import raceway as rw
 from raceway.framework.contracts import Lost
 from raceway.out.quantities import COLUMNS
 from raceway.plugins.processes import Processes, Serial
-from raceway.points.axes import grid, listed_points, tables_at
+from raceway.points.axes import grid, listed_points, sampled, tables_at
 from raceway.points.dataset import open_store, values_of
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import default_registry
@@ -34,6 +34,18 @@ STATIC: dict[str, Any] = {
     "supports": {"tilt": "free"},
     "kinematics": {"spin_speed_rpm": 9000.0},
 }
+#: The motion of a tenth of a micrometre about it, contacts with dashpots.
+ROTATING: dict[str, Any] = {
+    "rotor": {"mass": 2.0, "damping": 50.0},
+    "kinematics": {},
+    "contact": {"kind": "hertz", "damping": 0.001},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 3e-4},
+    "integrator": {"kind": "periodic", "tolerance": 1e-11},
+}
+#: What a run takes of 360 samples, or of another method.
+BOUNDS = {"damping": 1e-7, "peak": 1e-6, "min_": 1e-4, "p0": 1e-6, "z_imag": 1e-6, "equivalent_damping": 1e-6}
+#: What both methods estimate by themselves, or what rounding leaves.
+OWN = ("error_total", "error_time_step", "error_identification", "error_bodies", "residual", "backward_amplitude")
 LOADS = "load.axial=300:2000:24"
 
 
@@ -66,8 +78,13 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
             {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
             {"bearing.preload": [200.0, 600.0], "bearing.contact_angle_deg": [14.0, 16.0]},
         ),
+        (ROTATING, {"excitation.speed_rpm": [10_980.0, 15_000.0], "load.axial": [600.0, 2000.0]}),
+        (
+            {**ROTATING, "excitation": {"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 1e-4}},
+            {"load.axial": [1500.0, 2000.0]},
+        ),
     ],
-    ids=["speeds", "damped", "pair"],
+    ids=["speeds", "damped", "pair", "rotating", "to and fro"],
 )
 def test_computed_points_are_what_runs_give(changes: dict[str, Any], axes: dict[str, Any]) -> None:
     """1e-9 of every number that a run has, and no number more."""
@@ -80,10 +97,11 @@ def test_computed_points_are_what_runs_give(changes: dict[str, Any], axes: dict[
         values = values_of(rw.run(rw.Scene.from_dict(tables_at(tables, at, default_registry()))))
         one = flat.isel(point=number)
         for name, value in values.items():
-            if name == "error_model_bound" and "bearing.preload" in axes:
+            if name in OWN or (name == "error_model_bound" and "bearing.preload" in axes):
                 continue  # rings grow by their own sections
-            # Damping is the difference of two stiffnesses, 1e-4 of them.
-            bound = (1e-7 if name == "damping" else 1e-9) * (np.abs(value).max() or 1.0)
+            bounds = BOUNDS if "excitation" in tables else {"damping": 1e-7}
+            relative = next((bound for word, bound in bounds.items() if name.startswith(word)), 1e-9)
+            bound = relative * (np.abs(value).max() or 1.0)
             assert np.abs(one[name].values - value).max() <= bound, (name, at)
         more = [name for name in COLUMNS if name in one and name not in values and np.isfinite(one[name].values).any()]
         assert not more
@@ -220,3 +238,50 @@ def test_the_answer_says_how_points_were_computed(tmp_path: Path) -> None:
         "computed",
         "computed",
     ]
+
+
+def test_designs_fill_their_ranges() -> None:
+    """Sobol's points halve each range exactly, a Latin hypercube has one point in each of N slices."""
+    ranges = {"load.axial": (300.0, 2000.0), "kinematics.spin_speed_rpm": "1000:24000"}
+    for kind, slices in (("sobol:16", 2), ("lhs:12", 12)):
+        design = sampled(ranges, kind, seed=3)
+        assert design.listed and design == sampled(ranges, kind, seed=3) != sampled(ranges, kind, seed=4)
+        for axis, (low, high) in zip(design.axes, ((300.0, 2000.0), (1000.0, 24000.0)), strict=True):
+            counts = np.bincount(((axis.column - low) / (high - low) * slices).astype(int), minlength=slices)
+            assert (counts == design.size // slices).all()
+    swept = rw.sweep(STATIC, ranges, design="sobol:8", seed=3)
+    assert swept.sizes["point"] == 8 and (swept.status == "computed").all()
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--design", "sobol:9", "--range", "load.axial=1:2"], "N a power of 2 such as 1024"),
+        (["--design", "halton:8", "--range", "load.axial=1:2"], "must be sobol:N"),
+        (["--range", "load.axial=1:2"], "must be sobol:N"),
+        (["--design", "lhs:8"], "are missing: lhs:8 fills ranges"),
+        (["--design", "lhs:8", "--range", "load.axial=2:1"], "must be a range low:high of numbers"),
+        (["--grid", "load.axial=1:2:2", "--plot", "kyy", "--kind", "map"], "takes two axes with numbers"),
+        (["--grid", "load.axial=1:2:2", "--plot", "kxz"], "is not a quantity of this sweep"),
+    ],
+)
+def test_what_cannot_be_given_is_refused_before_anything_is_computed(words: list[str], message: str, tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n')
+    refused = invoke("sweep", tmp_path / "s.toml", *words, "--out", tmp_path / "s")
+    assert refused.exit_code == 2 and message in " ".join(refused.stderr.split())
+    assert not (tmp_path / "s").exists()
+
+
+def test_symbols_of_the_table_can_be_drawn(tmp_path: Path) -> None:
+    (tmp_path / "s.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n')
+    shown = invoke("sweep", tmp_path / "s.toml", "--grid", "load.axial=300,400", "--plot", "kyy", "--out", tmp_path / "s")
+    assert shown.exit_code == 0 and (tmp_path / "s" / "stiffness-y-y-curves.png").stat().st_size > 0
+
+
+def test_too_many_points_are_refused_with_bytes_or_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    axes = {"load.axial": np.linspace(300.0, 2000.0, 1000), "rotor.mass": np.linspace(1.0, 2.0, 1000)}
+    with pytest.raises(rw.RacewayError, match=r"1000000 runs would take about \d+ hours"):
+        rw.sweep({**STATIC, **ROTATING, "integrator": {"kind": "newmark", "turns": 1000}}, axes)
+    monkeypatch.setattr("raceway.points.function._free_bytes", lambda: 1e8)
+    with pytest.raises(rw.RacewayError, match=r"1000000 points need 6\.64e\+08 bytes .*, of 1e\+08 that are free"):
+        rw.sweep(STATIC, axes)

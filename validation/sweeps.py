@@ -36,7 +36,7 @@ _BUSY = 0.1
 def words(count: int, store: Path, *more: str, bodies: str = "rigid") -> list[str]:
     """The command line of a sweep of ``count`` points: speeds times 20 loads."""
     axes = [f"excitation.speed_rpm=10980:15000:{count // 20}", "load.axial=400:2000:20"]
-    settings = ["integrator.kind=periodic", f"bodies.kind={bodies}"]
+    settings = ["integrator.kind=quasi_static", f"bodies.kind={bodies}"]
     return [
         *("sweep", str(SCENE)),
         *(word for setting in settings for word in ("--set", setting)),
@@ -69,7 +69,7 @@ def timed(count: int, *more: str, bodies: str = "rigid") -> dict[str, float]:
 
 def overhead(count: int = 400) -> dict[str, float]:
     """Time a point [s] of the sweep beyond that of the same runs, each begun from its neighbour, in this process."""
-    registry, tables = default_registry(), with_value(read_toml(SCENE), "integrator.kind", "periodic")
+    registry, tables = default_registry(), with_value(read_toml(SCENE), "integrator.kind", "quasi_static")
     design = grid([f"excitation.speed_rpm=10980:15000:{count // 4}", "load.axial=400,800,1200,2000"])
     with tempfile.TemporaryDirectory() as folder:
         prepared = prepare(tables, design, Path(folder) / "s")

@@ -62,13 +62,17 @@ ANSWERS: tuple[Command | Later, ...] = (
         "raceway sweep examples/b7206.toml --plot K \\\n"
         "    --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200\n"
         "raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200\n"
+        "raceway sweep examples/steady_orbit.toml --design sobol:1024 \\\n"
+        "    --range load.axial=400:2000 --range rotor.mass=1:3\n"
         "raceway sweep examples/steady_orbit.toml --list points.csv \\\n"
         "    --executor processes --workers 4",
         {
             "source": Option(metavar="SCENE|STORE", positional=True),
             "axes": Option("grid", "A.B=X,Y"),
             "points": Option("list", "FILE"),
-            "design": Option(metavar="FILE.toml"),
+            "design": Option(metavar="KIND:N"),
+            "ranges": Option("range", "A.B=X:Y"),
+            "seed": Option(metavar="N"),
             "settings": Option("set", "A.B=C"),
             "executor": Option(metavar="NAME"),
             "workers": Option(metavar="N"),

@@ -21,8 +21,8 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
 from raceway.out.table import micro, written
 from raceway.out.wrapping import Words
-from raceway.points.axes import Design, design_file, grid, point_words, shown
-from raceway.points.dataset import NOT_LOOKED_AT, TABLE, open_store, points_of, write_csv, write_netcdf
+from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
+from raceway.points.dataset import NOT_LOOKED_AT, TABLE, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
@@ -146,6 +146,12 @@ class _Choice(NamedTuple):
     at: tuple[str, ...]
     file: str | Path | None
 
+    def foresee(self, design: Design, scene: ReadTables) -> None:
+        """Refuse, before anything is computed, a picture that this sweep cannot give."""
+        from raceway.points.plot import layout, parse_at, select
+
+        layout(select(blank(design, scene), parse_at(self.at)), self.value, self.kind, self.x, self.y)
+
     def draw(self, store: Path) -> Tables:
         """The picture, written; what it shows."""
         from raceway.points.plot import layout, selection_of
@@ -171,6 +177,8 @@ def sweep(
     axes: Iterable[str] = (),
     points: str | Path | None = None,
     design: str | Path | None = None,
+    ranges: Iterable[str] = (),
+    seed: int = 0,
     settings: Iterable[str] = (),
     executor: str = "serial",
     workers: int | None = None,
@@ -178,6 +186,7 @@ def sweep(
     store: str | Path | None = None,
     resume: bool = False,
     retry_failed: bool = False,
+    force: bool = False,
     csv: bool = False,
     value: str | None = None,
     x: str | None = None,
@@ -199,7 +208,9 @@ def sweep(
     source : a scene, or a store
     axes : axis: x,y,z or start:stop:count; all combinations
     points : points, .csv, .json or .toml
-    design : a table [grid], or tables [[points]]
+    design : sobol:N or lhs:N points in ranges, or a file of a grid
+    ranges : low:high of a key, for such a design
+    seed : of its random numbers
     settings : change a key of the scene
     executor : by name: serial, processes, dask, or a plug-in
     workers : processes of these; None: 2
@@ -207,6 +218,7 @@ def sweep(
     store : folder; None: raceway-out/TITLE-sweep
     resume : go on with a store: compute what is not finished
     retry_failed : with a store that is there: failed points again, too
+    force : also runs that take longer than a day
     csv : write STORE/results.csv, too
     value : draw this quantity, e.g. K, p0 or stiffness:y,y
     x : of the picture, axis to the right; None: the speed, or the longest one
@@ -215,7 +227,7 @@ def sweep(
     kind : of the picture; None: map where both axes have more than 8 values, else curves
     picture : a .png or .svg; None: STORE/NAME-KIND.png
     """
-    from raceway.points.sweep import all_failed, executor_of, fill_store, prepare
+    from raceway.points.sweep import all_failed, executor_of, fill_store, prepare, refuse_large
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
     if (stored := exists(scene)) or value is not None:
@@ -224,7 +236,7 @@ def sweep(
         writable(Path(picture).parent)
     if stored:
         return _Drawn(choice.draw(scene))
-    registry, listed = registry_with(plugins), _design(tuple(axes), points, design)
+    registry, listed = registry_with(plugins), _design(tuple(axes), points, design, tuple(ranges), seed)
     pool = executor_of(executor, {"workers": workers, "scheduler": scheduler}, registry)
     tables = plain_tables(scene, *settings, registry=registry)
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
@@ -232,6 +244,9 @@ def sweep(
     if resume and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to go on with: it is begun anew", stacklevel=2)
     prepared = prepare(tables, listed, folder, plugins, resume)
+    refuse_large(prepared, pool, force)
+    if value is not None:
+        choice.foresee(prepared.design, prepared.facts["scene"])
     stopped: BaseException | None = None
     try:
         with telling(progress, remaining=True) as report:
@@ -269,10 +284,14 @@ def _files(steps: Iterable[Callable[[], object]], folder: Path) -> tuple[list[st
     return files, None
 
 
-def _design(axes: tuple[str, ...], points: str | Path | None, design: str | Path | None) -> Design:
+def _design(
+    axes: tuple[str, ...], points: str | Path | None, design: str | Path | None, ranges: tuple[str, ...], seed: int
+) -> Design:
     options = {"--grid": axes, "--list": points, "--design": design}
     if len(names := [name for name, value in options.items() if value]) > 1:
         raise SceneError.at(" and ".join(names), None, "contradict each other: give one of them")
+    if ranges or (design is not None and not Path(design).suffix):
+        return sampled(ranges, str(design or ""), seed)
     file = points or design
     return grid(axes) if file is None else design_file(Path(file))
 

@@ -355,6 +355,41 @@ def grid(definitions: Vary) -> Design:
     return Design(axes=parse_axes(definitions, "--grid", _MOST_SWEEP_POINTS))
 
 
+def sampled(ranges: Vary, design: str, seed: int = 0) -> Design:
+    """Points that fill a box of ranges: ``sobol:N``, of Sobol's sequence, scrambled, or ``lhs:N``, a Latin hypercube.
+
+    Parameters
+    ----------
+    ranges : texts ``KEY=low:high``, or key -> (low, high) or "low:high";  seed : of the random numbers
+
+    Raises
+    ------
+    SceneError
+        Another kind of design or number of points, no ranges, or ends that are no numbers in their order.
+    """
+    kind, _, number = design.partition(":")
+    count = int(number) if number.isdecimal() else 0
+    if kind not in ("sobol", "lhs") or not 0 < count <= _MOST_SWEEP_POINTS or (kind == "sobol" and count & (count - 1)):
+        message = f"must be sobol:N, N a power of 2 such as 1024, or lhs:N, at most {_MOST_SWEEP_POINTS} points"
+        raise SceneError.at("design", design, message)
+    pairs = ranges.items() if isinstance(ranges, Mapping) else (text.split("=", 1) for text in ranges if "=" in text)
+    box = {
+        key.strip(): [parse_value(end) for end in ends.split(":")] if isinstance(ends, str) else tidy(ends)
+        for key, ends in pairs
+    }
+    if not box:
+        raise SceneError.at("ranges", None, f"are missing: {design} fills ranges, such as load.axial=300:2000")
+    for key, ends in box.items():
+        numbers = isinstance(ends, list) and len(ends) == 2 and all(is_number(end) and math.isfinite(end) for end in ends)
+        if not numbers or not ends[0] < ends[1]:
+            raise SceneError.at(key, ends, f"must be a range low:high of numbers for {design}, such as 300:2000")
+    from scipy.stats import qmc
+
+    engine = (qmc.Sobol if kind == "sobol" else qmc.LatinHypercube)(len(box), rng=np.random.default_rng(seed))
+    columns = qmc.scale(engine.random(count), *zip(*box.values(), strict=True)).T
+    return Design(tuple(Axis(key, tuple(column.tolist())) for key, column in zip(box, columns, strict=True)), listed=True)
+
+
 def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
     """A list of points, each a mapping of the same keys to their values.
 

@@ -53,8 +53,18 @@ class Computed:
         """(n,) whether the loop's answer is that of a run."""
         fine = (self.states.status == 0) & ~self.bearing.impossible(self.states.force)
         if self.orbits is not None:
-            fine &= (self.orbits.status == 0) & (self.orbits.change < _MILD)
+            fine &= (self.orbits.status == 0) & (self.orbits.change < _MILD) & ~self.bearing.impossible(self.orbits.peak)
         return np.asarray(fine)
+
+    @cached_property
+    def peak(self) -> np.ndarray:
+        """(n, 2, Z) largest contact forces."""
+        return _races(self.states.force if self.orbits is None else self.orbits.peak)
+
+    @cached_property
+    def pressure(self) -> np.ndarray:
+        """(n, 2, Z) peak pressures under these."""
+        return _races(self.bearing.pressures(self.peak.reshape(len(self.peak), -1)))
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -120,7 +130,6 @@ _STATIC: dict[str, Callable[[Computed], np.ndarray]] = {
     "displacement": lambda c: c.states.q,
     "stiffness": lambda c: c.states.stiffness,
     "damping": lambda c: c.states.damping,
-    "axial_displacement": lambda c: (c.states.q if c.orbits is None else c.orbits.mean)[:, 0],
     "x": lambda c: c.states.q[:, 0],
     "kxx": lambda c: c.states.stiffness[:, 0, 0],
     "kyy": lambda c: c.states.stiffness[:, 1, 1],
@@ -130,14 +139,16 @@ _STATIC: dict[str, Callable[[Computed], np.ndarray]] = {
     "error_model_bound": lambda c: column_bounds(c.example, c.bearing, c.states.force),
     "contact_angle": lambda c: _races(np.degrees(np.concatenate(c.bearing.contact_angles(c.states), axis=1))),
 }
-_LOADED: dict[str, Callable[[Computed], np.ndarray]] = {
-    "peak_ball_load": lambda c: c.states.force.max(axis=1),
-    "peak_ball_load_inner": lambda c: _races(c.states.force)[:, 0].max(axis=1),
-    "peak_ball_load_outer": lambda c: _races(c.states.force)[:, 1].max(axis=1),
-    "min_ball_load": lambda c: _races(c.states.force)[:, 0].min(axis=1),
-    "p0": lambda c: c.bearing.pressures(c.states.force).max(axis=1),
-    "p0_inner": lambda c: _races(c.bearing.pressures(c.states.force))[:, 0].max(axis=1),
-    "p0_outer": lambda c: _races(c.bearing.pressures(c.states.force))[:, 1].max(axis=1),
+#: Of the motion where there is one, else of the equilibrium.
+_EXTREMES: dict[str, Callable[[Computed], np.ndarray]] = {
+    "axial_displacement": lambda c: (c.states.q if c.orbits is None else c.orbits.mean)[:, 0],
+    "peak_ball_load": lambda c: c.peak.max(axis=(1, 2)),
+    "peak_ball_load_inner": lambda c: c.peak[:, 0].max(axis=1),
+    "peak_ball_load_outer": lambda c: c.peak[:, 1].max(axis=1),
+    "min_ball_load": lambda c: _races(c.states.force if c.orbits is None else c.orbits.least)[:, 0].min(axis=1),
+    "p0": lambda c: c.pressure.max(axis=(1, 2)),
+    "p0_inner": lambda c: c.pressure[:, 0].max(axis=1),
+    "p0_outer": lambda c: c.pressure[:, 1].max(axis=1),
 }
 _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     K.name: lambda c: c.impedance.real + c.mass * c.speed**2,
@@ -154,11 +165,14 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     "backward_amplitude": lambda c: c.parts[1],
     **dict.fromkeys(("orbit_major", AMPLITUDE.name), lambda c: c.parts[0] + c.parts[1]),
     "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
-    "error_total": lambda c: c.motion.error,
+    "residual": lambda c: c.motion.residual,
+    **dict.fromkeys(("error_total", "error_time_step"), lambda c: c.motion.error),
+    # A turn of the steady motion, and its exact Fourier line.
+    **dict.fromkeys(("error_transient", "error_identification"), lambda c: np.zeros(len(c.speed))),
 }
-#: Quantities of a motion, those of loads along one, and all that a function has.
-MOVING, LOADED = frozenset(_MOVING), frozenset(_LOADED)
-QUANTITIES = _STATIC | _LOADED | _MOVING
+#: Quantities of a motion, and all that a function has.
+MOVING = frozenset(_MOVING)
+QUANTITIES = _STATIC | _EXTREMES | _MOVING
 
 
 def of_result(name: str, result: Result) -> np.ndarray | float | None:

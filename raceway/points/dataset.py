@@ -20,13 +20,14 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Design, is_number
+from raceway.points.column_quantities import MOVING
 from raceway.points.function import PointStatus
 from raceway.points.store import DAMAGED, POINTS, Store, connected, told
 from raceway.points.survey import key_facts
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.files import scratch_file, write_whole
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -253,6 +254,19 @@ def axis_labels(values: Sequence[object]) -> np.ndarray:
     if all(is_number(value) for value in values) or all(isinstance(value, bool) for value in values):
         return np.array(values)
     return np.array([value if isinstance(value, str) else json.dumps(value) for value in values], dtype=object)
+
+
+def blank(design: Design, scene: ReadTables) -> xarray.Dataset:
+    """Ones in the layout of a sweep's data set, with all quantities that its scenes may have."""
+    dims = ("point",) if design.listed else design.keys
+    names = [name for name in COLUMNS if scene.get("excitation") is not None or name not in MOVING]
+    variables = {}
+    for name in names:
+        quantity = COLUMNS[name]
+        shape = *design.shape, *(len(DOF) for _ in quantity.dims)
+        variables[name] = ((*dims, *quantity.dims), np.broadcast_to(1.0, shape), quantity.labels)
+    axes = {axis.key: (dims if design.listed else (axis.key,), axis_labels(axis.values)) for axis in design.axes}
+    return labelled_dataset(variables, {**axes, "dof": list(DOF), "dof2": list(DOF)}, {"scene": json.dumps(scene)})
 
 
 def write_netcdf(store: SweepStore) -> Path:

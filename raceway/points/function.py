@@ -26,7 +26,7 @@ from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.column_quantities import DIMENSIONS, LOADED, MOVING, QUANTITIES, Computed, of_result
+from raceway.points.column_quantities import DIMENSIONS, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import continuous_keys, key_of, with_columns, with_number
 from raceway.scene.inputs import SceneSource, as_scene
@@ -108,8 +108,6 @@ class Function:
     @property
     def why_slow(self) -> str:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
-        if self.scene.excitation is not None and any(name in LOADED for name in self.outputs):
-            return "loads along a motion are asked for"
         if is_foundation(self.scene.contact.law) and any(name.startswith("p0") for name in self.outputs):
             return "pressures are the contact law's own"
         whys = (why_no_column(self.scene, key) for key in self.inputs)
@@ -390,13 +388,21 @@ class Function:
     def _refuse_size(self, n: int) -> None:
         z = self.scene.bearing.balls_in_all
         sizes = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
-        needed = 8.0 * n * (len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs))
-        free = _free_bytes()
-        if needed > _MEMORY * free:
-            raise RacewayError(
-                f"{n} points need {needed:.4g} bytes for their inputs and outputs, of {free:.4g} that are free: compute them block by "
-                "block, for instance by xarray.apply_ufunc over dask arrays"
-            )
+        entries = len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs)
+        refuse_bytes(n, entries, "compute them block by block, for instance by xarray.apply_ufunc over dask arrays")
+
+
+def refuse_bytes(n: int, entries: int, advice: str) -> None:
+    """Refuse points with so many numbers each that they do not fit into the memory that is free.
+
+    Raises
+    ------
+    RacewayError
+        With both numbers of bytes.
+    """
+    needed, free = 8.0 * n * entries, _free_bytes()
+    if needed > _MEMORY * free:
+        raise RacewayError(f"{n} points need {needed:.4g} bytes for their numbers, of {free:.4g} that are free: {advice}")
 
 
 def _free_bytes() -> float:

@@ -552,7 +552,7 @@ def layout(
 
 
 #: Symbol -> name.
-_NAMES = {number.symbol: number.name for number in COLUMNS.values()}
+_NAMES = {number.symbol: number.name for number in COLUMNS.values()} | {"kxx": "stiffness:x,x", "kyy": "stiffness:y,y"}
 
 
 def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:

@@ -8,7 +8,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,12 +23,13 @@ from raceway.framework.registry import Registry, registry_with
 from raceway.out.progress import telling
 from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
-from raceway.points.axes import Design, design_in_units, grid, listed_points, tables_at
+from raceway.planning.plan import make_plan
+from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES
-from raceway.points.dataset import SweepStore, block_edges, dataset, open_store, values_of
+from raceway.points.dataset import DOF, SweepStore, block_edges, dataset, open_store, values_of
 from raceway.points.derivatives import Columns
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
-from raceway.points.function import BLOCK, Function, PointStatus
+from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, Store, exists, written
 from raceway.points.survey import survey
 from raceway.scene.changes import continuous_keys
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
     from raceway.out.progress import ShowProgress
 
 
+#: Predicted time [s] of runs beyond which a sweep has to be forced.
+_LIMIT_S = 86_400.0
 #: Parts of a block that threads share: it takes less than a second on one core.
 _SHARED = 4
 
@@ -223,6 +226,27 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
     return Sweep(tables, design, store, files, facts, function)
 
 
+def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
+    """Refuse points whose results fill the memory, or whose runs would take longer than a day unless they are forced.
+
+    Raises
+    ------
+    RacewayError
+        With bytes or the predicted time.
+    """
+    size = prepared.design.size
+    refuse_bytes(size, sum(len(DOF) ** len(quantity.dims) for quantity in COLUMNS.values()), "give fewer points at a time")
+    if prepared.function is None and not force:
+        seconds = 0.0
+        with suppress(RacewayError):  # said by the run of the first point
+            plan = make_plan(scene_from_dict(prepared.facts["scene"], registry_of(prepared.plugins)))
+            seconds = size * plan.predicted_work_s / getattr(executor, "workers", 1)
+        if seconds > _LIMIT_S:
+            raise RacewayError(
+                f"{size} runs would take about {seconds / 3600.0:.3g} hours: give fewer points or more workers, or force them"
+            )
+
+
 def fill_store(
     prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None
 ) -> SweepStore:
@@ -331,20 +355,25 @@ def sweep(
     store: str | Path | None = None,
     resume: bool = False,
     retry_failed: bool = False,
+    design: str | None = None,
+    seed: int = 0,
+    force: bool = False,
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> xarray.Dataset:
-    """Compute a scene at every point of a grid or a list.
+    """Compute a scene at every point of a grid, a list or a random design.
 
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables
     axes : key of the scene -> its values (array (n,), list, or the text "start:stop:count"), all combinations of which are computed;
-        or a list of points, each key -> value
+        or a list of points, each key -> value; with ``design`` key -> range (low, high)
     executor : "serial", "processes", "dask" or a plug-in's name, or an executor
     workers : processes of these, by default 2
     store : folder in which every finished point is kept; None: a temporary one, removed when the results are loaded
     resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
+    design : "sobol:N", of a power of 2, or "lhs:N": N points that fill the ranges;  seed : of its random numbers
+    force : also where runs are predicted to take longer than a day
     plugins : files of one-off plug-ins, which the workers load, too
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -352,7 +381,8 @@ def sweep(
     -------
     xarray.Dataset
         ``equivalent_stiffness`` [N/m], ``equivalent_damping`` [N s/m], ``stiffness`` (..., 5, 5), ``p0`` [Pa] and others over the
-        keys of ``axes``, units in their ``attrs``; ``status`` says which points failed, their values are NaN
+        keys of ``axes``, units in their ``attrs``; ``status`` says how a point was computed: "computed" in a compiled loop, which
+        does not look at the stability of orbits nor warn, "run" by itself, or "refused" and "failed", whose values are NaN
 
     Raises
     ------
@@ -361,7 +391,7 @@ def sweep(
     ConvergenceError
         Every point failed.
     RacewayError
-        A store that cannot be written, or that holds another sweep.
+        A store that cannot be written, or that holds another sweep; more points than the memory holds, or than a day is long.
 
     Notes
     -----
@@ -377,7 +407,9 @@ def sweep(
     with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as report:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
         worker_pool = executor_of(executor, {"workers": workers}, registry_with(plugins))
-        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed)
+        points = axes if design is None else sampled(axes, design, seed)  # type: ignore[arg-type]
+        prepared = prepare(scene, points, folder, plugins, resume or retry_failed)
+        refuse_large(prepared, worker_pool, force)
         with fill_store(prepared, worker_pool, retry_failed, report) as filled:
             if (failed := all_failed(filled)) is not None:
                 raise failed

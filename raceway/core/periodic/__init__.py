@@ -6,6 +6,6 @@ refinement    meshes halved where the error is made; the error that is left; equ
 branch        pseudo-arclength continuation over any parameter: folds, branch points, period doublings
 search        all motions: from a first guess, under a growing force, from another speed or load, along branches
 floquet       Floquet multipliers and stability
-orbits        compiled: steady orbits of many points, by Fourier collocation
+orbits        compiled: steady orbits of many points, by Fourier collocation;  extremes: of the contact forces along them
 steady        from a system and an equilibrium to the record of its steady motion, and where a transient starts
 """

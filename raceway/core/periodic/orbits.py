@@ -25,8 +25,10 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
+from raceway.core.periodic.extremes import force_extremes
 from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
 from raceway.core.ring.equilibrium import copy_matrix, solve
+from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, keep_slips, work_rows
 from raceway.core.signatures import (
     CONSTANTS,
@@ -76,13 +78,17 @@ class Turning(NamedTuple):
 
 class Orbits(NamedTuple):
     """What is computed: 1x lines of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
-    of the radial 1x line by the last doubling, over the line (n,), largest change of the stiffness along the motion over its mean (n,), samples (n,), status (n,)."""
+    of the radial 1x line by the last doubling, over the line (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
+    least contact forces (n, 2 Z), samples (n,), status (n,)."""
 
     line: np.ndarray
     force: np.ndarray
     mean: np.ndarray
     error: np.ndarray
     change: np.ndarray
+    residual: np.ndarray
+    peak: np.ndarray
+    least: np.ndarray
     samples: np.ndarray
     status: np.ndarray
 
@@ -90,7 +96,7 @@ class Orbits(NamedTuple):
 TURNING = record(
     Turning, FORCE_POINTER, MATRIX, VECTOR, CUBE, MATRIX, float64, float64, int64[::1], int64, int64, float64
 )  # fmt: skip
-ORBITS = record(Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, int64[::1], int64[::1])
+ORBITS = record(Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64[::1], int64[::1])
 
 
 @jit(void(int64, float64, VECTOR, VECTOR))
@@ -163,7 +169,7 @@ def _ball_rates(ball, order, first, speed, rate):
 
 class _Level(NamedTuple):
     """Arrays of one number of samples n: motion u and its derivatives u1, u2 by the angle, imbalance r (n, 5), in the frame; derivatives
-    of r by u and u1, A0, A1 (n, 5, 5); places of balls and their rates (n, Z, b); columns of the derivatives over the span d1, d2 (n,)
+    of r by u and u1, A0, A1 (n, 5, 5); places of balls and their rates (n, Z, b); contact forces (n, 2 Z); columns of the derivatives over the span d1, d2 (n,)
     and over a turn, twice (2 m,); J the scratch of the step."""
 
     u: np.ndarray
@@ -174,6 +180,7 @@ class _Level(NamedTuple):
     A1: np.ndarray
     ball: np.ndarray
     ball_rate: np.ndarray
+    force: np.ndarray
     d1: np.ndarray
     d2: np.ndarray
     turn: np.ndarray
@@ -197,7 +204,7 @@ class Numbers(NamedTuple):
     weight: np.ndarray
 
 
-LEVEL = record(_Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, VECTOR, VECTOR, VECTOR, MATRIX)
+LEVEL = record(_Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX)
 NUMBERS = record(Numbers, CONSTANTS, MATRIX, VECTOR, VECTOR, MATRIX, float64, float64, VECTOR, boolean, VECTOR, VECTOR)
 
 
@@ -259,6 +266,8 @@ def _imbalances(kernels, turning, numbers, level, work):
         balls = Balls(level.ball[j], 0.0, history)
         if kernels.system(angle / w, q, v, balls, contacts, numbers.constants, response) != 0:
             return False
+        for i in range(level.force.shape[1]):
+            level.force[j, i] = work[CONTACT_FORCE, i]
         turning.force(angle / w, numbers.force_params, force)
         for i in range(5):
             force[i] = f[i] - numbers.load[i] - force[i]
@@ -362,7 +371,7 @@ def _level(u, ball, spans, span, dense, d):
     n, (z, columns) = u.shape[0], ball.shape
     level = _Level(
         u, np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5, 5)), np.empty((n, 5, 5)),
-        np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
+        np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty((n, 2 * z)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
         np.zeros((n * d, n * d + 1) if dense else (1, 2)),
     )  # fmt: skip
     _differences(n, span, level.d1, level.d2)
@@ -482,6 +491,20 @@ def _lines(u, sense, mean, line):
             line[5 + i], line[6 + i] = sense * line[i + 1], -sense * line[i]
 
 
+@jit(float64(MATRIX, float64, VECTOR, VECTOR))
+def _residual(u, sense, mean, line):
+    """Rms of what is neither mean nor 1x, over that of 1x, radially."""
+    n, square, size = u.shape[0], 0.0, 0.0
+    for i in range(3):
+        size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
+    for j in range(n):
+        angle = 2.0 * np.pi * j / n
+        for i in (1, 2):
+            synchronous = line[i] if sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
+            square += (u[j, i] - mean[i] - synchronous) ** 2 / n
+    return np.sqrt(square / max(size, 1e-300))
+
+
 @jit(float64(VECTOR, VECTOR))
 def _difference(line, before):
     """Of two 1x lines (10,), radial parts, over the first one."""
@@ -561,6 +584,8 @@ def _report(turning, numbers, level, status, error, p, out):
     _force_line(turning, numbers, push, force)
     _lines(level.u, turning.sense, out.mean[p], out.line[p])
     out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
+    out.residual[p] = _residual(level.u, turning.sense, out.mean[p], out.line[p])
+    force_extremes(level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p])
     for i in range(5):
         out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
 

@@ -1,0 +1,82 @@
+"""Largest and least contact forces along a steady orbit, between its samples.
+
+Notes
+-----
+The force of a contact over a turn is the trigonometric polynomial through its samples, as the motion is.  Where the motion repeats
+itself after a span of the turn, the samples of the further spans are those of the ball that stands there then.  From the largest
+sample Newton's method on the derivative leads to the largest value; forces do not pull.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import float64, int64, void
+
+from raceway.core.jit import jit
+from raceway.core.signatures import MATRIX, VECTOR
+
+_ITERATIONS = 6
+
+
+@jit(void(VECTOR, VECTOR, VECTOR))
+def _transform(curve, re, im):
+    """Harmonics 0 to N / 2 of N samples: curve = sum re cos - im sin."""
+    n = curve.size
+    for h in range(n // 2 + 1):
+        re[h], im[h] = 0.0, 0.0
+        weight = (1.0 if h in (0, n // 2) else 2.0) / n
+        step = 2.0 * np.pi * h / n
+        c, s, cosine, sine = 1.0, 0.0, np.cos(step), np.sin(step)
+        for i in range(n):
+            re[h] += weight * curve[i] * c
+            im[h] -= weight * curve[i] * s
+            c, s = c * cosine - s * sine, s * cosine + c * sine
+
+
+@jit(float64(VECTOR, VECTOR, VECTOR, float64))
+def _extreme(curve, re, im, sign):
+    """Largest (sign 1) or least (-1) value of the polynomial near the largest or least of the samples."""
+    n, best = curve.size, 0
+    for i in range(n):
+        if sign * curve[i] > sign * curve[best]:
+            best = i
+    start = 2.0 * np.pi * best / n
+    angle, value = start, curve[best]
+    for _ in range(_ITERATIONS):
+        first, second, value = 0.0, 0.0, 0.0
+        c, s, cosine, sine = 1.0, 0.0, np.cos(angle), np.sin(angle)
+        for h in range(n // 2 + 1):
+            value += re[h] * c - im[h] * s
+            first -= h * (re[h] * s + im[h] * c)
+            second -= h * h * (re[h] * c - im[h] * s)
+            c, s = c * cosine - s * sine, s * cosine + c * sine
+        if sign * second >= 0.0:
+            break
+        angle -= first / second
+        if abs(angle - start) > 2.0 * np.pi / n:
+            break
+    return max(sign * value, sign * curve[best]) * sign
+
+
+@jit(void(MATRIX, int64[::1], int64, VECTOR, VECTOR), allocates=True)
+def force_extremes(force, order, spans, peak, least):
+    """``peak`` and ``least`` (2 Z,) of forces (n, 2 Z) at the samples of a span; ``order`` (Z,) the ball that stands where each one stood."""
+    n, z = force.shape[0], order.size
+    curve, re, im = np.empty(n * spans), np.empty(n * spans // 2 + 1), np.empty(n * spans // 2 + 1)
+    known = np.zeros(z)
+    for k in range(z):
+        if known[k] > 0.0:
+            continue
+        for race in range(2):
+            ball = k
+            for m in range(spans):
+                for i in range(n):
+                    curve[m * n + i] = force[i, race * z + ball]
+                ball = order[ball]
+            _transform(curve, re, im)
+            largest, smallest = _extreme(curve, re, im, 1.0), max(_extreme(curve, re, im, -1.0), 0.0)
+            ball = k
+            for _ in range(spans):
+                peak[race * z + ball], least[race * z + ball] = largest, smallest
+                known[ball] = 1.0
+                ball = order[ball]
