@@ -22,7 +22,7 @@ from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_RE
 from raceway.out.table import micro, written
 from raceway.out.wrapping import Words
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
-from raceway.points.dataset import NOT_LOOKED_AT, TABLE, blank, open_store, points_of, write_csv, write_netcdf
+from raceway.points.dataset import NOT_LOOKED_AT, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
@@ -227,7 +227,7 @@ def sweep(
     kind : of the picture; None: map where both axes have more than 8 values, else curves
     picture : a .png or .svg; None: STORE/NAME-KIND.png
     """
-    from raceway.points.sweep import all_failed, executor_of, fill_store, prepare, refuse_large
+    from raceway.points.sweep import executor_of, fill_store, prepare, refuse_large
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
     if (stored := exists(scene)) or value is not None:
@@ -258,11 +258,22 @@ def sweep(
         if not (folder / POINTS).is_file():
             raise
         stopped = why
+    return _answer(folder, stopped, csv, choice)
+
+
+def _answer(folder: Path, stopped: BaseException | None, csv: bool, choice: _Choice) -> Answer:
+    """What a store holds, and its files.
+
+    Raises
+    ------
+    Interrupted
+        After Ctrl-C.
+    """
     with open_store(folder) as filled:
         states, missing = filled.status(), all_failed(filled)
         steps: list[Callable[[], object]] = [lambda: write_netcdf(filled)] if _has_netcdf() else []
         steps += [lambda: write_csv(filled, folder / TABLE)] if csv else []
-        if value is not None and stopped is None and missing is None:
+        if choice.value is not None and stopped is None and missing is None:
             steps.append(lambda: choice.draw(folder)["files"][0])
         answer = _Swept(folder, *_files(steps, folder))
     if isinstance(stopped, RacewayError) or answer.fault is None:

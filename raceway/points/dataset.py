@@ -15,7 +15,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raceway.errors import RacewayError, extra
+from raceway.errors import ConvergenceError, RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.plugins.labelled import labelled_dataset
@@ -247,6 +247,14 @@ def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
     if design.listed:
         coordinates["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
     return coordinates
+
+
+def all_failed(store: SweepStore) -> ConvergenceError | None:
+    """A sweep without any result is none: the error, with the first point's reason."""
+    states = store.status()
+    if states["failed"] < states["total"]:
+        return None
+    return ConvergenceError(f"all {states['total']} points failed; the first: {points_of(store).reasons[0]}")
 
 
 def axis_labels(values: Sequence[object]) -> np.ndarray:

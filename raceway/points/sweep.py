@@ -16,7 +16,7 @@ import attrs
 import numpy as np
 
 from raceway.core.threads import usable_cores
-from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
@@ -26,7 +26,7 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES
-from raceway.points.dataset import DOF, SweepStore, block_edges, dataset, open_store, values_of
+from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
 from raceway.points.derivatives import Columns
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
@@ -456,12 +456,3 @@ def executor_of(name: str | Executor, options_given: ReadTables, registry: Regis
         return plugin(**options)
     except ValueError as why:
         raise PluginError(f"executor '{name}': {why}") from None
-
-
-def all_failed(store: SweepStore) -> ConvergenceError | None:
-    """A sweep without any result is none: the error, with the first point's reason."""
-    states = store.status()
-    if states["failed"] < states["total"]:
-        return None
-    reason = next(row["reason"] for row in store.rows())
-    return ConvergenceError(f"all {states['total']} points failed; the first: {reason}")
