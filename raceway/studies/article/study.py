@@ -27,6 +27,7 @@ from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.attractor import FAILED, Attractor, attractor_beside_run, attractor_from_rest
 from raceway.points.engine import Item, local, processor_time, without_mesh, work_through
+from raceway.points.function import function
 from raceway.points.store import program_key, tables_key, written
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
@@ -187,34 +188,29 @@ class _Trend:
 def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     """Secant stiffness [N/m] at the five speeds of a case: tilt, axial load, ball inertia."""
     tilt, load, inertia = case
-    article = article_tables()
-    moment = article["excitation"]["load_share"] * article["excitation"]["unbalance"]
-    rows = []
-    for speed in SOLVER_SPEEDS:
-        force = moment * (speed * math.pi / 30.0) ** 2
-        tables = {
-            "title": "quasi-static secant",
-            "bearing": article["bearing"],
-            "supports": {"tilt": tilt},
-            "load": {"axial": load, "radial": [force, 0.0]},
-            "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": speed},
-        }
-        try:
-            result = run(scene_from_dict(tables, registry), registry)
-        except RacewayError as error:
-            rows.append({"speed_rpm": speed, "status": "failed", "reason": " ".join(str(error).split())})
-            continue
-        rows.append({"speed_rpm": speed, "status": "completed", "k": force / float(result.equilibrium.displacement[1])})
-    return rows
+    article, speeds = article_tables(), np.array(SOLVER_SPEEDS)
+    force = article["excitation"]["load_share"] * article["excitation"]["unbalance"] * (speeds * math.pi / 30.0) ** 2
+    tables = {
+        "title": "quasi-static secant",
+        "bearing": article["bearing"],
+        "supports": {"tilt": tilt},
+        "load": {"axial": load, "radial": [0.0, 0.0]},
+        "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": speeds[0]},
+    }
+    keys = ("load.radial[0]", "kinematics.spin_speed_rpm")
+    answer = function(scene_from_dict(tables, registry), keys, ["displacement"], threads=1)(force, speeds)
+    stiffness = (force / answer["displacement"][:, 1]).tolist()
+    rows = zip(stiffness, answer["reason"], strict=True)
+    return [without_nan({"k": k, "reason": " ".join(str(reason).split())}) for k, reason in rows]
 
 
 def _trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> _Trend:
     """The printed numbers of a case beside the rows of ``_secants``."""
     first, ratios = TRENDS[case]
-    reason = next((row["reason"] for row in rows if row["status"] != "completed"), "")
-    k = [] if reason else [row["k"] for row in rows]
-    computed = (k[0] / 1e6, *(value / k[0] for value in k[1:])) if k else None
-    return _Trend(*case, (first, *ratios), computed, reason)
+    missing = [row["reason"] for row in rows if row["k"] is None]
+    k = [row["k"] for row in rows]
+    computed = None if missing else (k[0] / 1e6, *(value / k[0] for value in k[1:]))
+    return _Trend(*case, (first, *ratios), computed, missing[0] if missing else "")
 
 
 #: Speeds [r/min] and axial loads [N] of the rig, section 3.3 of the article.
@@ -313,8 +309,8 @@ def _rig_settings(design: Design) -> list[Setting]:
 
 
 def _rows(task: _Task, registry: Registry) -> Tables:
-    _, function, inputs = task
-    return {"rows": function(inputs, registry)}
+    _, compute, inputs = task
+    return {"rows": compute(inputs, registry)}
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
@@ -485,9 +481,9 @@ def solve_curves(
     for setting in design.settings():  # mistakes are refused before anything is run
         title = scene_from_dict(design.point(setting, design.loads[0], design.speeds[0], registry), registry).title
     items, program = list[Item](), program_key(registry)
-    for name, function, inputs in (tasks := _tasks(design, registry)):
-        key = tables_key({"function": function.__qualname__, "inputs": inputs}, registry, program=program)
-        items.append(Item(key, name, (name, function, inputs)))
+    for name, compute, inputs in (tasks := _tasks(design, registry)):
+        key = tables_key({"function": compute.__qualname__, "inputs": inputs}, registry, program=program)
+        items.append(Item(key, name, (name, compute, inputs)))
     with written(kept) as store:
         finished, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
