@@ -210,17 +210,23 @@ class ColumnBearing:
         return states
 
     def orbits(
-        self, states: States, excitations: Excitations, tolerance: float, loop: Callable[..., None] = orbits
+        self,
+        states: States,
+        excitations: Excitations,
+        tolerance: float,
+        loop: Callable[..., None] = orbits,
+        disturbed: bool = False,
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium.
 
         Parameters
         ----------
         excitations : periodic ones;  tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
+        disturbed : whether ``transfer`` is computed, too
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
         speed = excitations.speed
-        out = _empty_orbits(n, z)
+        out = _empty_orbits(n, z, 2 * int(self.linear.free.sum()) * disturbed)
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
@@ -376,8 +382,17 @@ def _empty_states(n: int, z: int, columns: int) -> States:
     )
 
 
-def _empty_orbits(n: int, z: int) -> Orbits:
+def _empty_orbits(n: int, z: int, disturbances: int) -> Orbits:
     lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
     forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z))
     counts = np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64)
-    return Orbits(*lines, np.full(n, np.nan), np.zeros(n), np.zeros(n), *forces, *counts)
+    return Orbits(
+        *lines,
+        np.full(n, np.nan),
+        np.zeros(n),
+        np.zeros(n),
+        *forces,
+        *counts,
+        np.zeros(n),
+        np.zeros((n, disturbances, disturbances)),
+    )

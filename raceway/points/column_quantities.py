@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 
 import attrs
@@ -20,6 +20,7 @@ from raceway.planning.resolve import Problem
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
 #: exist, which a run looks for.
 _MILD = 0.5
+_MULTIPLIER = "largest_multiplier"
 #: Labels of the dimensions of arrays.
 DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
 
@@ -41,12 +42,14 @@ class Computed:
         bearing: ColumnBearing,
         excitations: Excitations | None,
         tolerance: float,
+        outputs: Iterable[str],
     ) -> Computed:
-        """Solve for them; without excitations at rest."""
+        """Solve for what the outputs need; without excitations at rest."""
         states = bearing.equilibria()
         if excitations is None:
             return cls(example, bearing, states, None, np.zeros(0))
-        return cls(example, bearing, states, bearing.orbits(states, excitations, tolerance), excitations.speed)
+        motion = bearing.orbits(states, excitations, tolerance, disturbed=_MULTIPLIER in outputs)
+        return cls(example, bearing, states, motion, excitations.speed)
 
     @cached_property
     def fine(self) -> np.ndarray:
@@ -65,6 +68,14 @@ class Computed:
     def pressure(self) -> np.ndarray:
         """(n, 2, Z) peak pressures under these."""
         return _races(self.bearing.pressures(self.peak.reshape(len(self.peak), -1)))
+
+    @property
+    def largest_multiplier(self) -> np.ndarray:
+        """(n,) growth of the most persistent disturbance in a turn, see ``raceway.core.periodic.floquet``."""
+        over, solved = np.full(len(self.speed), np.nan), self.motion.status == 0
+        multipliers = np.abs(np.linalg.eigvals(self.motion.transfer[solved])).max(axis=1, initial=0.0)
+        over[solved] = multipliers ** (2.0 * np.pi / self.motion.span[solved])
+        return over
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -151,6 +162,7 @@ _EXTREMES: dict[str, Callable[[Computed], np.ndarray]] = {
     "p0_outer": lambda c: c.pressure[:, 1].max(axis=1),
 }
 _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
+    _MULTIPLIER: lambda c: c.largest_multiplier,
     K.name: lambda c: c.impedance.real + c.mass * c.speed**2,
     C.name: lambda c: c.impedance.imag / c.speed,
     Z_REAL.name: lambda c: c.impedance.real,
@@ -171,7 +183,7 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     **dict.fromkeys(("error_transient", "error_identification"), lambda c: np.zeros(len(c.speed))),
 }
 #: Quantities of a motion, and all that a function has.
-MOVING = frozenset(_MOVING)
+MOVING, EXTREMES = frozenset(_MOVING), frozenset(_EXTREMES)
 QUANTITIES = _STATIC | _EXTREMES | _MOVING
 
 
@@ -181,6 +193,9 @@ def of_result(name: str, result: Result) -> np.ndarray | float | None:
         return result.equilibrium.contact_force.reshape(2, -1)
     if name == "largest_ball_load":
         return result.equilibrium.contact_force.max()
+    if name == _MULTIPLIER:
+        floquet = result.stability["floquet"]
+        return None if floquet is None else floquet["largest"]
     if name == "contact_angle":
         return np.degrees([result.equilibrium.angle_inner, result.equilibrium.angle_outer])
     known = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())

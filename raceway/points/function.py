@@ -26,7 +26,7 @@ from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.column_quantities import DIMENSIONS, MOVING, QUANTITIES, Computed, of_result
+from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import continuous_keys, key_of, with_columns, with_number
 from raceway.scene.inputs import SceneSource, as_scene
@@ -103,7 +103,8 @@ class Function:
     @property
     def moving(self) -> bool:
         """Whether a motion has to be solved for."""
-        return any(name in MOVING for name in self.outputs)
+        excited = self.scene.excitation is not None
+        return any(name in MOVING or excited and name in EXTREMES for name in self.outputs)
 
     @property
     def why_slow(self) -> str:
@@ -279,7 +280,7 @@ class Function:
                 continue
             example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
             excitations = Excitations.of(self.scene, chosen) if self.moving else None
-            computed = Computed.of(example, bearing, excitations, self.tolerance)
+            computed = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
             fine = ~bearing.conspicuous & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:

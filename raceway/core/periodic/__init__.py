@@ -7,5 +7,6 @@ branch        pseudo-arclength continuation over any parameter: folds, branch po
 search        all motions: from a first guess, under a growing force, from another speed or load, along branches
 floquet       Floquet multipliers and stability
 orbits        compiled: steady orbits of many points, by Fourier collocation;  extremes: of the contact forces along them
+monodromy     compiled: what becomes of a disturbance of an orbit over a span
 steady        from a system and an equilibrium to the record of its steady motion, and where a transient starts
 """

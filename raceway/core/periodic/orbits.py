@@ -26,6 +26,7 @@ from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.periodic.extremes import force_extremes
+from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
 from raceway.core.ring.equilibrium import copy_matrix, solve
 from raceway.core.ring.kernels import CONTACT_FORCE
@@ -79,7 +80,8 @@ class Turning(NamedTuple):
 class Orbits(NamedTuple):
     """What is computed: 1x lines of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
     of the radial 1x line by the last doubling, over the line (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
-    least contact forces (n, 2 Z), samples (n,), status (n,)."""
+    least contact forces (n, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
+    unknowns and their derivatives by the angle over a span, in the frame (n, 2 d, 2 d), else (n, 0, 0)."""
 
     line: np.ndarray
     force: np.ndarray
@@ -91,12 +93,14 @@ class Orbits(NamedTuple):
     least: np.ndarray
     samples: np.ndarray
     status: np.ndarray
+    span: np.ndarray
+    transfer: np.ndarray
 
 
 TURNING = record(
     Turning, FORCE_POINTER, MATRIX, VECTOR, CUBE, MATRIX, float64, float64, int64[::1], int64, int64, float64
 )  # fmt: skip
-ORBITS = record(Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64[::1], int64[::1])
+ORBITS = record(Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64[::1], int64[::1], VECTOR, CUBE)
 
 
 @jit(void(int64, float64, VECTOR, VECTOR))
@@ -577,13 +581,18 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
     return status, error, level
 
 
-@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
-def _report(turning, numbers, level, status, error, p, out):
+@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64[::1], int64, ORBITS), allocates=True)
+def _report(turning, numbers, level, status, error, dofs, p, out):
     """One point's answer."""
     push, force = np.empty((2, 5)), np.empty(5)
+    if out.transfer.shape[1] > 0 and status == SOLVED:
+        mass = numbers.speed**2 * numbers.mass
+        if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
+            status = NOT_SOLVED
     _force_line(turning, numbers, push, force)
     _lines(level.u, turning.sense, out.mean[p], out.line[p])
     out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
+    out.span[p] = turning.span
     out.residual[p] = _residual(level.u, turning.sense, out.mean[p], out.line[p])
     force_extremes(level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p])
     for i in range(5):
@@ -593,7 +602,7 @@ def _report(turning, numbers, level, status, error, p, out):
 @jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
 def orbits(kernels, linear, points, states, turning, out):
     """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
-    z, weight = points.table.shape[1], np.empty(5)
+    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     for p in range(points.table.shape[0]):
         out.status[p] = states.status[p]
@@ -601,7 +610,7 @@ def orbits(kernels, linear, points, states, turning, out):
             continue
         numbers = _numbers(linear, points, states, turning, p, weight)
         status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
-        _report(turning, numbers, level, status, error, p, out)
+        _report(turning, numbers, level, status, error, dofs, p, out)
 
 
 @jit(
@@ -650,7 +659,7 @@ def neighbours(kernels, linear, points, states, turning, out):
     n, d = level.u.shape[0], dofs.size
     if status != SOLVED or n * d > 4 * _DENSE:
         return
-    _report(turning, numbers, level, status, error, 0, out)
+    _report(turning, numbers, level, status, error, dofs, 0, out)
     inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
     _jacobian(level, numbers.mass, numbers.speed, dofs, J)
     for row in range(n * d):
@@ -671,4 +680,4 @@ def neighbours(kernels, linear, points, states, turning, out):
                 level.u[j, i] = u[j, i] + seen[i]
         level.ball[:], level.ball_rate[:] = ball, rate
         status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
-        _report(turning, numbers, level, status, error, p, out)
+        _report(turning, numbers, level, status, error, dofs, p, out)
