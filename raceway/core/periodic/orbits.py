@@ -581,14 +581,10 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
     return status, error, level
 
 
-@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64[::1], int64, ORBITS), allocates=True)
-def _report(turning, numbers, level, status, error, dofs, p, out):
+@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
+def _report(turning, numbers, level, status, error, p, out):
     """One point's answer."""
     push, force = np.empty((2, 5)), np.empty(5)
-    if out.transfer.shape[1] > 0 and status == SOLVED:
-        mass = numbers.speed**2 * numbers.mass
-        if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
-            status = NOT_SOLVED
     _force_line(turning, numbers, push, force)
     _lines(level.u, turning.sense, out.mean[p], out.line[p])
     out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
@@ -610,7 +606,11 @@ def orbits(kernels, linear, points, states, turning, out):
             continue
         numbers = _numbers(linear, points, states, turning, p, weight)
         status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
-        _report(turning, numbers, level, status, error, dofs, p, out)
+        _report(turning, numbers, level, status, error, p, out)
+        if status == SOLVED and out.transfer.shape[1] > 0:
+            mass = numbers.speed**2 * numbers.mass
+            if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
+                out.status[p] = NOT_SOLVED
 
 
 @jit(
@@ -659,7 +659,7 @@ def neighbours(kernels, linear, points, states, turning, out):
     n, d = level.u.shape[0], dofs.size
     if status != SOLVED or n * d > 4 * _DENSE:
         return
-    _report(turning, numbers, level, status, error, dofs, 0, out)
+    _report(turning, numbers, level, status, error, 0, out)
     inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
     _jacobian(level, numbers.mass, numbers.speed, dofs, J)
     for row in range(n * d):
@@ -680,4 +680,4 @@ def neighbours(kernels, linear, points, states, turning, out):
                 level.u[j, i] = u[j, i] + seen[i]
         level.ball[:], level.ball_rate[:] = ball, rate
         status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
-        _report(turning, numbers, level, status, error, dofs, p, out)
+        _report(turning, numbers, level, status, error, p, out)
