@@ -42,9 +42,7 @@ _RANGES: dict[str, tuple[float, float]] = {
     "supports.tilt": (1e3, 1e6),
 }
 _OUTPUTS = ("displacement", "stiffness", "largest_ball_load", "ball_load")
-_MOTION = (
-    "z_real", "z_imag", "equivalent_stiffness", "forward_amplitude", "peak_ball_load", "p0_inner", "largest_multiplier",
-)  # fmt: skip
+_MOTION = ("z_real", "z_imag", "equivalent_stiffness", "forward_amplitude", "largest_multiplier")
 
 
 @attrs.frozen
