@@ -51,6 +51,8 @@ SOLVED, NOT_SOLVED, UNRESOLVED = 0, 10, 11
 _STEPS, _CONVERGED, _ROUNDED = 12, 1e-11, 1e-8
 #: What a neighbour's steps may leave of its motion.
 _LEFT = 1e-13
+#: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
+_WILD = 1.0
 #: Unknowns up to which all harmonics are solved for at once.
 _DENSE = 48
 
@@ -572,7 +574,7 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
         if error <= turning.tolerance:
             break
         before[:] = line
-        if 2 * n > turning.most:
+        if 2 * n > turning.most or _change(level.A0) > _WILD:
             status = UNRESOLVED
             break
         u = np.empty((2 * n, 5))
