@@ -2,9 +2,8 @@
 
 Notes
 -----
-The force of a contact over a turn is the trigonometric polynomial through its samples, as the motion is.  Where the motion repeats
-itself after a span of the turn, the samples of the further spans are those of the ball that stands there then.  From the largest
-sample Newton's method on the derivative leads to the largest value; forces do not pull.
+The force of a contact over a turn is the trigonometric polynomial through its samples, in further spans those of the ball that stands
+there then.  Newton's method leads from the largest sample to the largest value; forces do not pull.
 """
 
 from __future__ import annotations
