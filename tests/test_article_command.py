@@ -87,6 +87,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
         raise ConvergenceError("no motion was found")
 
     monkeypatch.setattr(driver, "run", fail)
+    monkeypatch.setattr(driver, "_looped", lambda points, _: [None] * len(points))
     monkeypatch.setattr(
         driver, "attractor_from_rest", lambda _, speed, turns: Attractor(speed, FAILED, turns, why="nothing")
     )
@@ -235,9 +236,8 @@ def test_where_no_ring_stays_on_a_steady_motion_it_is_told_what_it_does_instead(
     constant, growing = (
         Setting("unidirectional", a, t, True, "rigid") for a, t in (("constant", "free"), ("unbalance", "shaft"))
     )
-    first, second = driver._curve(
-        [made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)], registry
-    )
+    points = made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)
+    first, second = (driver._curve([point], registry)[0] for point in points)
     assert (first["status"], second["status"]) == ("unstable", "unsteady") and "k" in first and "k" not in second
     for one in (first, second):
         instead = one["instead"]
