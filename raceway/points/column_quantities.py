@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.columns import ColumnBearing, Excitations, impedance
+from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
@@ -21,6 +22,8 @@ from raceway.planning.resolve import Problem
 #: exist, which a run looks for.
 _MILD = 0.5
 _MULTIPLIER = "largest_multiplier"
+#: The name of that change, which runs do not state.
+_CHANGE = "stiffness_change"
 #: Labels of the dimensions of arrays.
 DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
 
@@ -114,6 +117,11 @@ class Computed:
         return 0.5 * np.abs(y + 1j * z), 0.5 * np.abs(y - 1j * z)
 
 
+def lasting(multiplier: float) -> bool:
+    """Whether an orbit with this largest Floquet multiplier is not unstable."""
+    return multiplier <= 1.0 + NEUTRAL
+
+
 def _force_amplitude(c: Computed) -> np.ndarray:
     """The larger semi-axis of the force's ellipse."""
     turning = np.stack([c.force[:, :3].real, c.force[:, :3].imag], axis=1)
@@ -177,6 +185,7 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     "backward_amplitude": lambda c: c.parts[1],
     **dict.fromkeys(("orbit_major", AMPLITUDE.name), lambda c: c.parts[0] + c.parts[1]),
     "orbit_minor": lambda c: np.abs(c.parts[0] - c.parts[1]),
+    _CHANGE: lambda c: c.motion.change,
     "residual": lambda c: c.motion.residual,
     **dict.fromkeys(("error_total", "error_time_step"), lambda c: c.motion.error),
     # A turn of the steady motion, and its exact Fourier line.
@@ -189,6 +198,8 @@ QUANTITIES = _STATIC | _EXTREMES | _MOVING
 
 def of_result(name: str, result: Result) -> np.ndarray | float | None:
     """One of them of a run."""
+    if name == _CHANGE:
+        return None
     if name == "ball_load":
         return result.equilibrium.contact_force.reshape(2, -1)
     if name == "largest_ball_load":
