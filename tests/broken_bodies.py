@@ -53,7 +53,7 @@ def twice(_self, _scene, parts):
 
 
 def adrift(self, near=None, on_residual=None):
-    q, ball, iterations = self.system.settle(self.guess)
+    q, ball, iterations = self.system.solve_equilibrium(self.guess)
     return q + 1e-8, ball, iterations
 
 
@@ -135,7 +135,7 @@ BROKEN = [
     (made("Strange", unused=lambda *_: [("bearing.rollers", "there are none")]), "plan", "which is no key"),
     (made("Endless", cost=lambda *_: Cost(float("nan"))), "plan", "is no time"),
     (made("Nothing", build=lambda *_: None), "build", "returns NoneType"),
-    (of_bearing("Adrift", settle=adrift), "equilibrium", "of the loads is left"),
+    (of_bearing("Adrift", solve_equilibrium=adrift), "equilibrium", "of the loads is left"),
     (of_system("Stiff", stiffness_at=stiff(1.01)), "tangent", "K dq differs by 0.01"),
     (of_system("Skewed", stiffness_at=stiff(1.0, 1e-4)), "tangent", "K - K\\^T is"),
     (of_system("Pulling", evaluate=pulling), "contacts", "a contact pulls with -"),

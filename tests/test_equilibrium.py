@@ -74,7 +74,7 @@ def test_guess_does_not_matter():
     rng = np.random.default_rng(3)
     for _ in range(20):
         start = rng.normal(size=5) * np.array([2e-4, 2e-4, 2e-4, 5e-3, 5e-3])
-        q, ball, _ = model.system.settle(start)
+        q, ball, _ = model.system.solve_equilibrium(start)
         assert q == pytest.approx(now.displacement, rel=1e-7, abs=1e-12)
         assert imbalance(model, q, ball) < 1e-10
 

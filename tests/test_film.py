@@ -206,7 +206,7 @@ def test_a_loss_factor_is_w_c_over_the_stiffness_of_the_springs():
 def test_the_dashpot_is_the_derivative_of_the_force_by_the_rate():
     one = scene({"kind": "hertz", "time_constant": 1e-5}, kinematics={"ball_inertia": False})
     model = rw.build_model(one)
-    q, ball, _ = model.system.settle(model.guess)
+    q, ball, _ = model.system.solve_equilibrium(model.guess)
     v, h = np.array([1e-3, 2e-3, -1e-3, 0.0, 0.0]), 1e-6
     now = model.system.evaluate(q, v, ball)
     for k in range(3):

@@ -275,8 +275,8 @@ def test_evaluate_refuses_states_of_another_shape(bearing, arguments, words):
 
 def test_an_equilibrium_refuses_balls_of_another_bearing(bearing):
     system, still = bearing
-    with pytest.raises(PluginError, match=r"settle\(\): `ball` has the shape \(6, 2\)"):
-        system.settle(still.displacement, SIX)
+    with pytest.raises(PluginError, match=r"solve_equilibrium\(\): `ball` has the shape \(6, 2\)"):
+        system.solve_equilibrium(still.displacement, SIX)
 
 
 @pytest.mark.parametrize("name", ["ball", "ball_before"])

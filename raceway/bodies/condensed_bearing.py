@@ -254,7 +254,7 @@ class _CondensedBearing(Bearing):
         system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:
-            q, ball, _ = attrs.evolve(system, load=model.system.load).settle(equilibrium.displacement)
+            q, ball, _ = attrs.evolve(system, load=model.system.load).solve_equilibrium(equilibrium.displacement)
         except ConvergenceError as why:
             return None, Estimate.COARSER_MESH_FAILED(why=why)
         free = np.flatnonzero(model.system.free > 0.0)
@@ -286,7 +286,7 @@ def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
     system: System = surrogate(stiff.system)
     angles = np.full(system.ball_count, problem.bearing.contact_angle)
     try:
-        q, ball, _ = system.settle(stiff.guess)
+        q, ball, _ = system.solve_equilibrium(stiff.guess)
     except ConvergenceError:
         return angles
     centre, _ = system.centre_vectors(q)

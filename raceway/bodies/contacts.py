@@ -156,7 +156,7 @@ def contact_ellipse(
 
 def rigid_rings(rigid: System, guess: np.ndarray) -> tuple[Tables, np.ndarray]:
     """The table ``model.rigid_rings`` of result.json, of the same scene with rigid bodies, and its stiffness (5, 5)."""
-    q, ball, _ = rigid.settle(guess)
+    q, ball, _ = rigid.solve_equilibrium(guess)
     now = rigid.evaluate(q, ball=ball)
     stiffness, _ = rigid.rows_following(q, now, now.stiffness, now.damping)
     return {"displacement": dict(zip(COORDINATES, q.tolist(), strict=True)), "stiffness": stiffness.tolist()}, stiffness

@@ -70,7 +70,7 @@ def _angles(problem: Problem, plan: ScenePlan, rigid: System, guess: np.ndarray)
     """(2 Z,) contact angles with rigid bodies, inner races first; the free one where a ball carries nothing."""
     angles = np.full(2 * rigid.ball_count, problem.bearing.contact_angle)
     try:
-        q, ball, _ = rigid.settle(guess)
+        q, ball, _ = rigid.solve_equilibrium(guess)
     except ConvergenceError:  # said better where the equilibrium is looked for
         return angles
     inner = outer = rigid.centre_vectors(q)[0]

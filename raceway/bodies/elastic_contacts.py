@@ -49,7 +49,7 @@ class ElasticBodies(Bearing):
         """The same ring with rigid bodies: elastic ones would iterate for minutes."""
         return surrogate(self.system)
 
-    def settle(
+    def solve_equilibrium(
         self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Newton's iteration over all nodes."""
@@ -59,7 +59,7 @@ class ElasticBodies(Bearing):
             system.on_residual = lambda residual: report(f"equilibrium, residual {residual:.1e}", next(count), 0)
             if system.condensed is not None:
                 system.condensed.on_progress = report
-        return super().settle()
+        return super().solve_equilibrium()
 
     def orbiting(self, system: Ring) -> Ring:
         """The rigid one: periodic motions of all nodes would take hours."""

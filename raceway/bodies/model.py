@@ -54,7 +54,7 @@ class Bearing(ABC):
     system: Ring
     guess: np.ndarray
 
-    def settle(
+    def solve_equilibrium(
         self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Displacement (5,), balls (Z, k) and iterations at the equilibrium under the constant loads.
@@ -69,7 +69,7 @@ class Bearing(ABC):
         ConvergenceError
             None was found.
         """
-        return self.system.settle(self.guess)
+        return self.system.solve_equilibrium(self.guess)
 
     def orbiting(self, system: Ring) -> Ring:
         """The ring whose steady orbit a motion may start on: without friction, its balls at their azimuths."""

@@ -53,7 +53,7 @@ def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     if problem.supports.axial == "displacement":
         loose = _under(system.standing(growth), problem.load.axial)
         start = guess[0] * _AXIAL
-        guess = loose.settle(start)[0] if seek is None else seek(loose, start)
+        guess = loose.solve_equilibrium(start)[0] if seek is None else seek(loose, start)
     if renews(problem.contact.law) and isinstance(system, System):
         guess = renew(problem, basis, system, guess, seek)
     if seek is not None and system.spin is not None:
@@ -84,7 +84,9 @@ def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
         balls = np.flatnonzero(np.isin(basis.row, rows))
         if same not in shift_of:
             start = 0.05 * basis.geometry.centre_distance * _AXIAL
-            shift_of[same] = _under(_some(loose, balls, facing=True), force).settle(start)[0][0] if force > 0.0 else 0.0
+            shift_of[same] = (
+                _under(_some(loose, balls, facing=True), force).solve_equilibrium(start)[0][0] if force > 0.0 else 0.0
+            )
         shifts[balls] = shift_of[same]
     return shifts
 
@@ -144,7 +146,7 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
     q = guess
     for _ in range(_LIMIT):
         system.table[second, ring.SHIFT] = shift + apart
-        q, ball, _ = system.settle(q)
+        q, ball, _ = system.solve_equilibrium(q)
         still = system.without(ring.CAGE)
         all_rows, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
         excess = side * float(rows.force[0]) - preload
@@ -219,7 +221,7 @@ def _unloaded(model: Model, system: Ring) -> float:
     if system.sliding is not None:
         return model.problem.bearing.other_preload
     try:
-        q, ball, _ = _under(system, 0.0).settle(np.zeros(5))
+        q, ball, _ = _under(system, 0.0).solve_equilibrium(np.zeros(5))
     except ConvergenceError:
         return 0.0
     rows = model.problem.bearing.rows
@@ -242,7 +244,7 @@ def _lift_off(model: Model) -> Tables:
         spring = float(system.table[system.sliding[0], ring.SIDE]) * model.problem.bearing.other_preload
     rows, start = _some(system, balls), 0.0
     with suppress(ConvergenceError):  # all rows are loose
-        start = float(_under(rows, -spring).settle(np.zeros(5))[0][0])
+        start = float(_under(rows, -spring).solve_equilibrium(np.zeros(5))[0][0])
     loads, numbers = list[float | None](), list[int | None]()
     for sense in (1.0, -1.0):
         x, ball = _first_open(rows, start, sense * model.bearing.largest_motion)
@@ -315,7 +317,7 @@ def evaluate_following(problem: Problem, system: Ring, q: np.ndarray, ball: np.n
     if system.sliding is None:
         return system.evaluate(q, ball=ball)
     side, table = float(system.table[system.sliding[0], ring.SIDE]), system.table.copy()
-    sprung, _, _ = _under(_some(system, system.sliding), side * problem.bearing.other_preload).settle(q)
+    sprung, _, _ = _under(_some(system, system.sliding), side * problem.bearing.other_preload).solve_equilibrium(q)
     table[system.sliding, ring.SHIFT] += side * (sprung[0] - q[0])
     moved = attrs.evolve(system, table=table)
     now = moved.evaluate(q, ball=ball)

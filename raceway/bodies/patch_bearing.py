@@ -77,16 +77,16 @@ class _NodalBearing(Bearing):
         assert isinstance(system, PatchSystem)
         return system.friction_lost(record)
 
-    def settle(
+    def solve_equilibrium(
         self, near: np.ndarray | None = None, on_progress: Callable[[str, int, int], None] | None = None
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """From a near equilibrium, what is held staying where it is; from the own guess where that fails."""
         if near is not None:
             try:
-                return self.system.settle(np.where(self.system.free > 0.0, near, self.guess))
+                return self.system.solve_equilibrium(np.where(self.system.free > 0.0, near, self.guess))
             except ConvergenceError:
                 pass  # the own guess decides whether there is an equilibrium
-        return super().settle()
+        return super().solve_equilibrium()
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """The overlap that a law leaves."""
@@ -192,7 +192,7 @@ class _NodalBearing(Bearing):
     def _compared(coarser: Callable[[], Ring], model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         try:
             coarse = coarser()
-            q, _, _ = attrs.evolve(coarse, load=model.system.load).settle(equilibrium.displacement)
+            q, _, _ = attrs.evolve(coarse, load=model.system.load).solve_equilibrium(equilibrium.displacement)
         except RacewayError as why:
             return None, Estimate.FEWER_POINTS_FAILED(why=why)
         weight = np.array([1.0, 1.0, 1.0, model.system.arm, model.system.arm])
@@ -284,7 +284,7 @@ def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
 
 def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:
     """Loads and contact angles of rigid bodies at rest and, where the excitation repeats, on its orbit."""
-    q, ball, _ = rigid.settle(guess)
+    q, ball, _ = rigid.solve_equilibrium(guess)
     states = [(q, ball, 0.0)]
     excitation = problem.excitation
     if excitation is not None and excitation.period_s is not None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 #: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
 _LEAST = 0.1
-#: Loads are met to this part of the largest one; iterations.  They settle fast: a film thins with the load to the power 0.067.
+#: Loads are met to this part of the largest one; iterations.  They converge fast: a film thins with the load to the power 0.067.
 _TOLERANCE, _LIMIT = 1e-11, 40
 
 
@@ -96,7 +96,7 @@ def renew(
     for trial in range(_LIMIT):
         try:
             q = q if seek is None else seek(system, q)
-            q, ball, _ = system.settle(q)
+            q, ball, _ = system.solve_equilibrium(q)
         except ConvergenceError as why:
             if trial == 0:  # at standstill
                 raise

@@ -143,5 +143,5 @@ STATIC = record(StaticState, VECTOR, MATRIX, MATRIX)
 #: loop(forces, linear, outer, coefficients (k,), steps, state, recording) -> steps done, see raceway.core.time.compiled
 LOOP = int64(FORCES, LINEAR, OUTER, VECTOR, STEPS, STATE, RECORDING)
 
-#: settle(forces, linear, tolerance, t, state, response, report (2,)) -> status, see raceway.core.ring.equilibrium
-SETTLE = int64(FORCES, LINEAR, float64, float64, STATIC, RESPONSE, VECTOR)
+#: solve_equilibrium(forces, linear, tolerance, t, state, response, report (2,)) -> status, see raceway.core.ring.equilibrium
+EQUILIBRIUM = int64(FORCES, LINEAR, float64, float64, STATIC, RESPONSE, VECTOR)

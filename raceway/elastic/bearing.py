@@ -16,7 +16,7 @@ from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.contact import CIRCLE, Contact, NodalContact
 from raceway.elastic.interface import free_nodes, touchable
 from raceway.elastic.iterative_solver import LinearSolver, nodal_contact, resultant_contact
-from raceway.elastic.newton import TOLERANCE, Settled, settle
+from raceway.elastic.newton import TOLERANCE, StaticSolution, solve_equilibrium
 from raceway.elastic.superelement import Copies, Group, same_bodies, sectors
 from raceway.elastic.superelement_solver import CondensedSolver
 from raceway.errors import ConvergenceError, MeshError
@@ -60,7 +60,7 @@ class ElasticSystem:
     ) -> None:
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
         self.excitation: Callable[[float], np.ndarray] | None = None
-        #: Called with the relative residual of every iteration of ``settle``.
+        #: Called with the relative residual of every iteration of ``solve_equilibrium``.
         self.on_residual: Callable[[float], None] | None = None
         self.condensed, self._look = condensed, look
         self.solver: LinearSolver | CondensedSolver = condensed or LinearSolver(assembly, contact, modulus)
@@ -249,7 +249,7 @@ class ElasticSystem:
 
     # Statics
 
-    def settle(self, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
+    def solve_equilibrium(self, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
         """Equilibrium under ``load``; places on the second surfaces are looked up anew until they stay.
 
         Raises
@@ -263,7 +263,7 @@ class ElasticSystem:
         loose = self.assembly.loose_motions(touching)
         if loose:
             raise ConvergenceError("nothing holds " + "; ".join(loose))
-        return settle(self, np.array(guess, dtype=float), tolerance)
+        return solve_equilibrium(self, np.array(guess, dtype=float), tolerance)
 
     @contextmanager
     def without_friction(self) -> Iterator[None]:

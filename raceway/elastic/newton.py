@@ -54,7 +54,7 @@ TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
 
 @attrs.frozen(eq=False)
-class Settled:
+class StaticSolution:
     """An equilibrium.
 
     Attributes
@@ -70,7 +70,7 @@ class Settled:
     residuals: list[float]
 
 
-def settle(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> Settled:
+def solve_equilibrium(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
     """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
 
     Raises
@@ -102,7 +102,7 @@ def settle(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANC
             good, part, count = y, goal, count + used
             if goal >= 1.0:
                 _refuse(system, y, history)
-                return Settled(y, count, system.solver.iterations - before, history)
+                return StaticSolution(y, count, system.solver.iterations - before, history)
     finally:
         system.load = load
 

@@ -48,7 +48,7 @@ class ElasticRing(SteppedRing):
         self.bodies.system.excitation = self.outer_force
         return self.bodies.system
 
-    def settle(
+    def solve_equilibrium(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = _TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load``; the first guess is the equilibrium of rigid bodies, or the one found before.
@@ -68,7 +68,7 @@ class ElasticRing(SteppedRing):
             guess = self._undeformed(self.surrogate, q)
         else:
             guess = self._y
-        self._y, count = self.settled(guess, self.load, max(tolerance, _TOLERANCE))
+        self._y, count = self.equilibrium_under(guess, self.load, max(tolerance, _TOLERANCE))
         self._stiffness = None
         return self._y[:5].copy(), self.bodies.ball_places(self._y), count
 
@@ -82,7 +82,7 @@ class ElasticRing(SteppedRing):
             None was looked for.
         """
         if self._y is None:
-            raise ConvergenceError("elastic bodies know the forces at their equilibria only: settle them first")
+            raise ConvergenceError("elastic bodies know the forces at their equilibria only: solve for them first")
         return self._y
 
     def in_place(self, y: np.ndarray) -> np.ndarray:
@@ -136,21 +136,23 @@ class ElasticRing(SteppedRing):
         """Of elements and contacts at the last state that was computed [s]; the ring's own tangent does not limit it."""
         return float(self.bodies.system.stable_step())
 
-    def settled(self, guess: np.ndarray, load: np.ndarray, tolerance: float = _TOLERANCE) -> tuple[np.ndarray, int]:
+    def equilibrium_under(
+        self, guess: np.ndarray, load: np.ndarray, tolerance: float = _TOLERANCE
+    ) -> tuple[np.ndarray, int]:
         """Unknowns (size,) at the equilibrium under a load (5,) of the ring, without friction, and Newton's iterations."""
         system = self.bodies.system
         before = system.load.copy()
         system.load[:5] = load
         try:
             with system.without_friction():
-                equilibrium = system.settle(guess, tolerance)
+                equilibrium = system.solve_equilibrium(guess, tolerance)
         finally:
             system.load = before
         return equilibrium.y, equilibrium.iterations
 
     def _undeformed(self, rigid: System, q: np.ndarray) -> np.ndarray:
         """(size,) undeformed bodies at the equilibrium of rigid ones near q (5,)."""
-        displacement, balls, _ = rigid.settle(q)
+        displacement, balls, _ = rigid.solve_equilibrium(q)
         if not balls[:, 1].any():
             balls = self._on_the_line(displacement, balls)
         return self.bodies.guess(displacement, balls)
@@ -161,7 +163,7 @@ class ElasticRing(SteppedRing):
         rigid = self.surrogate.standing(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
-            y, _ = self.settled(self._undeformed(rigid, q * only), load)
+            y, _ = self.equilibrium_under(self._undeformed(rigid, q * only), load)
         self.bodies.system.solver.forget()  # it knows how the bodies follow the axial motion
         return y
 
@@ -219,13 +221,13 @@ def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
     def load(t: float, scale: float) -> np.ndarray:
         return np.asarray(ring.load + ring.outer_force(t) - scale * ring.mass @ at_time(orbit.acceleration, orbit.period, t))
 
-    now, _ = ring.settled(still, load(0.0, 1.0))
-    rigid = ring.surrogate.settle(still[:5])[0]
+    now, _ = ring.equilibrium_under(still, load(0.0, 1.0))
+    rigid = ring.surrogate.solve_equilibrium(still[:5])[0]
     moved, rigidly = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
     scale = float(np.linalg.norm(moved) / max(float(np.linalg.norm(rigidly)), 1e-300)) if rigidly.any() else 1.0
-    now, _ = ring.settled(now, load(0.0, scale))
-    before, _ = ring.settled(now, load(-step, scale))
-    after, _ = ring.settled(now, load(step, scale))
+    now, _ = ring.equilibrium_under(now, load(0.0, scale))
+    before, _ = ring.equilibrium_under(now, load(-step, scale))
+    after, _ = ring.equilibrium_under(now, load(step, scale))
     v = (after - before) * speed / (2.0 * np.sin(_ANGLE))
     a = (after - 2.0 * now + before) * speed**2 / (2.0 * (1.0 - np.cos(_ANGLE)))
     return _motion(ring, now, v, a)
@@ -244,7 +246,7 @@ def static_orbit(ring: ElasticRing, ramped: bool) -> Motion:
     """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
     y = ring.equilibrium
     if not ramped:
-        y, _ = ring.settled(y, ring.load + ring.outer_force(0.0))
+        y, _ = ring.equilibrium_under(y, ring.load + ring.outer_force(0.0))
     return _motion(ring, y, np.zeros_like(y), np.zeros_like(y))
 
 

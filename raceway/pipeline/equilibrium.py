@@ -52,7 +52,7 @@ def solve_equilibrium(
     system = model.system
     _refuse_no_load(model)
     _foresee_free_motion(model)
-    q, ball, iterations = model.bearing.settle(near, on_progress)
+    q, ball, iterations = model.bearing.solve_equilibrium(near, on_progress)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
     held = still.stiffness_at(q, now), still.damping_at(q, now)
@@ -81,7 +81,7 @@ def _foresee_free_motion(model: Model) -> None:
     rigid = model.bearing.foreseen
     if rigid is None:
         return
-    q, ball, _ = rigid.settle(model.bearing.guess)
+    q, ball, _ = rigid.solve_equilibrium(model.bearing.guess)
     now = rigid.evaluate(q, ball=ball)
     _refuse_free_motion(model, rigid.stiffness_at(q, now), q)
 

@@ -238,7 +238,7 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
     if model.system.spin is not None and start.orbit is None:
-        q, ball, _ = system.settle(q)
+        q, ball, _ = system.solve_equilibrium(q)
     if not method.inertial:
         return model.bearing.at_equilibrium(system, q, ball, start.kind == "ramp")
     if start.orbit is not None:

@@ -120,10 +120,10 @@ def _follow_branch(
     parameter: Parameter, points: int, aim: float, doubled: bool, turns: int, on_progress: OnProgress | None = None
 ) -> Followed:
     """The branch from the orbit at the first value of the key to the last one, as ``follow``."""
-    model, equilibrium = parameter.settled(parameter.first)
+    model, equilibrium = parameter.static_state(parameter.first)
     q, tangent, mass = equilibrium.displacement, equilibrium.stiffness_rows_held, model.mass_used
     try:
-        end = parameter.settled(parameter.last)[1]
+        end = parameter.static_state(parameter.last)[1]
     except ConvergenceError as why:
         raise ConvergenceError(f"at `{parameter.key}` = {parameter.last:g}: {why}", why.state) from why
     symmetry = parameter.symmetry(q)

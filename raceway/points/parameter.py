@@ -112,7 +112,7 @@ class Parameter:
         scene = self.scene(p)
         return build_model(scene)
 
-    def settled(self, p: float) -> tuple[Model, Equilibrium]:
+    def static_state(self, p: float) -> tuple[Model, Equilibrium]:
         """Model and static equilibrium."""
         model = self.model(p)
         return model, solve_equilibrium(model)

@@ -75,7 +75,7 @@ def _resting(system: System) -> np.ndarray:
 def _start(method: Integrator, system: System) -> Motion:
     """Away from rest, along y and z or along x around the static approach; without inertia, the equilibrium at time zero."""
     if not method.inertial:
-        q, ball, _ = attrs.evolve(system, load=system.load + system.outer_force(0.0)).settle(np.zeros(5))
+        q, ball, _ = attrs.evolve(system, load=system.load + system.outer_force(0.0)).solve_equilibrium(np.zeros(5))
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())
     if system.free[0] > 0.0:
         return motion(system, 1.3 * _resting(system), np.zeros(5))

@@ -82,7 +82,7 @@ def model(tilt="free", load=None, **more):
 
 def rest_of(soft, guess):
     """Displacements, balls and forces at rest."""
-    q, ball, _ = soft.settle(guess)
+    q, ball, _ = soft.solve_equilibrium(guess)
     return q, ball, soft.evaluate(q, ball=ball)
 
 
@@ -108,7 +108,7 @@ def test_tangents_are_the_derivatives(name, bed):
     """Central differences with their own error: 1e-8 of the largest entry; with slip, 1e-6 where a contact turns over."""
     rigid = model(**SCENES[name])
     soft = elastic(rigid.system, slope=1.3e-9, bed=bed)
-    q, ball, _ = soft.settle(rigid.guess)
+    q, ball, _ = soft.solve_equilibrium(rigid.guess)
     random = np.random.default_rng(3)
     q = q * (1.0 + 0.03 * random.standard_normal(5))
     v = np.array([1e-3, 1e-2, 1e-2, 0.1, 0.1]) * random.standard_normal(5) if name == "damped" else np.zeros(5)
@@ -166,7 +166,7 @@ def test_stored_energy_is_the_work_of_the_force(name):
     """On beds the energy of bodies and contacts between two states is the integral of the force: Gauss' rule, to 1e-9."""
     rigid = model(**SCENES[name])
     soft = elastic(rigid.system, slope=1.3e-9, bed=True)
-    q, ball, _ = soft.settle(rigid.guess)
+    q, ball, _ = soft.solve_equilibrium(rigid.guess)
     ahead = q * np.array([1.02, 1.1, 0.9, 1.05, 0.95])
 
     def energy(place):
@@ -197,7 +197,7 @@ def test_every_loop_runs_and_keeps_its_energy(kind, bed):
     schedule = Schedule(period / steps, steps, 2)
     drift = []
     for system in (case.system, elastic(case.system, slope=1.3e-9, bed=bed)):
-        q, ball, _ = system.settle(case.guess)
+        q, ball, _ = system.solve_equilibrium(case.guess)
         orbit = steady_orbit(system, period, q, inertial=method.inertial)
         start = from_orbit(system, orbit, schedule.dt) if method.inertial else static_orbit(system, q, ball, False)
         record = integrate(method, system, start, schedule, None)
@@ -219,7 +219,7 @@ def test_structural_approach_has_a_rate():
     case = model(tilt="locked", contact={"damping": 2000.0}, integrator={"kind": "newmark"})
     soft = elastic(case.system, outer=5e-9)
     period = case.excitation.period_s
-    q, _, _ = soft.settle(case.guess)
+    q, _, _ = soft.solve_equilibrium(case.guess)
     orbit = steady_orbit(soft, period, q)
     method, ends = case.scene.integrator.method, []
     for steps in (180, 360, 720):
@@ -232,7 +232,7 @@ def test_structural_approach_has_a_rate():
 def test_a_contact_that_bodies_outdo_is_a_failure_and_no_number():
     rigid = model()
     with pytest.raises(ConvergenceError):
-        elastic(rigid.system, factor=30.0).settle(rigid.guess)
+        elastic(rigid.system, factor=30.0).solve_equilibrium(rigid.guess)
 
 
 def test_a_pair_couples_only_balls_of_one_row():

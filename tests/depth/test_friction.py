@@ -44,7 +44,7 @@ def driven(built, friction, stick=2e7):
         contact={"friction": friction, "stick_stiffness": stick}, load={"axial": 500.0}, bearing={"preset": "7206A-NSK"}
     )
     system = model.system
-    q, ball, _ = system.settle(model.guess)
+    q, ball, _ = system.solve_equilibrium(model.guess)
     states = []
     for s in np.sin(np.linspace(0.0, 4.0 * np.pi, 161)):
         there = q + np.array([4e-6 * s, 0.0, 0.0, 0.0, 0.0])
@@ -173,8 +173,8 @@ def test_static_preload_is_untouched(built):
     """The balls have rolled into place: same equilibrium, stiffer against what comes then."""
     for tables in ({}, {"load": {"axial": 800.0, "radial": [200.0, 0.0]}, "supports": {"tilt": "free"}}):
         plain, rubbed = built(**tables), built(contact={"friction": 0.3}, **tables)
-        q, _, _ = plain.system.settle(plain.guess)
-        q_f, ball, _ = rubbed.system.settle(rubbed.guess)
+        q, _, _ = plain.system.solve_equilibrium(plain.guess)
+        q_f, ball, _ = rubbed.system.solve_equilibrium(rubbed.guess)
         np.testing.assert_allclose(q_f, q, rtol=1e-9, atol=1e-15)
         now = rubbed.system.evaluate(q_f, ball=ball)
         scale = np.array([1.0, 1.0, 1.0, 1.0 / plain.system.arm, 1.0 / plain.system.arm])
@@ -187,7 +187,7 @@ def test_with_sticking_contacts_the_tangent_is_symmetric(built):
     """A contact that sticks has a potential, tilts included."""
     model = built(contact={"friction": 1.0}, supports={"tilt": "free"}, load={"axial": 800.0, "radial": [150.0, 60.0]})
     system = model.system
-    q, ball, _ = system.settle(model.guess)
+    q, ball, _ = system.solve_equilibrium(model.guess)
     k = system.evaluate(q + [2e-7, 1e-7, -2e-7, 3e-6, 2e-6], ball=ball).stiffness
     scale = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])
     k = k * scale[:, None] * scale
@@ -203,7 +203,7 @@ def test_no_friction_is_the_limit_of_little_friction(built):
 def test_stick_stiffness_by_default_is_the_ellipses_along_the_groove(built):
     """A part of the normal stiffness, mean of both races at the axial ball load; see tests/test_contact.py."""
     model = built(contact={"friction": 0.03})
-    q, _, _ = attrs.evolve(model.system).settle(model.guess)
+    q, _, _ = attrs.evolve(model.system).solve_equilibrium(model.guess)
     load = model.system.evaluate(q).contact_force[0]
     races = (model.inner, model.outer)
     stick = np.mean([e.stick_ratio(0.29)[0] * 1.5 * e.factor ** (2 / 3) * load ** (1 / 3) for e in races])

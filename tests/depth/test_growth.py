@@ -71,7 +71,7 @@ def test_an_expanded_ring_loads_its_balls(built):
 
     def state(**tables):
         model = built(**tables)
-        q, _, _ = model.system.settle(model.guess)
+        q, _, _ = model.system.solve_equilibrium(model.guess)
         axial, radial = model.system.centre_vectors(q)[0][0]
         return q, model.system.evaluate(q).contact_force[0], np.arctan2(axial, radial)
 

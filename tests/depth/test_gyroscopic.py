@@ -46,7 +46,7 @@ def tangent_error(system: System, q: np.ndarray, ball: np.ndarray) -> float | No
 def test_the_tangent_is_the_derivative(built, hypothesis, friction, pair):
     """1e-6: what differences of fourth order leave of forces that are solved to 1e-10."""
     model = fast(built, hypothesis, contact={"friction": friction}, bearing={"preset": "B7206C", **pair})
-    q, ball, _ = model.system.settle(model.guess)
+    q, ball, _ = model.system.solve_equilibrium(model.guess)
     rng = np.random.default_rng(7)
     errors = [tangent_error(model.system, q + rng.normal(size=5) * STEP, ball) for _ in range(8)]
     smooth = [error for error in errors if error is not None]
@@ -57,7 +57,7 @@ def test_without_moment_it_is_the_inertial_kernel(built):
     model = fast(built, "none")
     plain = model.system
     tangential = attrs.evolve(plain, kernel=rigid_tangential, base_kernel=plain.kernel)
-    q, ball, _ = plain.settle(model.guess)
+    q, ball, _ = plain.solve_equilibrium(model.guess)
     rng = np.random.default_rng(3)
     for _ in range(5):
         there = q + rng.normal(size=5) * STEP
@@ -72,7 +72,7 @@ def test_springs_of_the_shaft_cost_newton_no_iterations(built):
     """They are linear: Newton's method knows them exactly, and one step settles them however stiff they are."""
     free, held = (fast(built, supports={"tilt": tilt}) for tilt in ("free", 1e5))
     assert held.system.stiffness[3, 3] == 1e5 > 3.0 * held.system.evaluate(held.guess).stiffness[3, 3]
-    spent, more = (model.system.settle(model.guess)[2] for model in (free, held))
+    spent, more = (model.system.solve_equilibrium(model.guess)[2] for model in (free, held))
     assert more <= spent + 2
 
 
@@ -81,7 +81,7 @@ def test_the_inner_race_carries_no_more_than_its_load_can(built, hypothesis):
     """Where the inner contact opens its share goes over to the outer race without a jump."""
     model = fast(built, hypothesis, supports={"tilt": "locked"}, load={"axial": 400.0})
     system = model.system
-    q, _, _ = system.settle(model.guess)
+    q, _, _ = system.solve_equilibrium(model.guess)
     along = np.linspace(0.0, 1.0, 4001)
     forces = np.array([system.evaluate(q * [1 - 4.0 * s, 1, 1, 1, 1]).force[0] for s in along])
     steps = np.abs(np.diff(forces))
@@ -95,7 +95,7 @@ def test_the_effect_is_tens_of_percent_at_high_speed_and_light_load(built):
     def displacement(hypothesis, rpm, axial):
         tables = {"load": {"axial": axial}, "kinematics": {"spin_speed_rpm": rpm, "gyroscopic": hypothesis}}
         model = built(**tables)
-        q, ball, _ = model.system.settle(model.guess)
+        q, ball, _ = model.system.solve_equilibrium(model.guess)
         return q[0], model.system.evaluate(q, ball=ball).stiffness[0, 0]
 
     x, k = displacement("none", 40000.0, 100.0)
@@ -123,7 +123,7 @@ def test_equilibria_of_random_scenes(built):
             },
         )
         system = model.system
-        q, ball, _ = system.settle(model.guess)
+        q, ball, _ = system.solve_equilibrium(model.guess)
         rest = (system.evaluate(q, ball=ball).force + system.stiffness @ q - system.load) * system.free
         rest[3:] /= system.arm
         assert np.abs(rest).max() < 1e-8 * axial

@@ -129,7 +129,7 @@ def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
     now = solve_equilibrium(model)
     for share in (0.0, 0.28, 0.53, 0.97, 1.0):
         system = model.system.at_speed(0.5 * share)
-        q, ball, _ = system.settle(now.displacement)
+        q, ball, _ = system.solve_equilibrium(now.displacement)
         moved = attrs.evolve(now, displacement=q, ball=ball)
         rows = preload_table(attrs.evolve(model, system=system), moved)["rows_n"]
         assert rows == pytest.approx([400.0, 300.0], rel=1e-4)

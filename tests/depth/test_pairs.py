@@ -20,7 +20,7 @@ def pair(built, arrangement, preload=290.0, **tables):
 
 
 def settled(model) -> tuple[np.ndarray, np.ndarray, System]:
-    q, ball, _ = model.system.settle(model.guess)
+    q, ball, _ = model.system.solve_equilibrium(model.guess)
     return q, model.system.evaluate(q, ball=ball).stiffness, model.system
 
 

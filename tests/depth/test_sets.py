@@ -94,7 +94,7 @@ def test_rows_that_were_ground_share_their_offset(word, rows):
     assert found["mounted_n"] / 20.0 == pytest.approx((2.0 / (1.0 + rows ** (-2.0 / 3.0))) ** 1.5, rel=0.01)
     offset = press(ring(), 20.0)
     expected = RowSet([ring() for _ in range(rows + 1)], [1.0] * rows + [-1.0], [0.0] * (rows + 1), [offset] * (rows + 1))
-    assert found["rows_n"] == pytest.approx(expected.rows(expected.settle(np.zeros(3))), rel=SAME)
+    assert found["rows_n"] == pytest.approx(expected.rows(expected.solve_equilibrium(np.zeros(3))), rel=SAME)
 
 
 def test_rows_that_were_ground_for_preloads_of_their_own():
@@ -102,7 +102,9 @@ def test_rows_that_were_ground_for_preloads_of_their_own():
     model, now = built("DB", 200.0, {"preload_of": "row", "row": [{"preload": 100.0}, {"preload": 300.0}]})
     expected = RowSet([ring(), ring()], [1.0, -1.0], [0.0, 0.0], [press(ring(), 100.0), press(ring(), 300.0)])
     rows = preload_table(model, now)["rows_n"]
-    assert rows == pytest.approx(expected.rows(expected.settle(np.zeros(3))), rel=SAME) and 100.0 < rows[0] < 300.0
+    assert (
+        rows == pytest.approx(expected.rows(expected.solve_equilibrium(np.zeros(3))), rel=SAME) and 100.0 < rows[0] < 300.0
+    )
 
 
 def test_inner_rings_of_a_set_tilt_about_its_middle():
@@ -136,7 +138,7 @@ def test_rows_of_different_bearings(rpm):
     first, last = press_together(still[:2], 200.0), press(still[2], 200.0)
     rings = [ring(spin_rpm=rpm), ring(15.0, spin_rpm=rpm, first=7.0), ring(balls=10, diameter=10e-3, spin_rpm=rpm)]
     expected = RowSet(rings, [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], [first, first, last])
-    q = expected.settle(np.array([60.0, 50.0, 20.0]))
+    q = expected.solve_equilibrium(np.array([60.0, 50.0, 20.0]))
     assert now.displacement == pytest.approx(q, rel=1e-6, abs=1e-13)
     off = now.displacement + np.array([1e-7, -3e-7, 5e-7, 2e-5, -1e-5])
     here, (force, tangent) = model.system.evaluate(off), expected(off)
@@ -217,7 +219,9 @@ def test_preload_of_a_running_set(rpm):
     model, now = built("TBT", 200.0, kinematics={"ball_inertia": True, "spin_speed_rpm": rpm})
     shifts = [press(ring(), 100.0)] * 2 + [press(ring(), 200.0)]
     expected = RowSet([ring(spin_rpm=rpm) for _ in range(3)], [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], shifts)
-    assert preload_table(model, now)["running_n"] == pytest.approx(expected.rows(expected.settle(np.zeros(3)))[2], rel=1e-6)
+    assert preload_table(model, now)["running_n"] == pytest.approx(
+        expected.rows(expected.solve_equilibrium(np.zeros(3)))[2], rel=1e-6
+    )
 
 
 def test_condensed_rows():

@@ -331,7 +331,7 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     model = built(**turning(6000.0, 15000.0, kinematics=ALL, integrator={"kind": integrator, "steps_per_turn": 360}))
     schedule = Schedule(1.0 / 250.0 / 360.0, 360, 1)
     system = model.system.at_speed(0.0)
-    q, ball, _ = system.settle(model.guess)
+    q, ball, _ = system.solve_equilibrium(model.guess)
     start = at_rest(system, q, ball, False)
     compiled = integrate(model.scene.integrator.method, model.system, start, schedule)
     stepped = integrate(model.scene.integrator.method, SteppedBearing(model.system), start, schedule)

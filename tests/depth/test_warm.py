@@ -48,7 +48,7 @@ def test_preload_of_a_warm_set(word):
     mounted = {1.0: press(ring(), 300.0 / sides.count(1.0)), -1.0: press(ring(), 300.0)}
     rings = [warmed(ring(), strains, side, place) for side, place in one.bearing.rows]
     expected = RowSet(rings, list(sides), list(places), [mounted[side] for side in sides])
-    q = expected.settle(np.zeros(3))
+    q = expected.solve_equilibrium(np.zeros(3))
     assert now.displacement == pytest.approx(q, rel=1e-6, abs=1e-12)
     assert preload_table(model, now)["rows_n"] == pytest.approx(expected.rows(q), rel=1e-6)
     assert preload_table(model, now)["mounted_n"] == 300.0

@@ -16,7 +16,7 @@ SURFACE = groove(MIDDLE, ROLLING + GROOVE, GROOVE)
 def pressed():
     """The quarter groove in equilibrium under 300 N; elements are few and coarse: these tests are about equations, not Hertz."""
     found = model(300.0, 2.0, growth=2.2, coarse=1.6e-3)
-    state = found.system.settle(guess(found, float(HERTZ.approach(300.0))))
+    state = found.system.solve_equilibrium(guess(found, float(HERTZ.approach(300.0))))
     found.system.static_internal(state.y)
     return found, state
 

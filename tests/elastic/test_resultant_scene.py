@@ -90,7 +90,7 @@ def test_the_tangent_is_the_difference_of_the_loads(free):
     assert np.linalg.eigvalsh(stiffness * np.outer(arm, arm)).min() > 0.0
     for k in range(5):
         step = np.eye(5)[k] * (1.0 if k < 3 else 0.01)
-        ahead, behind = (system.settled(start, load + sign * step, 1e-9)[0][:5] for sign in (1.0, -1.0))
+        ahead, behind = (system.equilibrium_under(start, load + sign * step, 1e-9)[0][:5] for sign in (1.0, -1.0))
         found = stiffness @ (ahead - behind) / 2.0
         # Loads change by 1e-3 and 2e-2 of themselves: their square; equilibria to 1e-9 of 1000 N over 1 N: 1e-6.
         np.testing.assert_allclose(found * arm, step * arm, atol=5e-5 * step[k] * arm[k])
@@ -101,7 +101,7 @@ def test_energy_grows_by_the_work_of_the_loads(free):
     system, bodies = model.system, model.system.bodies.system
     start, load = system.equilibrium, model.system.load.copy()
     step = np.array([50.0, 10.0, -5.0, 0.1, 0.1])
-    ends = [system.settled(start, load + sign * step, 1e-9)[0] for sign in (1.0, -1.0)]
+    ends = [system.equilibrium_under(start, load + sign * step, 1e-9)[0] for sign in (1.0, -1.0)]
     stored = []
     for y in ends:
         system.in_place(y)

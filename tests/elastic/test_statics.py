@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway.elastic.newton import settle
+from raceway.elastic.newton import solve_equilibrium
 from raceway.testing import settled
 from tests.test_elastic_scene import TINY
 
@@ -27,10 +27,10 @@ def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float)
     ring = ring_of(axial)
     start = ring.equilibrium
     more = np.array([0.0, 500.0, 0.0, 0.0, 0.0])
-    there, iterations = ring.settled(start, ring.load + more)
+    there, iterations = ring.equilibrium_under(start, ring.load + more)
     assert iterations <= 4
     # Forth and back: residuals of 1e-7 of the load are 1e-6 of the change, here a hundred times that.
-    back, _ = ring.settled(there, ring.load)
+    back, _ = ring.equilibrium_under(there, ring.load)
     assert np.abs(back[:5] - start[:5]).max() < 1e-4 * np.abs(there[:5] - start[:5]).max()
     # A start from an equilibrium is told from undeformed bodies.
     system = ring.bodies.system
@@ -79,7 +79,7 @@ class Stop:
 def test_a_step_past_a_stiff_stop_ends_near_the_minimum_along_it(stiff: float, way: float):
     """Under the load 1.  A tenth of the step leaves more than 0.9 of the slope: it has to be lengthened, not cut further."""
     system = Stop(stiff, way)
-    found = settle(system, np.zeros(1))
+    found = solve_equilibrium(system, np.zeros(1))
     wanted = np.roots([-system.SOFTER, 1.0 + stiff, -1.0 - stiff * way]).min()
     assert found.y[0] == pytest.approx(wanted, rel=1e-6)
     # Of all load steps, those that failed too.

@@ -191,7 +191,7 @@ def test_reduced_and_unreduced_solver(claim):
     ring = build_model(scene).system
     assert isinstance(ring, ElasticRing)
     system, start = ring.bodies.system, ring._undeformed(ring.surrogate, np.zeros(5))
-    reduced, full = (one.settle(start, 1e-10).y for one in (system, iterative(system)))
+    reduced, full = (one.solve_equilibrium(start, 1e-10).y for one in (system, iterative(system)))
     claim(f"small mesh, {system.size} unknowns: superelements against the iterative solver, over the largest",
           float(np.abs(reduced - full).max() / np.abs(full).max()), at_most=1e-8, **OWN, source="both solve to 1e-10")  # fmt: skip
 

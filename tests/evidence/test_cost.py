@@ -208,7 +208,7 @@ COUNT = """
 import json, sys
 from raceway import load_scene
 from raceway.core.jit import clock
-from raceway.core.ring.equilibrium import settle
+from raceway.core.ring.equilibrium import solve_equilibrium
 from raceway.core.time.compiled import central_difference
 from raceway.core.time.compiled import implicit
 from raceway.core.time.compiled import quasi_static
@@ -217,7 +217,7 @@ run(load_scene(sys.argv[1]))
 first = clock["compiled"]
 for word in sys.argv[2:]:
     run(load_scene(sys.argv[1], [word]))
-loops = (implicit, central_difference, quasi_static(settle))
+loops = (implicit, central_difference, quasi_static(solve_equilibrium))
 print(json.dumps([first, clock["compiled"], sum(max(len(loop.signatures) - 1, 0) for loop in loops)]))
 """
 WORDS = (

@@ -182,14 +182,14 @@ def test_iterations_with_friction(claim, bearing):
     """To the static state with mu = 0.03 from the place of rigid bodies."""
     ring = bearing[0].system
     system = ring.bodies.system
-    place, places, _ = ring.surrogate.settle(ring.equilibrium[:5])
+    place, places, _ = ring.surrogate.solve_equilibrium(ring.equilibrium[:5])
     guess = ring.bodies.guess(place, places if places[:, 1].any() else ring._on_the_line(place, places))
-    _, without = ring.settled(guess, ring.load)
+    _, without = ring.equilibrium_under(guess, ring.load)
     contact = system.contact
     contact.friction = CoulombFriction(0.03, _sticking(ring.bodies.setup, contact.area))
     system.locate(guess)
     contact.friction.begin((contact.move @ system.assembly.nodal(guess)).reshape(-1, 3))
-    found = system.settle(guess, 1e-7)
+    found = system.solve_equilibrium(guess, 1e-7)
     contact.friction = None
     quantity, source = "bearing with mu = 0.03: iterations over those without friction", "Newton's method, exact tangents"
     claim(quantity, found.iterations / without, at_most=3.0, basis="regression", source=source)

@@ -155,7 +155,9 @@ def test_difference_quotients(claim):
     part, columns = 30.0, []
     for way in np.eye(5)[:3]:
         ends = [
-            attrs.evolve(model.system, load=model.system.load + sign * part * way).settle(found.displacement, found.ball)[0]
+            attrs.evolve(model.system, load=model.system.load + sign * part * way).solve_equilibrium(
+                found.displacement, found.ball
+            )[0]
             for sign in (1.0, -1.0)
         ]
         columns.append((ends[0] - ends[1])[:3] / (2.0 * part))

@@ -143,7 +143,7 @@ def test_gyroscopic_moments(claim):
     for hypothesis in SHARES:
         spin = {"gyroscopic": hypothesis, "spin_speed_rpm": 30000.0}
         model = model_of(b7206c(load={"axial": 400.0, "radial": [100.0, 50.0]}, supports={"tilt": "free"}, kinematics=spin))
-        q, ball, _ = model.system.settle(model.guess)
+        q, ball, _ = model.system.solve_equilibrium(model.guess)
         now, z = model.system.evaluate(q, ball=ball), model.system.ball_count
         for k, e in enumerate(model.system.centre_vectors(q)[0]):
             qi, qo, ai, ao, *_ = harris_ball(model, e, hypothesis, ball[k, :2] + 2e-7)
@@ -165,7 +165,7 @@ def test_gyroscopic_moments(claim):
 @pytest.mark.parametrize("hypothesis", SHARES)
 def test_axial_displacement_with_gyroscopic_moments(claim, hypothesis):
     model = model_of(b7206c(load={"axial": 100.0}, kinematics={"gyroscopic": hypothesis, "spin_speed_rpm": 40000.0}))
-    q, ball, _ = model.system.settle(model.guess)
+    q, ball, _ = model.system.solve_equilibrium(model.guess)
     expected = axial_displacement(model, hypothesis, ball[0, :2] + 2e-7, (q[0] - 5e-6, q[0] + 5e-6))
     quantity = f"axial displacement at 40 000 r/min under 100 N, moments {hypothesis} (without moments -13.6 um)"
     source = "Harris' two balances of each ball and MINPACK, 1e-7"

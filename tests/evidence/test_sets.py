@@ -111,7 +111,7 @@ def test_different_and_warm_rows(claim):
     still = [ring(angle) for angle in angles]
     shifts = [press_together(still[:2], PRELOAD)] * 2 + [press(still[2], PRELOAD)]
     reference = RowSet([ring(angle, rpm) for angle in angles], sides, places, shifts)
-    q = reference.settle(np.array([60.0, 50.0, 20.0]))
+    q = reference.solve_equilibrium(np.array([60.0, 50.0, 20.0]))
     off = np.abs(np.diag(now.stiffness) / np.diag(reference(q)[1]) - 1.0).max()
     quantity = (
         "TBT of 25, 15 and 15 deg at 15 000 r/min, loads in all directions: diagonal stiffness, largest relative difference"
@@ -124,7 +124,7 @@ def test_different_and_warm_rows(claim):
     shifts = [press(ring(), 0.5 * PRELOAD)] * 2 + [press(ring(), PRELOAD)]
     rings = [warmed(ring(), strains, side, x) for side, x in zip(sides, places, strict=True)]
     reference = RowSet(rings, sides, places, shifts)
-    expected = reference.rows(reference.settle(np.zeros(3)))[2]
+    expected = reference.rows(reference.solve_equilibrium(np.zeros(3)))[2]
     off = abs(preload_table(model, solve_equilibrium(model))["running_n"] / expected - 1.0)
     quantity = "TBT, inner rings +14 K, outer +5 K, balls +11 K: running preload, relative difference"
     claim(quantity, off, at_most=1e-5, **RING)

@@ -91,14 +91,14 @@ def test_a_state_does_not_depend_on_the_states_before(free):
 def test_balls_go_along_with_their_grooves_before_newton(free, monkeypatch):
     """A linearisation leaves a tenth at most of what the balls move within a tenth of a micrometre."""
     case, found = free
-    seen, settle_balls = [], Balls.settle
+    seen, settle_balls = [], Balls.solve_equilibrium
 
     def watched(self, centre, where, *rest):
         place = settle_balls(self, centre, where, *rest)
         seen.append((where, place[0]))
         return place
 
-    monkeypatch.setattr(Balls, "settle", watched)
+    monkeypatch.setattr(Balls, "solve_equilibrium", watched)
     for axial in (0.0, 1e-7):
         case.system.evaluate(found.displacement + np.array([axial, 0.0, 0.0, 0.0, 0.0]), ball=found.ball)
     (_, before), (guess, after) = seen[0], seen[-1]
@@ -122,7 +122,7 @@ def test_the_first_points_hold_the_contacts_of_the_scene_and_get_more_where_they
     case = model_of(tables())
     heavy = attrs.evolve(case.system, load=3.0 * case.system.load)
     rows = heavy.pool.patches[0].columns
-    q, ball, _ = heavy.settle(case.guess)
+    q, ball, _ = heavy.solve_equilibrium(case.guess)
     assert heavy.pool.patches[0].columns > rows
     assert heavy.evaluate(q, ball=ball).force[:2] == pytest.approx([3000.0, 1500.0], abs=1e-5)
 
@@ -131,7 +131,7 @@ def test_without_more_points_it_is_a_failure_that_says_where(free):
     case, _ = free
     alone = attrs.evolve(case.system, pool=Pool(model_of(tables()).bearing.pool.patches), load=16.0 * case.system.load)
     with pytest.raises(ConvergenceError, match="leaves its surface points along"):
-        alone.settle(case.guess)
+        alone.solve_equilibrium(case.guess)
 
 
 def test_the_edge_of_the_groove_is_told_with_the_load():

@@ -58,7 +58,7 @@ def _facets(mesh, height):
 
 def test_a_cube_on_a_cube_settles_and_carries_its_load():
     system = cubes(gap=-1e-8)
-    found = system.settle(np.zeros(system.size))
+    found = system.solve_equilibrium(np.zeros(system.size))
     # Nine nodes of 1 N; Newton's residual is 1e-6 of them.
     assert system.contact.resultants()[0, 2] == pytest.approx(9.0, rel=1e-5)
     assert system.assembly.reactions(found.y)[2] == pytest.approx(9.0, rel=1e-5)
@@ -67,7 +67,7 @@ def test_a_cube_on_a_cube_settles_and_carries_its_load():
 def test_a_rigid_motion_that_nothing_holds_is_named_with_the_support_that_would():
     system = cubes(held=False)
     with pytest.raises(ConvergenceError, match="nothing holds upper: .*hold it by the cage, by fixed nodes, or by a bed"):
-        system.settle(np.zeros(system.size))
+        system.solve_equilibrium(np.zeros(system.size))
 
 
 def test_an_overlap_deeper_than_an_element_is_refused_with_both_lengths():
@@ -130,6 +130,6 @@ def test_an_equilibrium_that_is_not_found_keeps_the_last_good_state_and_the_resi
     system = cubes(gap=-1e-8)
     system.solve = lambda *_, **__: np.full(system.size, 1e-9)  # type: ignore[method-assign]
     with pytest.raises(ConvergenceError, match="Last good state: 0 % of the load") as caught:
-        system.settle(np.zeros(system.size))
+        system.solve_equilibrium(np.zeros(system.size))
     assert caught.value.state["y"].shape == (system.size,)
     assert len(caught.value.state["residuals"]) > 40

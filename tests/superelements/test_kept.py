@@ -29,7 +29,7 @@ def entries():
 
 
 def settled(model):
-    return model.bearing.bearing.system.settle(start_of(model), TIGHT).y
+    return model.bearing.bearing.system.solve_equilibrium(start_of(model), TIGHT).y
 
 
 def test_what_was_kept_gives_the_same_digits_without_a_factorisation_and_serves_other_loads(monkeypatch):
@@ -67,7 +67,7 @@ def test_other_bodies_are_other_entries(change):
 
 def test_making_is_told_with_its_end():
     told = []
-    built().bearing.settle(None, lambda *what: told.append(what))
+    built().bearing.solve_equilibrium(None, lambda *what: told.append(what))
     last = {what: done == total for what, done, total in told if what.startswith("factoring")}
     assert any("a sector of the inner ring" in what for what in last) and all(last.values())
     assert any(what.startswith("equilibrium, residual") for what, *_ in told)
@@ -80,7 +80,7 @@ def test_a_contact_that_comes_to_other_nodes_widens_the_superelements():
     system = model.bearing.bearing.system
     solver = system.condensed
     solver._wanted = solver._wanted & (np.arange(system.assembly.nodes) % 2 == 0)
-    found = system.settle(start_of(model), TIGHT).y
+    found = system.solve_equilibrium(start_of(model), TIGHT).y
     assert np.abs(found - whole).max() < 1e-8 * np.abs(whole).max()
     assert (solver._wanted >= touchable(system.contact, system.assembly.nodes)).all()
 

@@ -31,10 +31,10 @@ def settled(request):
     model = built(**SCENES[request.param])
     system, guess = model.bearing.bearing.system, start_of(model)
     plain = unreduced(system)
-    there = plain.settle(guess, TIGHT).y
+    there = plain.solve_equilibrium(guess, TIGHT).y
     forces = system.contact.resultants().copy()
     tangent = stiffness_by_differences(plain, there)
-    found = system.settle(guess, TIGHT)
+    found = system.solve_equilibrium(guess, TIGHT)
     return request.param, model, found, there, forces, tangent
 
 
@@ -48,7 +48,7 @@ def stiffness_by_differences(system, y):
         for sign in (1.0, -1.0):
             system.load = kept.copy()
             system.load[motion] += sign * step
-            moved.append(system.settle(y, TIGHT).y[chosen])
+            moved.append(system.solve_equilibrium(y, TIGHT).y[chosen])
         compliance[:, column] = (moved[0] - moved[1]) / (2.0 * step)
     system.load = kept
     return np.linalg.inv(compliance)
@@ -110,7 +110,7 @@ def test_bodies_that_differ_in_the_tenth_digit_are_factored_by_themselves_and_gi
     model, found = built(**SCENES[name]), []
     for part in (0.0, 1e-10):
         system = with_node_moved(model, bodies, part)
-        found.append(system.settle(start_of(model), TIGHT).y)
+        found.append(system.solve_equilibrium(start_of(model), TIGHT).y)
         face = system.solver.interface(0.0)
         assert {type(ring.element) for ring in face.rings} == {Loose if part and 0 in bodies else Closed}
         assert [members for _, members in face.groups] == (groups if part else [[0, 1, 2]])

@@ -94,5 +94,5 @@ def test_a_mass_pressed_on_a_contact_settles_where_hertz_says():
     from raceway.core.contact.laws import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]), load=500.0, clearance=2e-6)
-    q, _, _ = system.settle(np.zeros(5))
+    q, _, _ = system.solve_equilibrium(np.zeros(5))
     assert q[0] - 2e-6 == pytest.approx((500.0 / 1e10) ** (2 / 3), rel=1e-9)

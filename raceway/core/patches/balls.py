@@ -345,7 +345,7 @@ class Balls:
         """Largest force out of balance of any ball or contact [N]."""
         return float(max(np.abs(now.balance).max(), np.abs(now.excess).max()))
 
-    def settle(
+    def solve_equilibrium(
         self,
         centre: np.ndarray,
         position: np.ndarray,

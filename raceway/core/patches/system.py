@@ -129,7 +129,7 @@ class _Row:
     centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
     where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
 
-    def settle(
+    def solve_equilibrium(
         self, centre: np.ndarray, where: np.ndarray, rate: np.ndarray, tolerance: float, loads: AppliedLoads | None = None
     ) -> tuple[np.ndarray, LinearisedBalls]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
@@ -140,11 +140,11 @@ class _Row:
         if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():
             step, change = self.balls.move(self.last, (centre - self.centre).reshape(-1))
             try:
-                near = self.balls.settle(centre, self.where + step, self.force + change, rate, tolerance, loads)
+                near = self.balls.solve_equilibrium(centre, self.where + step, self.force + change, rate, tolerance, loads)
                 return self._keep(centre, near)
             except ConvergenceError:
                 pass  # from the guess, then
-        return self._keep(centre, self.balls.settle(centre, where, force, rate, tolerance, loads))
+        return self._keep(centre, self.balls.solve_equilibrium(centre, where, force, rate, tolerance, loads))
 
     def _keep(
         self, centre: np.ndarray, solution: tuple[np.ndarray, np.ndarray, LinearisedBalls]
@@ -330,7 +330,7 @@ class PatchSystem(SteppedRing):
             loads = attrs.evolve(loads, slip=history.slips(ball[:, 2:4].T.reshape(-1), self.pool.generations))
         if self.ball_mass > 0.0 and dt > 0.0 and ball_rate is not None:
             loads = history.with_inertia(loads, self.ball_mass, dt, gain, ball_rate[:, :2])
-        where, now = row.settle(grooves.centre, where, rate, _BALLS, loads)
+        where, now = row.solve_equilibrium(grooves.centre, where, rate, _BALLS, loads)
         answer = self._answer(row.balls, grooves, where, rate, now)
         ball_velocity = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
@@ -355,7 +355,7 @@ class PatchSystem(SteppedRing):
 
         return self.pool.widened(smoothed)
 
-    def settle(
+    def solve_equilibrium(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load``: ring and balls together by Newton, from the equilibrium of rigid bodies.
@@ -405,7 +405,7 @@ class PatchSystem(SteppedRing):
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
         first = attrs.evolve(self.surrogate, load=self.load / parts)
-        q_part, ball, _ = first.settle(q)
+        q_part, ball, _ = first.solve_equilibrium(q)
         if not self.table[:, layout.CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0

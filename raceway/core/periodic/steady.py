@@ -158,7 +158,7 @@ def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]
     largest = max(float(np.abs(now.contact_force).sum()), float(np.abs(system.load).max()))
     if imbalance.max() <= _SETTLED * largest:
         return start.q, now.stiffness
-    q, ball, _ = system.settle(start.q)
+    q, ball, _ = system.solve_equilibrium(start.q)
     return q, system.evaluate(q, ball=ball).stiffness
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import CONVERGED, SLOW, cholesky_solve, copy_matrix, find_root, settle
+from raceway.core.ring.equilibrium import CONVERGED, SLOW, cholesky_solve, copy_matrix, find_root, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, work_rows
 from raceway.core.signatures import (
@@ -143,7 +143,7 @@ def equilibria(kernels, linear, points, states):
         free_ball[:] = 0.0
         response = Response(f, K, states.damping[p], work)
         forces = Forces(kernels.base, kernels.law, params, constants)
-        status = settle(forces, own, TOLERANCE, 0.0, StaticState(q, free_ball, memory), response, report)
+        status = solve_equilibrium(forces, own, TOLERANCE, 0.0, StaticState(q, free_ball, memory), response, report)
         ball = states.ball[p]
         ball[:] = 0.0
         if status == CONVERGED and constants.scalars[GYROSCOPIC] != 0.0:

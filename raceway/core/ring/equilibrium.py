@@ -8,9 +8,9 @@ balls p keeps convexity.  The compliance of elastic bodies keeps it as long as t
 off them, which the kernels see to.  So a trust-region Newton iteration finds the one minimum from anywhere.  Tilts are scaled by
 the arm R so that all unknowns are lengths.
 
-``settle`` and ``find_root``, for forces without a potential, are of the signature ``raceway.core.signatures.SETTLE``::
+``solve_equilibrium`` and ``find_root``, for forces without a potential, are of the signature ``raceway.core.signatures.EQUILIBRIUM``::
 
-    settle(forces, linear, tolerance, t, state, response, report) -> status
+    solve_equilibrium(forces, linear, tolerance, t, state, response, report) -> status
 
     linear      its stiffness is added to the contacts' (the shaft's against tilts)
     tolerance   residual over the sum of the inner races' forces and the loads
@@ -34,10 +34,10 @@ from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
     CUBE,
+    EQUILIBRIUM,
     LINEAR,
     MATRIX,
     RESPONSE,
-    SETTLE,
     STATIC,
     VECTOR,
     Balls,
@@ -316,8 +316,8 @@ def _accept(trial, new, state, now):
     copy_matrix(trial.ball, state.ball)
 
 
-@jit(SETTLE, allocates=True)
-def settle(forces, linear, tolerance, t, state, response, report):
+@jit(EQUILIBRIUM, allocates=True)
+def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
     """Move a state at rest to the equilibrium of ``linear.load`` (5,), the least potential; the response is the contacts' there."""
     constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work
     arm, scale = constants.scalars[TILT_ARM], np.ones(5)
@@ -382,7 +382,7 @@ _ROOT_LIMIT = 100
 _HALVINGS = 30
 
 
-@jit(SETTLE, allocates=True)
+@jit(EQUILIBRIUM, allocates=True)
 def find_root(forces, linear, tolerance, t, state, response, report):
     """The same where forces have no potential, by Newton's method; slips are taken from ``state`` as committed."""
     constants, q, ball, work = at_rest(forces.constants, t), state.q, state.ball, response.work

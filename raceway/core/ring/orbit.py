@@ -245,5 +245,5 @@ def static_orbit(system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) ->
     """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
     outer = np.zeros(5) if ramped else system.outer_force(0.0)
     loaded = attrs.evolve(system, load=system.load + outer)
-    q, ball, _ = loaded.settle(q, ball)
+    q, ball, _ = loaded.solve_equilibrium(q, ball)
     return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())

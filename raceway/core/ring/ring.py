@@ -346,7 +346,7 @@ class Ring(ABC):
         """
 
     @abstractmethod
-    def settle(
+    def solve_equilibrium(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load`` from a first guess q (5,): displacement, balls (Z, k), iterations.

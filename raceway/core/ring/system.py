@@ -7,7 +7,7 @@ import numpy as np
 
 from raceway.core.jit import Kernel, address_of
 from raceway.core.record import check_state
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, settle
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
@@ -227,7 +227,7 @@ class System(Ring):
         damping, cage = still.damping_at(q, now), self.scalars[layout.CAGE]
         return viscous_stiffness(lambda rate: still.stiffness_at_rate(q, now, rate), damping, frequency, cage)
 
-    def settle(
+    def solve_equilibrium(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """By a trust region on the potential; what has none is added to that equilibrium.
@@ -238,10 +238,10 @@ class System(Ring):
         equilibrium without them, all at once or in steps.  Friction is left out: the balls have rolled into place, and
         their slips are set so that no contact carries a tangential force.
         """
-        check_state(self, "System.settle()", q=q, ball=ball)
+        check_state(self, "System.solve_equilibrium()", q=q, ball=ball)
         base = attrs.evolve(self, kernel=self.base_kernel)
         start = None if ball is None or not self.conservative else ball
-        q_now, ball_now, total = base._by_parts(settle, q, start, tolerance, base.load, (1, 4, 16))
+        q_now, ball_now, total = base._by_parts(solve_equilibrium, q, start, tolerance, base.load, (1, 4, 16))
         if self.conservative:
             return q_now, ball_now, total
         from raceway.core.ring.equilibrium import find_root

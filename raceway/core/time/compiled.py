@@ -394,7 +394,7 @@ def _reason_of(status):
 
 @cache
 def quasi_static(solver: Kernel) -> Kernel:
-    """The loop around a kernel of signature ``SETTLE``, which finds an equilibrium: ``raceway.core.ring.equilibrium``."""
+    """The loop around a kernel of signature ``EQUILIBRIUM``, which finds an equilibrium: ``raceway.core.ring.equilibrium``."""
 
     @jit(LOOP, allocates=True)
     def equilibria(forces, linear, outer, coefficients, steps, state, recording):

@@ -158,7 +158,7 @@ class Static:
         from raceway.core.time.compiled import quasi_static
 
         if system.conservative:
-            from raceway.core.ring.equilibrium import settle as solver
+            from raceway.core.ring.equilibrium import solve_equilibrium as solver
         else:
             from raceway.core.ring.equilibrium import find_root as solver
         return advance(quasi_static(solver), system, start, schedule, np.array([self.tolerance]), on_chunk)

@@ -176,7 +176,7 @@ def settled_from_afar(rows: Rows, bench: Bench, guesses: list[float]) -> None:
     words, why = "axial displacement [m]", "one equilibrium, solved to a residual of 1e-11"
 
     def axial(guess: float) -> float:
-        return float(at.system.settle(np.array([guess, 0.2 * guess, 0.0, 0.0, 0.0]))[0][0])
+        return float(at.system.solve_equilibrium(np.array([guess, 0.2 * guess, 0.0, 0.0, 0.0]))[0][0])
 
     for guess in guesses:
         rows.check(words, partial(axial, guess), why, Limit.equal(x, 1e-8), at={"first guess [m]": guess})
@@ -197,7 +197,7 @@ def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: fl
     law, params = ring.law, 1e3 * ring.law_params[:1]
     # The stiffness at rest, hence the period, is the law's own slope there.
     at_rest = impact_system(mass, law, params, load=load)
-    q, _, _ = at_rest.settle(np.zeros(5))
+    q, _, _ = at_rest.solve_equilibrium(np.zeros(5))
     k = float(at_rest.evaluate(q, ball=np.zeros((1, 2))).stiffness[0, 0])
     system = impact_system(mass, law, params, load=load, damping=2.0 * 0.2 * sqrt(k * mass))
     dt = step * 2.0 * pi * sqrt(mass / k)
