@@ -235,19 +235,6 @@ class Gradients:
         searched = self.moving and self.model.excitation is not None
         return SteadyOrbit.of(self.model, self.equilibrium) if searched else None
 
-    def by(self, key: Key) -> Gradient:
-        """By one key.
-
-        Raises
-        ------
-        NoDerivative
-            There is none, with the reason.
-        """
-        answer = self.by_all([key])[0]
-        if isinstance(answer, NoDerivative):
-            raise answer
-        return answer
-
     def by_path(self, path: str) -> Gradient:
         """By the key of a path, such as "load.axial".
 
@@ -256,10 +243,10 @@ class Gradients:
         SceneError
             No continuous key, or one without a derivative.
         """
-        try:
-            return self.by(key_of(self.model.scene, path))
-        except NoDerivative as why:
-            raise SceneError.at(path, None, str(why)) from None
+        answer = self.by_all([key_of(self.model.scene, path)])[0]
+        if isinstance(answer, NoDerivative):
+            raise SceneError.at(path, None, str(answer))
+        return answer
 
     def by_all(
         self, keys: Sequence[Key], on_progress: Callable[[str, int, int], None] | None = None

@@ -8,7 +8,7 @@ from functools import cached_property
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing, Excitations, impedance
+from raceway.bodies.columns import ColumnBearing, Excitations, build_columns, column_problem, impedance, why_not
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
@@ -16,7 +16,9 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
-from raceway.planning.resolve import Problem
+from raceway.planning.plan import make_plan
+from raceway.planning.resolve import Problem, resolve
+from raceway.scene.scene import Scene
 
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
 #: exist, which a run looks for.
@@ -24,6 +26,8 @@ _MILD = 0.5
 _MULTIPLIER = "largest_multiplier"
 #: The name of that change, which runs do not state.
 _CHANGE = "stiffness_change"
+#: Relative tolerance of the orbit of one scene.
+_TOLERANCE = 1e-10
 #: Labels of the dimensions of arrays.
 DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inner", "outer"]}
 
@@ -194,6 +198,24 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
 #: Quantities of a motion, and all that a function has.
 MOVING, EXTREMES = frozenset(_MOVING), frozenset(_EXTREMES)
 QUANTITIES = _STATIC | _EXTREMES | _MOVING
+
+
+@attrs.frozen(eq=False)
+class SteadyLines:
+    """1x lines of the steady orbits of one bearing under one load after another."""
+
+    _built: dict[float, ColumnBearing] = attrs.field(factory=dict, init=False)
+
+    def line(self, scene: Scene, speed: float) -> np.ndarray | None:
+        """(5,) complex line by the compiled loop, at the speed [rad/s] of the excitation; None where a run has to find it."""
+        if why_not(scene, True):
+            return None
+        if speed not in self._built:
+            columns = column_problem(scene, {"load.axial": np.array([scene.load.axial])})
+            self._built[speed] = build_columns(columns, make_plan(scene))
+        excitations = Excitations([scene.excitation], np.zeros(1, dtype=int), np.array([speed]))
+        computed = Computed.of(resolve(scene), self._built[speed], excitations, _TOLERANCE, ())
+        return computed.line[0] if computed.fine[0] else None
 
 
 def of_result(name: str, result: Result) -> np.ndarray | float | None:

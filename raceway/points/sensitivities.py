@@ -34,7 +34,6 @@ from raceway.pipeline.gradient import (
     tolerance_rows,
     values,
 )
-from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene
@@ -192,47 +191,17 @@ def _percent(share: float | None) -> str:
     return "" if share is None else "0" if abs(share) < _SHOWN else f"{share:+.3g}"
 
 
-def sensitivities_of(
-    model: Model,
-    equilibrium: Equilibrium,
-    keys: list[Key],
-    run_s: float = 0.0,
-    on_progress: OnProgress | None = None,
-    tolerances: Iterable[str] | Mapping[str, str] = (),
-) -> Sensitivities:
-    """Of an equilibrium, and of the steady orbit about it, to keys.
-
-    Parameters
-    ----------
-    run_s : processor time of the equilibrium, to which that of the orbit is added [s]
-    on_progress : called as ``on_progress(what, done, total)``
-    """
-    begun = working_processor_time()
-    gradients = Gradients(model, equilibrium)
-    now = values(model, equilibrium, gradients.orbit)
-    run_s, begun = run_s + working_processor_time() - begun, working_processor_time()
-    rows, nothing, refused, models = [], [], [], 0
-    for key, gradient in zip(keys, gradients.by_all(keys, on_progress), strict=True):
-        if isinstance(gradient, NoDerivative):
-            refused.append((key, str(gradient)))
-            continue
-        models += gradient.statics.models
-        if gradient.nothing:
-            nothing.append(key)
-            continue
-        slopes = {name: slope for name, slope in derivatives(model, equilibrium, gradient).items() if name in now}
+def _rows(
+    model: Model, equilibrium: Equilibrium, now: dict[str, float], gradients: Iterable[Gradient]
+) -> tuple[_Sensitivity, ...]:
+    """By keys that change something, largest influence on the first number first."""
+    rows, first = [], next(iter(now))
+    for gradient in gradients:
+        key = gradient.statics.key
+        slopes = {name: x for name, x in derivatives(model, equilibrium, gradient).items() if name in now}
         shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
         rows.append(_Sensitivity(gradient, slopes, shares))
-    first = next(iter(now))
-    rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))
-    took = working_processor_time() - begun
-    warning = "" if gradients.orbit is None else gradients.orbit.warning
-    warnings = (warning,) if warning else ()
-    words = definitions(model, equilibrium)
-    band = first_order_band(model, equilibrium, tolerances)
-    return Sensitivities(
-        model.scene.title, now, words, tuple(rows), tuple(nothing), tuple(refused), run_s, took, models, warnings, band
-    )
+    return tuple(sorted(rows, key=lambda row: -abs(row.influence.get(first, 0.0))))
 
 
 def _table(row: _Sensitivity) -> Tables:
@@ -340,13 +309,21 @@ def sensitivities(
     0.54
     """
     read = as_scene(scene, plugins=plugins)
-    keys = list(keys)
-    chosen_keys = [key_of(read, path) for path in keys] or continuous_keys(read)
+    asked = [key_of(read, path) for path in keys]
+    chosen_keys = asked or continuous_keys(read)
     with telling(progress) as report:
-        begun = working_processor_time()
-        model = build_model(read, make_plan(read))
-        equilibrium = solve_equilibrium(model)
-        answer = sensitivities_of(model, equilibrium, chosen_keys, working_processor_time() - begun, report, tolerances)
-    if keys and answer.refused:
-        raise SceneError([Mistake(key.path, key.value, why) for key, why in answer.refused])
-    return answer
+        begun, model = working_processor_time(), build_model(read, make_plan(read))
+        gradients = Gradients(model, equilibrium := solve_equilibrium(model))
+        now = values(model, equilibrium, gradients.orbit)
+        run_s, begun = working_processor_time() - begun, working_processor_time()
+        answers = list(zip(chosen_keys, gradients.by_all(chosen_keys, report), strict=True))
+    refused = tuple((key, str(answer)) for key, answer in answers if isinstance(answer, NoDerivative))
+    if asked and refused:
+        raise SceneError([Mistake(key.path, key.value, why) for key, why in refused])
+    by_key = [(key, answer) for key, answer in answers if not isinstance(answer, NoDerivative)]
+    rows = _rows(model, equilibrium, now, (gradient for _, gradient in by_key if not gradient.nothing))
+    took, warning = working_processor_time() - begun, "" if gradients.orbit is None else gradients.orbit.warning
+    nothing = tuple(key for key, gradient in by_key if gradient.nothing)
+    models, band = sum(gradient.statics.models for _, gradient in by_key), first_order_band(model, equilibrium, tolerances)
+    words, warnings = definitions(model, equilibrium), (warning,) if warning else ()
+    return Sensitivities(read.title, now, words, rows, nothing, refused, run_s, took, models, warnings, band)

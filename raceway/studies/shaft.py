@@ -32,6 +32,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.plugins.excitations import HarmonicLoad, harmonic_load
+from raceway.points.column_quantities import SteadyLines
 from raceway.scene import tables
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Identifying, Rig
@@ -217,6 +218,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> _Beam:
     return bare.with_disc(middle, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
 
 
+@lru_cache(maxsize=32)  # a fit asks for one at all its numbers
 def rotor(rig: Rig, speed: float, model: _Beam | None = None) -> Rotor:
     """The rotor at a speed [rad/s].
 
@@ -266,6 +268,7 @@ class Bearing:
     last: list[Result] = attrs.field(factory=list, repr=False)
     answers: list[list[float]] = attrs.field(factory=list, repr=False)
     replayed: list[list[float]] = attrs.field(factory=list, repr=False)
+    _lines: SteadyLines = attrs.field(factory=SteadyLines, init=False, repr=False)
 
     def anew(self, replayed: Iterable[list[float]] = ()) -> Bearing:
         """The same bearing without a motion to continue: its answers depend on none before.
@@ -297,14 +300,15 @@ class Bearing:
             self.answers.append(self.replayed[len(self.answers)])
             return np.array(self.answers[-1]).view(complex)
         scene = attrs.evolve(self.scene, excitation=_whirling_load(speed, force, moment))
-        # Loads that are tried one after another belong to one motion of the rig.
-        result = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
-        self.last[:] = [result]
-        assert result.simulation is not None  # a scene with an excitation and an identifier that needs a record
-        record = result.simulation.record
-        q = record.displacement
-        turning = np.exp(-1j * speed * record.time) / len(record.time)
-        answer = np.array([turning @ (q[:, 1] + 1j * q[:, 2]), turning @ (q[:, 4] - 1j * q[:, 3])])
+        line = self._lines.line(scene, speed)
+        if line is None:
+            # Loads that are tried one after another belong to one motion of the rig.
+            result = run(scene, self.registry, near=self.last[0] if self.last else None, stay=True)
+            self.last[:] = [result]
+            assert result.simulation is not None  # a scene with an excitation and an identifier that needs a record
+            record = result.simulation.record
+            line = 2.0 * np.exp(-1j * speed * record.time) @ record.displacement / len(record.time)
+        answer = 0.5 * np.array([line[1] + 1j * line[2], line[4] - 1j * line[3]])
         self.answers.append(answer.view(float).tolist())
         return answer
 

@@ -161,16 +161,15 @@ def error_of_orbit(tables, step):
     for key in continuous_keys(model.scene):
         if key.path not in OF_ORBITS or not key.value:
             continue
-        try:
-            gradient = gradients.by(key).motion
-        except NoDerivative:
+        gradient = gradients.by_all([key])[0]
+        if isinstance(gradient, NoDerivative):
             continue
         lines = {}
         for k, one in moved(model, key, step * abs(key.value)).items():
             there = SteadyOrbit.of(one, solve_equilibrium(one))
             lines[k] = there.line[[0, 4]]
         other = complex(*derivative(lines, step * abs(key.value)))
-        off.append(abs(gradient.dynamic_stiffness - other) * abs(key.value))
+        off.append(abs(gradient.motion.dynamic_stiffness - other) * abs(key.value))
         size.append(abs(other) * abs(key.value))
     return max(off) / max(size), len(off)
 

@@ -15,6 +15,16 @@ from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES
 
 
+def test_answers_of_the_compiled_loop_are_those_of_runs(monkeypatch):
+    """Both solve for the same steady orbit, a run to 1e-8."""
+    scene, speed, load = load_scene(EXAMPLES / "test_rig.toml"), 13000.0 * np.pi / 30.0, (300.0 + 20.0j, 1.0 - 0.3j)
+    tested = bearing(scene, 400.0, default_registry())
+    looped = tested.answer(speed, *load)
+    assert not tested.last
+    monkeypatch.setattr("raceway.points.column_quantities.why_not", lambda scene, moving: "runs are asked for")
+    assert looped == pytest.approx(tested.anew().answer(speed, *load), rel=1e-7)
+
+
 def test_a_root_that_is_not_analytic():
     def apart(u):
         return u * (1.0 + np.abs(u) ** 2) - np.array([1.0 + 2.0j, -0.5j])
