@@ -11,7 +11,7 @@ import pytest
 from raceway import SceneError, run, scene_from_dict
 from raceway.planning.resolve import resolve
 from raceway.scene.bearing import Bearing
-from raceway.scene.catalogue import catalogue, found_by, preset, single_presets
+from raceway.scene.catalogue import _single_presets, catalogue, found_by, preset
 from raceway.studies.catalogue.printed import printed_by
 
 POUND = 4.4482216152605
@@ -31,7 +31,7 @@ NEEDED |= {"rings.young", "rings.poisson", "balls.young", "balls.poisson"}
 
 
 def test_the_presets_that_the_documentation_promises_are_there():
-    assert set(INFERRED) == set(single_presets())
+    assert set(INFERRED) == set(_single_presets())
     assert set(INFERRED) < set(catalogue())
 
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.bodies.elastic import allowed_bytes
+from raceway.bodies.elastic import _allowed_bytes
 from raceway.core.ring.orbit import steady_orbit
 from raceway.elastic.iterative_solver import LinearSolver
 from raceway.elastic.ring import from_orbit
-from raceway.pipeline.run import Allowance
+from raceway.pipeline.run import _Allowance
 from raceway.scene.unused import unused
 from raceway.testing import run, solve_equilibrium
 
@@ -255,14 +255,14 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.bodies.elastic._allowed_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 
 
 def test_a_limit_of_the_process_counts_as_memory(monkeypatch):
     monkeypatch.setattr("resource.getrlimit", lambda kind: (2**33, 2**33))
-    assert 0.0 < allowed_bytes() < 2.0**33
+    assert 0.0 < _allowed_bytes() < 2.0**33
 
 
 def test_friction_at_rest_is_left_out_and_told(static):
@@ -281,8 +281,8 @@ def test_no_run_on_a_mesh_of_unknown_size_is_stopped_for_its_time():
     files = {"kind": "file", "ball": "b.vtu", "inner_ring": "i.vtu", "outer_ring": "o.vtu"}
     plan = make_plan(scene_from_dict({**TINY, "mesh": files}))
     assert plan.at_least and plan.mesh is None
-    assert Allowance.of(plan, 20.0).patience == float("inf")
-    assert Allowance.of(make_plan(scene()), 20.0).patience == 20.0
+    assert _Allowance.of(plan, 20.0).patience == float("inf")
+    assert _Allowance.of(make_plan(scene()), 20.0).patience == 20.0
 
 
 def test_surfaces_that_overlap_by_more_than_an_element_are_refused():

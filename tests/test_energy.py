@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway.core.contact.damping import stored_energy
-from raceway.core.ring.energy import cumulative, energy_balance
+from raceway.core.ring.energy import _cumulative, energy_balance
 from raceway.testing import model_of, simulate, solve_equilibrium
 from validation.scenes import rotating
 
@@ -77,5 +77,5 @@ def test_cumulative_integral_is_of_fourth_order():
     errors = []
     for n in (41, 81):
         t = np.linspace(0.0, 2.0, n)
-        errors.append(np.abs(cumulative(np.cos(3.0 * t), t[1]) - np.sin(3.0 * t) / 3.0).max())
+        errors.append(np.abs(_cumulative(np.cos(3.0 * t), t[1]) - np.sin(3.0 * t) / 3.0).max())
     assert errors[0] / errors[1] > 12.0  # 16 inside, the ends are of third order locally

@@ -10,7 +10,7 @@ import pytest
 from raceway import run
 from raceway.out.table import number_within
 from raceway.pipeline import error as error_estimate
-from raceway.pipeline.error import more_equilibria
+from raceway.pipeline.error import _more_equilibria
 from raceway.pipeline.simulate import _at_speed, settles_elsewhere
 from raceway.planning.resolve import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
@@ -25,7 +25,7 @@ def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():
 
 
 def test_a_finer_series_has_other_harmonics():
-    assert all(more_equilibria(n) > 2 * n and more_equilibria(n) % n for n in range(8, 3000))
+    assert all(_more_equilibria(n) > 2 * n and _more_equilibria(n) % n for n in range(8, 3000))
 
 
 def test_of_equilibria_every_step_is_recorded_up_to_the_limit_of_long_runs():

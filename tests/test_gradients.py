@@ -12,7 +12,7 @@ from raceway.pipeline.gradient import (
     _SECOND,
     Gradients,
     NoDerivative,
-    SteadyOrbit,
+    _SteadyOrbit,
     _unevenness,
     derivatives,
     values,
@@ -133,7 +133,7 @@ def test_a_held_displacement_moves_along_orbits():
     """Also where the axial load that it stands for changes."""
     model, still = settled(ORBIT | {"supports": {"axial": "displacement"}, "contact": {}, "load": {"axial": 300.0}})
     found = Gradients(model, still).by_path("load.axial").motion.equivalent_stiffness
-    expected = by_runs(model, "load.axial", 0.1, lambda one, e: SteadyOrbit.of(one, e).line[2])
+    expected = by_runs(model, "load.axial", 0.1, lambda one, e: _SteadyOrbit.of(one, e).line[2])
     assert found == pytest.approx(expected, rel=1e-5)
 
 
@@ -180,7 +180,7 @@ def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
 
     def line(one, e):
         """Re Z, C, K, amplitude, Im Z."""
-        return SteadyOrbit.of(one, e).line
+        return _SteadyOrbit.of(one, e).line
 
     runs = by_runs(model, path, 2e-4 * key.value, line)
     # Orbits are solved to 1e-10 of their size, which a step of 2e-4 makes 5e-7 of |Z|; C is a small part of |Z|.
@@ -200,7 +200,7 @@ def test_every_number_of_a_motion_has_its_derivative():
     told = values(model, still, gradients.orbit)
     found = derivatives(model, still, gradients.by_path("excitation.speed_rpm"))
     runs = by_runs(
-        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, SteadyOrbit.of(one, e)).values()])
+        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, _SteadyOrbit.of(one, e)).values()])
     )
     assert set(found) == set(told)
     for name, expected in zip(told, runs, strict=True):

@@ -11,7 +11,7 @@ import pytest
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.record import Schedule, State
 from raceway.core.ring.orbit import at_rest
-from raceway.core.ring.ring import Increment, SteppedBearing
+from raceway.core.ring.ring import Increment, _SteppedBearing
 from raceway.core.ring.system import by_address
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
@@ -287,4 +287,4 @@ def test_a_start_of_another_bearing_is_refused_by_both_loops(bearing, name):
     with pytest.raises(PluginError, match=words):
         integrate(Newmark(), system, start, Schedule(1e-6, 10, 1))
     with pytest.raises(PluginError, match=words):
-        SteppedBearing(system).begin(start)
+        _SteppedBearing(system).begin(start)

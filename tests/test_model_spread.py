@@ -8,7 +8,7 @@ import pytest
 import raceway as rw
 from raceway.framework.estimate import Estimate
 from raceway.out.quantities import KYY, K
-from raceway.pipeline.run_screen import model_rows
+from raceway.pipeline.run_screen import _model_rows
 from raceway.points.dataset import values_of
 from validation.command_line import EXAMPLES
 
@@ -121,15 +121,15 @@ def test_the_spread_is_no_part_of_the_total_and_a_number_of_every_point():
 
 
 def test_the_screen_says_it_beside_k():
-    told = [row[2] for row in model_rows(rw.run(MOVING).to_dict(), K)]
+    told = [row[2] for row in _model_rows(rw.run(MOVING).to_dict(), K)]
     assert any("gyroscopic moments would give +" in line and line.endswith("kinematics.gyroscopic") for line in told)
     assert any("ring growth would give +" in line for line in told)
     slow = {**STATIC, "kinematics": {"spin_speed_rpm": 100.0}}
-    assert model_rows(rw.run(slow).to_dict(), KYY) == []
+    assert _model_rows(rw.run(slow).to_dict(), KYY) == []
 
 
 def test_a_change_above_all_of_k_is_a_number_that_people_read():
-    rows = model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
+    rows = _model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
         {"key": "kinematics.ring_growth", "value": True, "kyy": 3.7},
     ]}, "short": {"model": ""}}}, KYY)  # fmt: skip
     assert [row[2] for row in rows] == ["model: ring growth would give kyy +370 %: kinematics.ring_growth"]
@@ -138,9 +138,9 @@ def test_a_change_above_all_of_k_is_a_number_that_people_read():
 def test_the_screen_says_where_the_spread_is_not_estimated():
     """A run-up has no steady motion to compare with: its K has no range, and that is not left to result.json."""
     result = rw.run(EXAMPLES / "run_up.toml").to_dict()
-    (row,) = model_rows(result, K, KYY)
+    (row,) = _model_rows(result, K, KYY)
     assert result["error"]["how"]["model"].startswith("not estimated: ") and result["error"]["how"]["model"] in row[2]
-    assert model_rows({"error": {"model": None, "short": {"model": Estimate.NOTHING_TURNS().short}}}, KYY) == []
+    assert _model_rows({"error": {"model": None, "short": {"model": Estimate.NOTHING_TURNS().short}}}, KYY) == []
 
 
 def test_what_is_left_out_by_default_is_said_so():

@@ -7,7 +7,7 @@ import pytest
 
 from raceway.core.periodic.floquet import Floquet, floquet_of
 from raceway.core.ring.orbit import at_time, differentiation, from_orbit, steady_orbit
-from raceway.pipeline.simulate import chosen_start
+from raceway.pipeline.simulate import _chosen_start
 from raceway.testing import b7206c, model_of, solve_equilibrium
 from validation.reference.ring import Ring
 from validation.reference.shooting import periodic, swinging
@@ -89,7 +89,7 @@ def test_a_slow_motion_starts_on_its_orbit(built, rpm):
         )
     )
     now = solve_equilibrium(model)
-    start = chosen_start(model, now)
+    start = _chosen_start(model, now)
     assert start.kind == "orbit" and start.settled and not start.warnings
     found = np.abs(np.fft.rfft(start.orbit.displacement[:, 1])[1]) * 2.0 / len(start.orbit.displacement)
     # Places of 1e-14 m stand in rounded sums of gaps of 1e-5 m.

@@ -17,7 +17,7 @@ from raceway.framework.options import nearest
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
 from raceway.pipeline.simulate import _stride
-from raceway.planning.resolve import damped_limit, resolve, samples_per_turn
+from raceway.planning.resolve import _damped_limit, resolve, samples_per_turn
 from raceway.planning.rules import scene_warnings
 from raceway.testing import b7206c
 from validation.command_line import EXAMPLES
@@ -223,7 +223,7 @@ def test_check_says_what_is_implausible_and_takes_a_window_as_long_as_the_record
 def test_the_stable_step_with_dashpots_is_that_of_one_damped_mode(time_constant):
     """Velocity Verlet, whose forces see the predicted velocity v + dt a, with c = tau k: eigenvalues on the unit circle at the limit."""
     limit, w = 1e-6, 2e6
-    dt = damped_limit(limit, time_constant)
+    dt = _damped_limit(limit, time_constant)
 
     def growth(dt):
         """Of (q, v, a) over a step."""

@@ -12,7 +12,7 @@ import pytest
 
 from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.pipeline.equilibrium import peak
-from raceway.pipeline.transient_error import hann_line
+from raceway.pipeline.transient_error import _hann_line
 from raceway.points import precision as module
 from raceway.points.engine import measured
 from raceway.points.precision import THRESHOLDS, precision
@@ -259,10 +259,10 @@ def test_hanns_line_of_a_periodic_signal_is_exact_and_leaks_less_of_another():
     periodic = 3.0 + 2.0 * np.cos(2.0 * np.pi * t - 0.3) + 0.5 * np.cos(4.0 * np.pi * t)
     exact = 2.0 * np.exp(-0.3j)
     # Rounding of 1440 terms.
-    assert abs(hann_line(t, periodic[:, None], 1.0)[0] - exact) < 1e-12
+    assert abs(_hann_line(t, periodic[:, None], 1.0)[0] - exact) < 1e-12
     free = periodic + np.cos(2.0 * np.pi * 5.37 * t)
     plain = 2.0 * (np.exp(-2j * np.pi * t) * free).mean()
-    assert abs(hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
+    assert abs(_hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
 
 
 def test_a_peak_between_samples_is_found():

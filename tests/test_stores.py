@@ -11,7 +11,7 @@ import pytest
 import xarray
 
 from raceway.errors import RacewayError, SceneError
-from raceway.points.plot import LIST, draw, keys_of, layout, parse_at, select
+from raceway.points.plot import LIST, _keys_of, draw, layout, parse_at, select
 from raceway.studies.rotor import ross_file
 from tests.stores import SPEEDS, as_list, made, stiffness
 from validation.command_line import invoke
@@ -144,7 +144,7 @@ def test_files_are_whole_repeatable_and_named_by_their_ending(tmp_path):
 def test_a_chosen_value_leaves_the_other_axis_in_rising_order(shape):
     data = shape(made(AXES))
     found = select(data, {"load.axial": 1000})
-    assert keys_of(data) == list(AXES)
+    assert _keys_of(data) == list(AXES)
     assert found.fixed == {"load.axial": 1000.0}
     assert found.axes == {"excitation.speed_rpm": SPEEDS.tolist()}
     # A selection moves numbers and computes none.

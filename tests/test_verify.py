@@ -14,7 +14,7 @@ from raceway.framework.registry import Registry
 from raceway.integrators.methods import Newmark
 from raceway.studies.verify import study as module
 from raceway.studies.verify.reference import reference_cases
-from raceway.studies.verify.study import COMPUTED, Verification, verify
+from raceway.studies.verify.study import COMPUTED, _Verification, verify
 
 
 def test_every_case_to_be_checked_is_computed_and_no_other():
@@ -68,7 +68,7 @@ def test_a_number_outside_its_tolerance_fails_and_nothing_computed_is_no_pass(mo
     wrong = attrs.evolve(case, outputs={"dr_um": case.outputs["dr_um"] * 1.001})
     monkeypatch.setattr(module, "reference_cases", lambda: {case.id: wrong})
     found = verify()
-    assert not found.passed and not Verification(()).passed
+    assert not found.passed and not _Verification(()).passed
     # 0.1 % of the reference, less our own 7e-6.
     assert found.rows[0].error == pytest.approx(1e-3, rel=0.02)
 

@@ -116,7 +116,7 @@ def _law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarra
     return force, -d_gap
 
 
-def approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
+def _approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
     """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
     load = np.asarray(load, dtype=float)
     low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
@@ -149,7 +149,7 @@ def contact_ellipse(
     if not problem.traits.resultants or not is_foundation(contact.law):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
-    approach = approach_at(ring, basis.geometry.ball_diameter, race, load)
+    approach = _approach_at(ring, basis.geometry.ball_diameter, race, load)
     slope = _law_of_pair(ring, race, approach)[1]
     return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)
 

@@ -79,7 +79,7 @@ class _ElasticCost:
     step_s: float
 
 
-def elastic_cost(problem: Problem) -> _ElasticCost | None:
+def _elastic_cost(problem: Problem) -> _ElasticCost | None:
     """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
     mesh = predicted_mesh(problem)
     if mesh is None:
@@ -174,7 +174,7 @@ def _stable_step(problem: Problem) -> float:
     return float((elements**-2 + contacts**-2) ** -0.5)
 
 
-def allowed_bytes() -> float:
+def _allowed_bytes() -> float:
     """Memory that this process may take: the machine's, its container's or its own limit; inf where the system does not tell."""
     return min(_machine_bytes(), _container_bytes(), _own_bytes())
 
@@ -245,8 +245,8 @@ _RULES: tuple[Rule[Problem], ...] = (
 
 def _memory_faults(problem: Problem) -> list[Mistake]:
     """Meshes whose matrices this process cannot hold."""
-    cost = elastic_cost(problem)
-    most = _SHARE * allowed_bytes()
+    cost = _elastic_cost(problem)
+    most = _SHARE * _allowed_bytes()
     if cost is None or cost.bytes <= most:
         return []
     why = (
@@ -314,12 +314,12 @@ class Elastic:
 
     def stable_step(self, problem: Problem) -> float | None:
         """Of elements and contacts [s]; None where the mesher cannot tell."""
-        cost = elastic_cost(problem)
+        cost = _elastic_cost(problem)
         return None if cost is None or cost.stable_step_s == 0.0 else cost.stable_step_s
 
     def decide(self, problem: Problem, parts: Decisions) -> None:
         """What of the bodies is not left out: all of them."""
-        cost = elastic_cost(problem)
+        cost = _elastic_cost(problem)
         size = "" if cost is None else f": {words(cost)}"
         parts.keep(
             "elastic rings and balls", f"bodies.kind is elastic: finite elements of rings and balls, every node{size}"
@@ -352,7 +352,7 @@ class Elastic:
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
-        cost = elastic_cost(problem)
+        cost = _elastic_cost(problem)
         if cost is None:
             return Cost(START_S, scales=False, at_least=True)
         seconds = START_S + cost.equilibrium_s

@@ -84,9 +84,8 @@ def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
         balls = np.flatnonzero(np.isin(basis.row, rows))
         if same not in shift_of:
             start = 0.05 * basis.geometry.centre_distance * _AXIAL
-            shift_of[same] = (
-                _under(_some(loose, balls, facing=True), force).solve_equilibrium(start)[0][0] if force > 0.0 else 0.0
-            )
+            facing = _under(_some(loose, balls, facing=True), force)
+            shift_of[same] = facing.solve_equilibrium(start)[0][0] if force > 0.0 else 0.0
         shifts[balls] = shift_of[same]
     return shifts
 

@@ -19,7 +19,7 @@ class Studies(Commands):
         return default_registry().names("study")
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        return command_of(cmd_name) if cmd_name in self.list_commands(ctx) else None
+        return _command_of(cmd_name) if cmd_name in self.list_commands(ctx) else None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         registry = default_registry()
@@ -30,7 +30,7 @@ class Studies(Commands):
             formatter.write_text(f"not loaded: {fault}")
 
 
-def command_of(name: str) -> click.Command:
+def _command_of(name: str) -> click.Command:
     """The command of a study.
 
     Raises

@@ -50,7 +50,7 @@ class Walther:
         return log(self.viscosity(temperature - 0.01) / self.viscosity(temperature + 0.01)) / 0.02
 
 
-def mineral_thinning(viscosity: float, temperature: float) -> float:
+def _mineral_thinning(viscosity: float, temperature: float) -> float:
     """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
     from numpy import interp
 
@@ -198,7 +198,7 @@ class Film:
             return self.temperature_viscosity
         if self.viscosity is None:
             return self._line.thinning(at)
-        return mineral_thinning(1e6 * self.viscosity / self.density, at)
+        return _mineral_thinning(1e6 * self.viscosity / self.density, at)
 
     def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""

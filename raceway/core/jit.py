@@ -70,7 +70,7 @@ def take_compile_seconds() -> float:
 
 
 @cache
-def kernel_folder() -> OpenFolder | None:
+def _kernel_folder() -> OpenFolder | None:
     """The folder that this process reads and writes compiled kernels in; None when there is none."""
     folder = opened(current_folder())
     if isinstance(folder, OpenFolder):
@@ -223,7 +223,7 @@ class Kernel(_Dispatcher):
         clock["loaded" if hit else "compiled"] += 1
 
     def _through_cache(self) -> None:
-        folder = kernel_folder()
+        folder = _kernel_folder()
         if folder is None:
             clock["unkept"] += 1
             super().compile(self.signature)

@@ -260,7 +260,7 @@ def _sampling(run: Identified) -> Part:
     """Of a series of equilibria, by a second one with more of them."""
     tolerance = getattr(run.model.problem.integrator.method, "tolerance", 0.0)
     steps = run.motion.steps_per_turn
-    count = more_equilibria(steps)
+    count = _more_equilibria(steps)
     if not fits(run.model.plan.turns, count, run.model.system.ball_count, inertial=False):
         return Part(None, Estimate.SECOND_SERIES_TOO_LARGE(count=count))
     try:
@@ -272,7 +272,7 @@ def _sampling(run: Identified) -> Part:
     return Part(float(abs(shift)), Estimate.SECOND_SERIES(count=count, steps=steps), shift)
 
 
-def more_equilibria(steps: int) -> int:
+def _more_equilibria(steps: int) -> int:
     """Equilibria a turn of the second series: more than twice as many, and no few."""
     return max(2 * steps + 1, _LEAST_EQUILIBRIA)
 

@@ -133,7 +133,7 @@ class Gradient:
 
 
 @attrs.define(eq=False)
-class SteadyOrbit:
+class _SteadyOrbit:
     """The steady orbit of a model under its excitation.
 
     Attributes
@@ -149,7 +149,7 @@ class SteadyOrbit:
         return self.orbit.refined.solved
 
     @classmethod
-    def of(cls, model: Model, equilibrium: Equilibrium) -> SteadyOrbit:
+    def of(cls, model: Model, equilibrium: Equilibrium) -> _SteadyOrbit:
         """Search for it.
 
         Raises
@@ -224,7 +224,7 @@ class Gradients:
             raise SceneError.at("bodies.kind", self.model.problem.bodies.name, f"{why} on rigid or condensed bodies")
 
     @cached_property
-    def orbit(self) -> SteadyOrbit | None:
+    def orbit(self) -> _SteadyOrbit | None:
         """The steady orbit, searched for once; None in a static scene.
 
         Raises
@@ -233,7 +233,7 @@ class Gradients:
             The force has none, or none was found.
         """
         searched = self.moving and self.model.excitation is not None
-        return SteadyOrbit.of(self.model, self.equilibrium) if searched else None
+        return _SteadyOrbit.of(self.model, self.equilibrium) if searched else None
 
     def by_path(self, path: str) -> Gradient:
         """By the key of a path, such as "load.axial".
@@ -448,7 +448,7 @@ def _unevenness(sides: Sequence[np.ndarray], middle: np.ndarray) -> np.ndarray:
     return np.where(first > 0.1 * second, np.maximum(second, 0.0) / np.maximum(first, 1e-300), 0.0)
 
 
-def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
+def values(model: Model, equilibrium: Equilibrium, orbit: _SteadyOrbit | None) -> dict[str, float]:
     """The numbers that a scene has, by their symbols: of the steady orbit, and at rest."""
     numbers: dict[str, float] = {}
     if orbit is not None:

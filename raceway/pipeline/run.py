@@ -129,7 +129,7 @@ def _run(
 ) -> Result:
     started, processor = working_clock(), working_process_time()
     plan = make_plan(scene)
-    allowance = Allowance.of(plan, patience)
+    allowance = _Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
     built = working_clock()
@@ -188,7 +188,7 @@ class _Answer:
 
 
 def _answer(
-    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: Allowance, doubts: list[str]
+    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: _Allowance, doubts: list[str]
 ) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
@@ -228,7 +228,7 @@ def _motions(
 
 
 def _moved(
-    model: Model, move: Callable[[Model], list[Simulation]], allowance: Allowance, registry: Registry
+    model: Model, move: Callable[[Model], list[Simulation]], allowance: _Allowance, registry: Registry
 ) -> tuple[Model, list[Simulation], list[str]]:
     """The motions; integrated over time, with a warning, where planning chose a steady orbit that is not found or is unstable."""
     automatic = model.problem.integrator.method.steady and model.problem.integrator_why != ""
@@ -361,7 +361,7 @@ def _environment(problem: Problem, registry: Registry) -> Tables:
 
 
 @attrs.define
-class Allowance:
+class _Allowance:
     """Processor time [s] and memory [B] that a run may take; kernels that compile do not count.
 
     Attributes
@@ -374,10 +374,10 @@ class Allowance:
     patience: float
     started: float = attrs.field(factory=lambda: working_processor_time())
     bytes: float = 0.0
-    held: float = attrs.field(factory=lambda: resident_bytes())
+    held: float = attrs.field(factory=lambda: _resident_bytes())
 
     @classmethod
-    def of(cls, plan: ScenePlan, patience: float) -> Allowance:
+    def of(cls, plan: ScenePlan, patience: float) -> _Allowance:
         """Without an end where the plan knows no more than what a run takes at least."""
         planned = max(plan.predicted_wall_s, _LEAST_S)
         if plan.at_least or patience == inf:
@@ -391,7 +391,7 @@ class Allowance:
     @property
     def grown(self) -> bool:
         """Whether the run itself holds far more than planned: what earlier runs left in the process is not its own."""
-        return self.bytes > 0.0 and resident_bytes() - self.held > _MOST_MEMORY * self.bytes + _COMPILING
+        return self.bytes > 0.0 and _resident_bytes() - self.held > _MOST_MEMORY * self.bytes + _COMPILING
 
     @property
     def spent(self) -> bool:
@@ -422,7 +422,7 @@ class Allowance:
             raise BeyondPlanError(self.words(f"stopped far beyond the plan, in {label}, {count} done"))
 
 
-def resident_bytes() -> float:
+def _resident_bytes() -> float:
     """Memory that this process holds; 0 where the system does not tell."""
     try:
         return float(Path("/proc/self/statm").read_text().split()[1]) * float(os.sysconf("SC_PAGE_SIZE"))

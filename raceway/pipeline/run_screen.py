@@ -62,7 +62,7 @@ def _answer_rows(result: ReadTables) -> list[Row]:
         (f"Answer at {SPEED.of(result):g} r/min, {tilt_words(found['tilt'])}", "", ""),
         # The error of Z: larger than the same share of K where m w^2 cancels K.
         K.fact(result, f"{K.words}, m = {MASS.of(result):.4g} kg"),
-        *model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
+        *_model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
         *_damping_rows(result),
         Z.fact(result, "dynamic stiffness, force over displacement"),
         ("orbit, semi-axes", axes, f"1x motion{', a line' if thin else ''}"),
@@ -90,7 +90,7 @@ def _damping_rows(result: ReadTables) -> list[Row]:
     ]
 
 
-def model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
+def _model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
     """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
     spread, why = result["error"]["model"], result["error"]["short"]["model"]
     if spread is None:
@@ -110,7 +110,7 @@ def _static(result: ReadTables) -> list[Row]:
     return [
         ("Answer of a static scene", "", "without a table [excitation] there is no K(w), C or orbit to identify"),
         *tangent_rows(result),
-        *model_rows(result, KYY_TILTS_FOLLOW, KYY),
+        *_model_rows(result, KYY_TILTS_FOLLOW, KYY),
         *loaded_balls(result, ["most"]),
     ]
 

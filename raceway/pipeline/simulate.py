@@ -120,7 +120,7 @@ def simulate(
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
-    start = start or chosen_start(model, equilibrium, watch)
+    start = start or _chosen_start(model, equilibrium, watch)
     critical = _critical_step(model, equilibrium, start.orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
@@ -153,7 +153,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     return motions
 
 
-def chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
+def _chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     problem, method = model.problem, model.problem.integrator.method
     if method.steady:

@@ -37,7 +37,7 @@ from raceway.points.axes import Axis, shown
 from raceway.storage.tables import Tables
 
 
-def factorial_effects(values: np.ndarray) -> np.ndarray:
+def _factorial_effects(values: np.ndarray) -> np.ndarray:
     """Effects of a two-level factorial.
 
     Parameters
@@ -77,7 +77,7 @@ class Effect:
 
 
 @attrs.frozen(eq=False, slots=False)
-class Factorial:
+class _Factorial:
     """One quantity at all corners.
 
     Attributes
@@ -102,7 +102,7 @@ class Factorial:
     @cached_property
     def effects(self) -> list[Effect]:
         """All terms, the largest first."""
-        coefficients = factorial_effects(np.log(self.corners))
+        coefficients = _factorial_effects(np.log(self.corners))
         squares = float((coefficients**2).sum() - coefficients[(0,) * coefficients.ndim] ** 2)
         terms = []
         for order in range(1, len(self.keys) + 1):
@@ -138,7 +138,7 @@ class Factorial:
         return float(values[tuple(index)].mean())
 
 
-def whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
+def _whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
     """The largest factorial without holes: for each axis None (both ends) or the end it must be held at.
 
     Parameters
@@ -287,7 +287,7 @@ class Findings:
         return {axis.key: axis.ends[end] for axis, end in held if end is not None}
 
     @cached_property
-    def factorials(self) -> dict[str, Factorial]:
+    def factorials(self) -> dict[str, _Factorial]:
         """For each quantity its corners; empty when there is nothing to analyse."""
         part = self._whole_part
         if part is None or all(end is not None for end in part):
@@ -299,7 +299,7 @@ class Findings:
         for name in self.quantities:
             values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
             if (values > 0.0).all():  # x may have either sign: then it has no logarithm
-                factorials[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+                factorials[name] = _Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
         return factorials
 
     @cached_property
@@ -317,7 +317,7 @@ class Findings:
         if not self.varied:
             return None
         usable = [row is not None and row.doubt is None for row in self._corners.flat]
-        return whole_part(np.array(usable).reshape(self._corners.shape))
+        return _whole_part(np.array(usable).reshape(self._corners.shape))
 
     @cached_property
     def effects(self) -> list[Tables]:
@@ -447,7 +447,7 @@ def _courses(comparison: Findings) -> list[str]:
     return words
 
 
-def _together(factorial: Factorial, key: str, partner: str) -> float:
+def _together(factorial: _Factorial, key: str, partner: str) -> float:
     """Size of the interaction of two axes."""
     return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {key, partner}), default=0.0)
 
@@ -572,7 +572,7 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
     return farthest
 
 
-def _mixed(factorial: Factorial, key: str) -> bool:
+def _mixed(factorial: _Factorial, key: str) -> bool:
     """Whether an axis raises the quantity at some value of another axis and lowers it at the other."""
     return any(
         factorial.resolved_change(key, {partner: 0}) * factorial.resolved_change(key, {partner: 1}) < 0.0
@@ -581,7 +581,7 @@ def _mixed(factorial: Factorial, key: str) -> bool:
     )
 
 
-def _where_resolved(comparison: Findings, factorial: Factorial, key: str) -> str:
+def _where_resolved(comparison: Findings, factorial: _Factorial, key: str) -> str:
     """At which end of another axis the change along one is resolved although its mean is not."""
     words = []
     for partner in (name for name in factorial.keys if name != key):
@@ -617,7 +617,7 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
     return words
 
 
-def _ordered(comparison: Findings, factorial: Factorial, effect: Effect) -> tuple[Axis, Axis]:
+def _ordered(comparison: Findings, factorial: _Factorial, effect: Effect) -> tuple[Axis, Axis]:
     """(the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two."""
     main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
     a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))

@@ -92,7 +92,7 @@ class Preset:
 @cache
 def catalogue() -> dict[str, Preset]:
     """All presets by name: those with a file of their own, then the series."""
-    presets = dict(single_presets())
+    presets = dict(_single_presets())
     for file in _tomls(files("raceway").joinpath("data/series")):
         for entry in _series(tomllib.loads(file.read_text(encoding="utf-8"))):
             presets.setdefault(entry.name, entry)
@@ -100,7 +100,7 @@ def catalogue() -> dict[str, Preset]:
 
 
 @cache
-def single_presets() -> dict[str, Preset]:
+def _single_presets() -> dict[str, Preset]:
     """Presets with a file of their own; they go before those of a series."""
     return {entry.name: entry for entry in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
 
@@ -109,7 +109,7 @@ def _preset(name: object) -> Preset | None:
     """One preset; a series is read only where it has to be."""
     if not isinstance(name, str):
         return None
-    return single_presets().get(name) or catalogue().get(name)
+    return _single_presets().get(name) or catalogue().get(name)
 
 
 def _tomls(folder: Traversable) -> list[Traversable]:

@@ -14,7 +14,7 @@ from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import from_orbit, static_orbit, steady_orbit
 from raceway.core.ring.system import System
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.core.structural import ElasticBodies, RingCompliance, elastic_system
+from raceway.core.structural import ElasticBodies, _RingCompliance, elastic_system
 from raceway.core.time.schemes import integrate
 from raceway.testing import b7206c, model_of
 
@@ -29,7 +29,7 @@ BED = 1e-9 * np.array([
 ])  # fmt: skip
 
 
-def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | None = None) -> RingCompliance:
+def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | None = None) -> _RingCompliance:
     """A ring whose own compliance [m/N] changes by ``slope`` [m/N/rad] and as much again by its square.
 
     between : (7, 3) compliances between groove centres; the first one is added to the ring's own.
@@ -43,7 +43,7 @@ def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | 
             table[:, :, k] = axial * np.outer(sine, sine) + radial * np.outer(cosine, cosine)
             table[:, :, k] += cross * (np.outer(sine, cosine) + np.outer(cosine, sine))
         values = values + np.diagonal(table[:, :, 0])
-    return RingCompliance(ANGLES, values, table, 1, np.array([1e-3]), 1e-3)
+    return _RingCompliance(ANGLES, values, table, 1, np.array([1e-3]), 1e-3)
 
 
 def elastic(

@@ -13,7 +13,7 @@ from raceway.core.record import Schedule
 from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.orbit import at_rest
-from raceway.core.ring.ring import SteppedBearing
+from raceway.core.ring.ring import _SteppedBearing
 from raceway.core.time.schemes import integrate
 from raceway.plugins.excitations import Bidirectional, RunUp
 from raceway.scene.growth import ring_inertia
@@ -334,7 +334,7 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     q, ball, _ = system.solve_equilibrium(model.guess)
     start = at_rest(system, q, ball, False)
     compiled = integrate(model.scene.integrator.method, model.system, start, schedule)
-    stepped = integrate(model.scene.integrator.method, SteppedBearing(model.system), start, schedule)
+    stepped = integrate(model.scene.integrator.method, _SteppedBearing(model.system), start, schedule)
     # 1e-9 of the step's forces is Newton's tolerance.
     assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from raceway import load_scene
-from raceway.bodies.elastic import elastic_cost
+from raceway.bodies.elastic import _elastic_cost
 from raceway.bodies.mesh import mesh_bodies
 from raceway.bodies.model import build_model
 from raceway.elastic.assembly import Assembly
@@ -143,7 +143,7 @@ def test_cost_at_rest(claim):
 @pytest.mark.parametrize("name", SIZES)
 def test_plan(claim, name):
     """Before this process grows: a child's peak memory begins with its parent's."""
-    cost = elastic_cost(resolve(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()])))
+    cost = _elastic_cost(resolve(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()])))
     run = measured(dict(SIZES[name])) if SIZES[name] else static("1000 N")
     size = f"plan, {run['model']['mesh']['cells']} elements"
     twice = {"at_least": 0.5, "at_most": 2.0, "source": "a plan decides whether to start"}

@@ -9,11 +9,11 @@ from raceway import build_model, load_scene, scene_from_dict
 from raceway.core.jit import working_processor_time
 from raceway.errors import ConvergenceError, SceneError
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradients, NoDerivative, SteadyOrbit
+from raceway.pipeline.gradient import Gradients, NoDerivative, _SteadyOrbit
 from raceway.pipeline.run import run
 from raceway.points.band import band, design, indices
 from raceway.points.sensitivities import sensitivities
-from raceway.scene.catalogue import single_presets
+from raceway.scene.catalogue import _single_presets
 from raceway.scene.changes import continuous_keys, with_number
 
 pytestmark = pytest.mark.night
@@ -28,7 +28,7 @@ LIMIT = {"at_most": 1e-6, "basis": "own other method"}
 
 def drawn(rng, bodies):
     axial = float(10.0 ** rng.uniform(1.7, 3.3))
-    names = sorted(single_presets())
+    names = sorted(_single_presets())
     tables = {
         "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))},
         "bodies": {"kind": bodies},
@@ -166,7 +166,7 @@ def error_of_orbit(tables, step):
             continue
         lines = {}
         for k, one in moved(model, key, step * abs(key.value)).items():
-            there = SteadyOrbit.of(one, solve_equilibrium(one))
+            there = _SteadyOrbit.of(one, solve_equilibrium(one))
             lines[k] = there.line[[0, 4]]
         other = complex(*derivative(lines, step * abs(key.value)))
         off.append(abs(gradient.motion.dynamic_stiffness - other) * abs(key.value))

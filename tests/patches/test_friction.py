@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import make_plan, scene_from_dict
-from raceway.bodies.condensed import patch_cost
+from raceway.bodies.condensed import _patch_cost
 from raceway.core.patches.balls import Gyroscopic
 from raceway.core.patches.friction import Friction, Traction
 from raceway.core.patches.pressure import Contact, SlipState
@@ -161,7 +161,7 @@ def test_what_a_plan_says_of_friction_and_inertia():
     assert {"friction", "inertia of the balls in their meridian planes"} <= kept
     slow = scene_from_dict(tables(**ROTATING, integrator={"kind": "quasi_static"}))
     assert "inertia of the balls in their meridian planes" in {part.part for part in make_plan(slow).left_out}
-    assert patch_cost(resolve(found)).step_s > patch_cost(resolve(slow)).step_s
+    assert _patch_cost(resolve(found)).step_s > _patch_cost(resolve(slow)).step_s
     assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
 
 

@@ -154,7 +154,7 @@ def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
 
 
 @attrs.frozen(repr=False)
-class Listing(Answer):
+class _Listing(Answer):
     """Bearings or materials.  ``title``: what they are;  ``content``: the tables;  ``parts``: what a terminal shows."""
 
     title: str
@@ -171,7 +171,7 @@ class Listing(Answer):
         return self.title, []
 
 
-def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bool = False) -> Listing:
+def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bool = False) -> _Listing:
     """List bearings whose name matches PATTERN; of a single one, all numbers with source and scatter, and its frequencies.
 
     Parameters
@@ -210,14 +210,14 @@ def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bo
         for row in rows
     ]
     hint = f'{len(rows)} bearings; raceway catalogue NAME shows one; preset = "NAME" in a scene takes it'
-    return Listing(hint, {"bearings": rows}, [lines, Words(hint, "dim")])
+    return _Listing(hint, {"bearings": rows}, [lines, Words(hint, "dim")])
 
 
 def _mm(metres: float | None) -> str:
     return "-" if metres is None else f"{1e3 * metres:.5g}"
 
 
-def _entry(preset: Preset, picture: Path | None) -> Listing:
+def _entry(preset: Preset, picture: Path | None) -> _Listing:
     """One bearing: numbers with source and scatter, ball-pass frequencies at the free contact angle, what is inferred."""
     scene = scene_from_dict({"title": preset.name, "bearing": {"preset": preset.name}}, Registry(third_party=False))
     b, rows = scene.bearing, list[Row]([("Dimensions", "", "")])
@@ -259,10 +259,10 @@ def _entry(preset: Preset, picture: Path | None) -> Listing:
         "files": [] if picture is None else [str(save_figure(_section(preset.name, b), picture, 150))],
     }
     parts += [Words(f"{', '.join(names)}: {source}", "dim") for source, names in sources.items()]
-    return Listing(preset.title, content, [*parts, *written(content["files"])])
+    return _Listing(preset.title, content, [*parts, *written(content["files"])])
 
 
-def _materials() -> Listing:
+def _materials() -> _Listing:
     """The materials of rings and balls, in SI units, with their sources."""
     lines = [
         {
@@ -276,4 +276,4 @@ def _materials() -> Listing:
         for material in materials().values()
     ]
     sources = [Words(f"{material.name}: {material.source}", "dim") for material in materials().values()]
-    return Listing("Materials", {"materials": list(map(attrs.asdict, materials().values()))}, [lines, *sources])
+    return _Listing("Materials", {"materials": list(map(attrs.asdict, materials().values()))}, [lines, *sources])

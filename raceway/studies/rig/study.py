@@ -110,7 +110,7 @@ class _Point:
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class RigStudy(Answer):
+class _RigStudy(Answer):
     """All points, with the rig and its critical speeds [r/min] by axial load.
 
     Attributes
@@ -254,7 +254,7 @@ def rig(
     kept: Path | None = None,
     plugins: Sequence[Path] = (),
     progress: _OnProgress | None = None,
-) -> RigStudy:
+) -> _RigStudy:
     """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
@@ -306,7 +306,7 @@ def rig(
         elif k not in points:
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
     solved = [points[k] for k in sorted(points)]
-    return RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
+    return _RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
@@ -329,7 +329,7 @@ _KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "windo
 _LEAST_PERCENT = 1e-4
 
 
-def _procedures(study: RigStudy) -> Figure:
+def _procedures(study: _RigStudy) -> Figure:
     """True K over speed, and what each correction makes of it."""
     figure = new_figure(9.2, 3.8)
     loads = list(dict.fromkeys(point.axial for point in study.points))
@@ -355,7 +355,7 @@ def _procedures(study: RigStudy) -> Figure:
     return figure
 
 
-def _causes(study: RigStudy) -> Figure:
+def _causes(study: _RigStudy) -> Figure:
     """Error of K by one cause at a time: a dot for each speed and load, on a logarithmic scale."""
     names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
     figure = new_figure(9.2, 0.34 * len(names) + 1.1)
@@ -379,7 +379,7 @@ def _causes(study: RigStudy) -> Figure:
     return figure
 
 
-def _write_page(study: RigStudy, folder: Path) -> list[Path]:
+def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     """rig.html and its figures as PNG.
 
     RacewayError: matplotlib is missing, or a folder that cannot be written.
@@ -399,7 +399,7 @@ _ASSUMED = [
 ]
 
 
-def _page(study: RigStudy, drawn: dict[str, Figure]) -> Page:
+def _page(study: _RigStudy, drawn: dict[str, Figure]) -> Page:
     """Words, tables and figures."""
     content, rig, signals = study.to_dict(), study.rig, study.rig.signals
     worst, rows = content["worst"], content["rows"]

@@ -307,7 +307,7 @@ _IN_FULL = ("seed-static-pressures",)
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class Verification(Answer):
+class _Verification(Answer):
     """The rows of all cases that were computed; ``every``: whether a screen shows all of them."""
 
     stem: ClassVar[str] = "verify"
@@ -367,7 +367,7 @@ def verify(
     *,
     registry: Registry | None = None,
     progress: OnProgress | None = None,
-) -> Verification:
+) -> _Verification:
     """Compute reference cases; exit code 1 when a number misses its tolerance.
 
     Published numbers, closed forms, and this program by two ways are counted apart.
@@ -390,7 +390,7 @@ def verify(
         report(case.id, count, len(cases))
         rows += compute(case, registry)
     report("", len(cases), len(cases))
-    return Verification(tuple(rows), every)
+    return _Verification(tuple(rows), every)
 
 
 def _cases(only: str | Iterable[str]) -> list[Case]:
