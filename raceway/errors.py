@@ -76,7 +76,7 @@ class Mistake:
     """
 
     path: str
-    value: Any
+    value: object
     message: str
 
     def __str__(self) -> str:
@@ -84,7 +84,7 @@ class Mistake:
         return f"`{self.path}`{shown}: {self.message}"
 
 
-def _short(value: Any) -> str:
+def _short(value: object) -> str:
     try:
         text = repr(value)
     except Exception:  # of a foreign object
@@ -114,7 +114,7 @@ class SceneError(RacewayError):
         super().__init__("\n".join(str(m) for m in self.mistakes))
 
     @classmethod
-    def at(cls, path: str, value: Any, message: str) -> SceneError:
+    def at(cls, path: str, value: object, message: str) -> SceneError:
         return cls([Mistake(path, value, message)])
 
 
@@ -145,7 +145,7 @@ class MeshError(RacewayError):
     mistake: Mistake | None = None
 
     @classmethod
-    def at(cls, path: str, value: Any, message: str) -> MeshError:
+    def at(cls, path: str, value: object, message: str) -> MeshError:
         mistake = Mistake(path, value, message)
         error = cls(str(mistake))
         error.mistake = mistake

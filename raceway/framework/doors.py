@@ -15,7 +15,7 @@ from raceway.errors import SceneError
 
 F = TypeVar("F", bound=Callable[..., Any])
 #: What an argument must be, and what converts it: TypeError or ValueError where it cannot.
-Reader = tuple[str, Callable[[Any], Any]]
+Reader = tuple[str, Callable[[Any], object]]
 #: No argument counts more: beyond, a number stands where another was meant.
 _MOST = 10**9
 
@@ -59,8 +59,8 @@ def member(argument: str, value: object, choices: Collection[str]) -> Any:
     return value
 
 
-def _reader(words: str, test: Callable[[Any], Any], convert: Callable[[Any], Any] = lambda value: value) -> Reader:
-    def read(value: object) -> Any:
+def _reader(words: str, test: Callable[[Any], object], convert: Callable[[Any], object] = lambda value: value) -> Reader:
+    def read(value: object) -> object:
         if not test(value):
             raise ValueError(words)
         return convert(value)
@@ -80,7 +80,7 @@ def _number(words: str, test: Callable[[float], bool]) -> Reader:
 def _several(of: Reader) -> Reader:
     """Lists of values, or one value alone."""
 
-    def read(value: Any) -> list[Any]:
+    def read(value: Any) -> list[object]:
         alone = isinstance(value, str | bytes | Mapping | os.PathLike) or not isinstance(value, Iterable)
         return [of[1](element) for element in ([value] if alone else value)]
 
@@ -95,7 +95,7 @@ def _tells(value: Any) -> bool:
     return isinstance(value, bool) or bool(inspect.signature(value).bind("what", 0, 1))
 
 
-def _table(value: object) -> Any:
+def _table(value: object) -> object:
     texts = _TEXTS[1](list(value) if isinstance(value, Mapping) else value)
     return value if isinstance(value, Mapping) else texts
 

@@ -25,12 +25,13 @@ from raceway.out.quantities import (
     K,
     Quantity,
 )  # fmt: skip
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
 
 
-def labelled_dataset(variables: Any, coordinates: Any, attributes: Any) -> Any:
+def labelled_dataset(variables: Tables, coordinates: Any, attributes: Tables) -> Any:
     """An xarray.Dataset; RacewayError where xarray is missing."""
     try:
         import xarray
@@ -58,13 +59,13 @@ def labelled(result: Result) -> Any:
 
     state, z, names = result.equilibrium, result.model.system.ball_count, list(COORDINATES)
     angles = np.degrees([state.angle_inner, state.angle_outer])
-    arrays: list[tuple[Quantity, Any]] = [
+    arrays: list[tuple[Quantity, object]] = [
         (DISPLACEMENT, state.displacement),
         (STIFFNESS, state.stiffness),
         (BALL_LOAD, state.contact_force.reshape(2, z)),
         (CONTACT_ANGLE, angles),
     ]
-    coordinates: dict[str, Any] = {
+    coordinates: dict[str, object] = {
         "dof": names,
         "dof2": names,
         "race": ["inner", "outer"],

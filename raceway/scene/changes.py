@@ -229,7 +229,7 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
             yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
-def _replaced(part: Any, changes: _Changes, replace: Callable[..., Any] = attrs.evolve) -> Any:
+def _replaced(part: Any, changes: _Changes, replace: Callable[..., object] = attrs.evolve) -> Any:
     """A table, or an element of one, with values at paths into it."""
     if not all(steps for steps, _ in changes):
         return changes[0][1]

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from raceway.scene.scene import Scene
 
 #: What a user hands in as a scene: the scene, its path, its TOML text or its tables.
-SceneSource: TypeAlias = "Scene | str | os.PathLike[str] | Mapping[str, Any]"
+SceneSource: TypeAlias = "Scene | str | os.PathLike[str] | Mapping[str, object]"
 #: A change: ``"load.axial=400"``, ``{"load.axial": 400}`` or ``{"load": {"axial": 400}}``.
-Change = str | Mapping[str, Any]
+Change = str | Mapping[str, object]
 #: What makes a string the text of a scene rather than the name of a file.
 _SIGNS_OF_TOML = ("\n", "=", "[")
 #: Tables in tables and lists in lists; keys of scenes go five deep.
@@ -50,7 +50,7 @@ class Given:
     tables: Tables
     name: str = "untitled"
     folder: Path | None = None
-    changes: tuple[tuple[str, Any], ...] = ()
+    changes: tuple[tuple[str, object], ...] = ()
 
     def changed(self, *changes: object) -> Given:
         """With further changes, each a ``Change``.
@@ -62,7 +62,7 @@ class Given:
         """
         from raceway.scene.changes import parse_change
 
-        key_values: list[tuple[str, Any]] = []
+        key_values: list[tuple[str, object]] = []
         for change in changes:
             if isinstance(change, str):
                 key_values.append(parse_change(change))
@@ -245,7 +245,7 @@ def tidy(value: object, depth: int = 0) -> Any:
         raise SceneError.at("scene", value, f"holds text, numbers, lists and tables, no {kind}") from None
 
 
-def _quantity(value: Any) -> Any:
+def _quantity(value: Any) -> object:
     """A quantity of pint as a number with its unit in text, or several; a number where it has no unit."""
     unit = f"{value.units:~C}"
     try:

@@ -98,7 +98,7 @@ def _optional(inner: Any) -> Any:
     return lambda value, _type=None: None if value is None else inner(value, _type)
 
 
-_HOOKS: dict[Any, Any] = {
+_HOOKS: dict[object, Any] = {
     float: _number,
     int: _integer,
     str: _word,
@@ -203,7 +203,7 @@ def _converter() -> cattrs.Converter:
 def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
     """Type first, then the field's own rule, so that every field of a table is looked at."""
 
-    def hook(value: object, _type: object) -> Any:
+    def hook(value: object, _type: object) -> object:
         if isinstance(value, list | dict) and attribute.metadata.get("no_list"):
             raise ValueError(attribute.metadata["no_list"])
         if table_of_list(attribute.type) is not None and not isinstance(value, list | tuple):
