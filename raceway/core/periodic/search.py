@@ -7,11 +7,12 @@ from contextlib import suppress
 from functools import partial
 from itertools import islice, pairwise
 from math import ceil
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
 
+from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, one_pitch, one_turn, solve, stiff
 from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.intervals import Eliminated, forces
@@ -19,9 +20,6 @@ from raceway.core.periodic.refinement import Refined, displacements, motion_at, 
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
-
-if TYPE_CHECKING:
-    from raceway.core.periodic.branch import Point
 
 #: Samples a turn of the force: enough for eight harmonics.
 _SAMPLES = 32
@@ -316,8 +314,6 @@ def _force_continuation(
     small_points : points in a row of next to no force that end it, too: there it has become a free vibration
     ConvergenceError: there is no first point.
     """
-    from raceway.core.periodic.branch import Branch  # seldom needed
-
     _, lines = _response(problem, tangent)
     length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
 
@@ -401,7 +397,7 @@ def _by_homotopy(
         at = partial(_at_load, problem)
         with suppress(ConvergenceError):
             system = at(ratio).system
-            q_loaded, ball, _ = system.solve_equilibrium(q)
+            q_loaded, ball, _ = system.settle(q)
             stiff = system.evaluate(q_loaded, ball=ball).stiffness
             return _continued_to(at, q_loaded, stiff, tolerance, ratio, False), "from a heavier axial load"
     return None
@@ -446,8 +442,6 @@ def _continued_to(
 
     ConvergenceError: none leads there.
     """
-    from raceway.core.periodic.branch import Branch  # seldom needed
-
     far, sense = at(ratio), float(np.sign(1.0 - ratio))
     try:
         begin = directly(far, q, tangent, ROUGH)
