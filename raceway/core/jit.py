@@ -317,7 +317,7 @@ class _Part(Kernel):
         self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
 
     def _through_cache(self) -> None:
-        folder = kernel_folder()
+        folder = _kernel_folder()
         if folder is None:
             _Dispatcher.compile(self, self.signature)
             return

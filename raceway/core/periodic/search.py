@@ -397,7 +397,7 @@ def _by_homotopy(
         at = partial(_at_load, problem)
         with suppress(ConvergenceError):
             system = at(ratio).system
-            q_loaded, ball, _ = system.settle(q)
+            q_loaded, ball, _ = system.solve_equilibrium(q)
             stiff = system.evaluate(q_loaded, ball=ball).stiffness
             return _continued_to(at, q_loaded, stiff, tolerance, ratio, False), "from a heavier axial load"
     return None
