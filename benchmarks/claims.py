@@ -113,7 +113,8 @@ def claims_into(properties: list[tuple[str, Any]]) -> Callable[..., None]:
         if basis not in BASES:
             raise TypeError(f"basis {basis!r} is none of {', '.join(BASES)}")
         now = _cpu_s()
-        low, high = limits_of(near, within, at_least, at_most)
+        # Numbers of numpy do not travel from a worker's process.
+        low, high = (limit if limit is None else float(limit) for limit in limits_of(near, within, at_least, at_most))
         row = Claim(quantity, float(value), unit, low, high, basis, source, round(now - before, 2), misses)
         if machine and row.holds:
             row = attrs.evolve(row, misses="")
