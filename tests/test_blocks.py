@@ -205,6 +205,7 @@ def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_is_answered_within_a_second(tmp_path: Path) -> None:
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
     sweep = prepare(STATIC, grid(["load.axial=300:2000:1000", "kinematics.spin_speed_rpm=1000:24000:1000"]), tmp_path / "s")
     pressed: list[float] = []
 
@@ -220,6 +221,7 @@ def test_ctrl_c_is_answered_within_a_second(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         fill_store(sweep, Serial(), on_progress=after_a_block)
     assert time.monotonic() - pressed[1] < 1.0
+    signal.signal(signal.SIGINT, before)
     with open_store(tmp_path / "s") as store:
         assert store.status()["waiting"] > 0
 

@@ -220,7 +220,7 @@ def scaled(factor):
 
 def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeypatch):
     """Each saw an index without the other, as two processes may."""
-    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
+    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
     with monkeypatch.context() as both:
         both.setattr(IndexDataCacheFile, "_load_index", lambda self: {})
         assert [scaled(factor)(1.0) for factor in (2.0, 3.0)] == [2.0, 3.0]
@@ -231,7 +231,7 @@ def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeyp
 
 def test_variants_of_a_closure_from_two_processes_are_loaded_apart(tmp_path, monkeypatch):
     """numba counts the functions of a process: the symbols of both may have one number."""
-    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
+    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
     for factor in (2.0, 3.0):
         monkeypatch.setattr(FunctionIdentity, "_unique_ids", count(10**6))
         scaled(factor).compile()

@@ -37,5 +37,5 @@ def static_amplitude(tables: dict[str, Any]) -> np.ndarray:
     pitch, found = 360.0 / tables["bearing"].get("ball_count", 12), []
     for k in range(16):
         model = model_of({**still, "bearing": {**tables["bearing"], "first_ball_azimuth_deg": pitch * k / 16.0}})
-        found.append(model.system.settle(model.guess)[0])
+        found.append(model.system.solve_equilibrium(model.guess)[0])
     return np.abs(np.fft.fft(found, axis=0)[1]) / 8.0

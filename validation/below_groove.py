@@ -40,7 +40,7 @@ def below(load: float, nodes: float, formulation: str, **mesh: float) -> list[Be
     begin = time.process_time()
     # Sizes of the mesh by name, as callers give them: their types are those of `model`.
     found = model(load, nodes, formulation, **mesh)  # type: ignore[arg-type]
-    state = found.system.settle(guess(found, float(HERTZ.approach(load))))
+    state = found.system.solve_equilibrium(guess(found, float(HERTZ.approach(load))))
     cpu = time.process_time() - begin
     semi_axes = tuple(float(x) for x in HERTZ.semi_axes(load))
     # Two semi-axes, which a generator does not tell the type checker.

@@ -19,7 +19,7 @@ from raceway.core.mesh.hex_mesh import HexMesh, growing
 from raceway.elastic.assembly import Assembly, Body, Frame
 from raceway.elastic.bearing import ElasticSystem
 from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, groove, peak_at_nodes, peak_at_points, penalty_stiffness
-from raceway.elastic.newton import TOLERANCE, Settled
+from raceway.elastic.newton import TOLERANCE, StaticSolution
 from raceway.elastic.surface import Facets, surface_points
 from validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
 
@@ -153,7 +153,7 @@ def solve(load: float, nodes: float, tolerance: float = TOLERANCE, **options: fl
     """Model and equilibrium under a load, to a residual relative to the forces that balance."""
     begin = time.process_time()
     found = model(load, nodes, **options)  # type: ignore[arg-type]
-    state = found.system.settle(guess(found, float(HERTZ.approach(load))), tolerance)
+    state = found.system.solve_equilibrium(guess(found, float(HERTZ.approach(load))), tolerance)
     return answer(found, state, time.process_time() - begin)
 
 
@@ -161,11 +161,11 @@ def pressed(load: float, nodes: float, approach: float, **options: float | str) 
     """The same mesh with the approach prescribed [m]: what reaction it gives."""
     begin = time.process_time()
     found = model(load, nodes, prescribed=True, **options)  # type: ignore[arg-type]
-    state = found.system.settle(guess(found, approach))
+    state = found.system.solve_equilibrium(guess(found, approach))
     return answer(found, state, time.process_time() - begin)
 
 
-def answer(found: Groove, state: Settled, cpu: float) -> Answer:
+def answer(found: Groove, state: StaticSolution, cpu: float) -> Answer:
     """What a solution comes to; the contact is taken as the system last left it."""
     contact = found.system.contact
     assert contact is not None

@@ -297,7 +297,7 @@ def stresses() -> Rule:
     bodies = model.system.bodies
     from raceway.core.ring.system import surrogate
 
-    place, places, _ = surrogate(model.system).settle(model.guess)
+    place, places, _ = surrogate(model.system).solve_equilibrium(model.guess)
     system, y = bodies.system, bodies.guess(place, places)
     y += 1e-8 * np.random.default_rng(1).standard_normal(len(y))  # the guess moves rigid bodies: nothing to recover
     operators = [body.operator for body in system.assembly.bodies]

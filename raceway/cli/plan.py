@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import pi
 from pathlib import Path
 from typing import ClassVar
 
@@ -43,7 +44,7 @@ class _Planned(Answer):
             ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
             ("time step", step, f"{plan['predicted_steps']} steps"),
             *([_derived(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
-            _derived(plan, "spin_speed", "spin speed", "rad/s"),
+            _derived(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
             _wall_time(plan),
         ]
         yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
@@ -62,9 +63,9 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
     return _Planned(scene.title, make_plan(scene))
 
 
-def _derived(plan: ReadTables, name: str, words: str, unit: str = "") -> Row:
-    """A derived quantity and what decides it."""
-    return (words, number(plan["derived"][name]["value"], unit, 4), plan["derived"][name]["why"])
+def _derived(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
+    """A derived quantity, in so many ``units`` for one of its own, and what decides it."""
+    return (words, number(units * plan["derived"][name]["value"], unit, 5), plan["derived"][name]["why"])
 
 
 def _wall_time(plan: ReadTables) -> Row:

@@ -84,7 +84,7 @@ class RowSet:
             force, tangent = force + seen.T @ f, tangent + seen.T @ t @ seen
         return force, tangent
 
-    def settle(self, load: np.ndarray) -> np.ndarray:
+    def solve_equilibrium(self, load: np.ndarray) -> np.ndarray:
         """(5,) under axial and radial loads (3,), the tilts held."""
         scale = 1e-6
 
