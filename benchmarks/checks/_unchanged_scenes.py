@@ -13,8 +13,10 @@ _STRUCTURED = "mesh.element_size=2e-3 mesh.nodes_per_semi_axis=2"
 _MADE = "excitation.kind=bidirectional excitation.speed_rpm=12000 excitation.unbalance=3.2e-4"
 #: Name -> example, and the keys that are changed.
 SCENES = {
-    **{name: f"{name} {_NEWMARK}" for name in ("minimal", "b7206", "duplex_db", "gyroscopic", "measured", "set_tbt", "run_up")},
-    **{name: name for name in ("folds", "hardening_map", "orbiting", "steady_orbit", "test_rig", "b7206_elastic_coarse")},
+    **{name: f"{name} {_NEWMARK}" for name in (
+        "minimal", "b7206", "duplex_db", "gyroscopic", "measured", "set_tbt", "run_up", "b7206_elastic_coarse",
+    )},
+    **{name: name for name in ("folds", "hardening_map", "orbiting", "steady_orbit", "test_rig")},
     "penalty": f"b7206 {_QUICK} contact.kind=penalty",
     "penalty, stiffness": f"b7206 {_QUICK} contact.kind=penalty contact.stiffness=3e14",
     "film": f"b7206 {_QUICK} contact.kind=film contact.oil='VG 46' contact.temperature_c=60 contact.roughness=2e-7",
@@ -35,16 +37,16 @@ SCENES = {
     "tolerances": "minimal integrator.kind=periodic tolerances.load.axial='±10 %'",
     "DB, sprung preload": "duplex_db bearing.preload_kind=spring load.axial=200 integrator.kind=periodic",
     "DF": "duplex_db bearing.arrangement=DF integrator.kind=periodic load.radial=[100,50]",
-    "DT, static": "set_tbt bearing.arrangement=DT bearing.preload=0 load.axial=500",
+    "DT, static": f"set_tbt bearing.arrangement=DT bearing.preload=0 load.axial=500 {_NEWMARK}",
     "TBT, moved": f"set_tbt {_MADE} {_QUICK}",
     "condensed": f"b7206_condensed {_QUICK} {_STRUCTURED}",
     "condensed, orbiting": f"b7206_condensed {_SMALL} {_STRUCTURED} integrator.kind=quasi_static kinematics.orbiting=true load.radial=[200,0]",
     "points, unilateral": f"b7206_patches {_SMALL} {_STRUCTURED} integrator.kind=quasi_static",
     "points, hertz": f"b7206_patches {_SMALL} {_STRUCTURED} contact.kind=hertz kinematics.orbiting=false integrator.kind=quasi_static",
     "points, penalty, newmark": f"b7206_patches {_SMALL} {_STRUCTURED} contact.kind=penalty integrator.kind=newmark",
-    "points, static": f"b7206_article_mesh {_STRUCTURED} bodies.kind=condensed load.radial=[300,0]",
-    "elastic, full": "b7206_elastic_coarse bodies.formulation=full",
-    "elastic, one point, penalty": "b7206_elastic_coarse bodies.formulation=one_point contact.kind=penalty",
-    "elastic, points": f"b7206_article_mesh {_STRUCTURED} mesh.nodes_per_semi_axis=1",
+    "points, static": f"b7206_article_mesh {_STRUCTURED} bodies.kind=condensed load.radial=[300,0] {_NEWMARK}",
+    "elastic, full": f"b7206_elastic_coarse bodies.formulation=full {_NEWMARK}",
+    "elastic, one point, penalty": f"b7206_elastic_coarse bodies.formulation=one_point contact.kind=penalty {_NEWMARK}",
+    "elastic, points": f"b7206_article_mesh {_STRUCTURED} mesh.nodes_per_semi_axis=1 {_NEWMARK}",
     "elastic, moved": f"b7206_elastic_coarse {_MADE} {_SMALL} load.radial=[0,0]",
 }  # fmt: skip
