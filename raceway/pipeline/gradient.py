@@ -531,9 +531,9 @@ def first_order_band(
         gradients = Gradients(model, equilibrium)
     except SceneError as refusal:
         return {"quantities": {}, "left_out": [], "why": refusal.mistakes[0].message}
-    why = ""
+    why, orbit = "", None
     try:
-        gradients.orbit  # noqa: B018  (searched for here, or left out)
+        orbit = gradients.orbit
     except (SceneError, ConvergenceError) as failure:
         why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
         gradients = Gradients(model, equilibrium, moving=False)
@@ -546,7 +546,7 @@ def first_order_band(
         else:
             slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, derivatives(model, equilibrium, answer)
     quantities = {}
-    for name, value in values(model, equilibrium, gradients.orbit).items():
+    for name, value in values(model, equilibrium, orbit).items():
         ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
         low, high = limits(ends)
         widths = np.array([(above - below) ** 2 for below, above in ends])

@@ -407,8 +407,11 @@ def sweep(
     with tempfile.TemporaryDirectory(prefix="raceway-sweep-") as temporary, telling(progress, remaining=True) as report:
         folder = Path(temporary) / "sweep" if store is None else writable(Path(store))
         worker_pool = executor_of(executor, {"workers": workers}, registry_with(plugins))
-        points = axes if design is None else sampled(axes, design, seed)  # type: ignore[arg-type]
-        prepared = prepare(scene, points, folder, plugins, resume or retry_failed)
+        if design is not None:
+            if not isinstance(axes, Mapping):
+                raise SceneError.at("axes", None, f"must be ranges, key -> (low, high), for the design {design}")
+            axes = sampled(axes, design, seed)
+        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed)
         refuse_large(prepared, worker_pool, force)
         with fill_store(prepared, worker_pool, retry_failed, report) as filled:
             if (failed := all_failed(filled)) is not None:
