@@ -253,9 +253,8 @@ def test_designs_fill_their_ranges() -> None:
             assert (counts == design.size // slices).all()
     swept = rw.sweep(STATIC, ranges, design="sobol:8", seed=3)
     assert swept.sizes["point"] == 8 and (swept.status == "computed").all()
-    for points in ([{"load.axial": 300.0}], design):
-        with pytest.raises(rw.SceneError, match="must be ranges"):
-            rw.sweep(STATIC, points, design="sobol:8")
+    with pytest.raises(rw.SceneError, match="must be ranges"):
+        rw.sweep(STATIC, [{"load.axial": 300.0}], design="sobol:8")
 
 
 @pytest.mark.parametrize(
