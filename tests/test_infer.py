@@ -12,10 +12,11 @@ import raceway as rw
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
+from raceway.core.ratings import BallRow, _groove, _load_factor, _static_factor
 from raceway.studies.catalogue.infer import _infer_table, _sizes_of
 from raceway.studies.catalogue.inferred import STIFFNESS_90, infer_printed
 from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by
-from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS, _BallRow, _groove, _load_factor, _static_factor
+from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS, _pair_stiffness
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -34,7 +35,7 @@ def series():
 
 def test_the_ratings_of_7206c_are_the_printed_ones():
     """Makers print 23.0 and 14.7 kN, rounded to half a percent."""
-    row = _BallRow(Z, D, PITCH, ANGLE)
+    row = BallRow(Z, D, PITCH, ANGLE)
     assert row.dynamic_rating() == pytest.approx(23.0e3, rel=4e-3)
     assert row.static_rating() == pytest.approx(14.7e3, rel=4e-3)
 
@@ -42,7 +43,7 @@ def test_the_ratings_of_7206c_are_the_printed_ones():
 def test_the_table_of_f0_is_the_load_at_4200_mpa():
     """ISO 76's table is rounded to 0.1: 0.7 % of 14."""
     for g in (0.12, 0.2, 0.3, 0.4):
-        exact = _BallRow(1, 1e-3, 1e-3 / g, 0.0, 0.52, 0.53).static_rating_of_grooves()
+        exact = BallRow(1, 1e-3, 1e-3 / g, 0.0, 0.52, 0.53).static_rating_of_grooves()
         assert exact == pytest.approx(_static_factor(g), rel=7e-3)
 
 
@@ -53,7 +54,7 @@ def test_below_a_tenth_f0_goes_on_with_the_inner_race():
 
 
 def test_wider_grooves_carry_less():
-    ratings = [float(_BallRow(Z, D, PITCH, ANGLE, f, f).dynamic_rating()) for f in (0.515, 0.52, 0.53)]
+    ratings = [float(BallRow(Z, D, PITCH, ANGLE, f, f).dynamic_rating()) for f in (0.515, 0.52, 0.53)]
     assert ratings[0] > ratings[1] > ratings[2]
     # f_c goes with (2 f / (2 f - 1))^0.41 where both grooves are alike (ISO/TR 1281-1).
     assert ratings[2] / ratings[1] == pytest.approx((1.06 / 0.06 / (1.04 / 0.04)) ** 0.41, rel=1e-9)
@@ -66,8 +67,8 @@ def test_the_closed_form_of_a_pair_is_what_a_run_gives():
     """One is interpolated Hertz and bisection, the other the compiled equilibrium: 1e-6 apart."""
     tables = {"bearing": {"preset": "7206C-NSK", "arrangement": "DB", "preload": 400.0}}
     b = rw.Scene.from_dict(tables).bearing
-    row = _BallRow(b.ball_count, b.ball_diameter, b.pitch_diameter, b.contact_angle, b.conformity_inner, b.conformity_outer)
-    expected = row.pair_stiffness(400.0, b.rings.young, b.rings.poisson)
+    row = BallRow(b.ball_count, b.ball_diameter, b.pitch_diameter, b.contact_angle, b.conformity_inner, b.conformity_outer)
+    expected = _pair_stiffness(row, 400.0, b.rings.young, b.rings.poisson)
     assert rw.run(tables).stiffness[0, 0] == pytest.approx(float(expected), rel=1e-6)
 
 
@@ -126,7 +127,7 @@ def test_bearings_with_printed_balls_are_inferred_from_the_others():
 
 def test_balls_of_whole_millimetres_are_found_where_no_inch_size_fits():
     """16 balls of 11 mm on 80 mm, 25 deg: ratings by the standards, rounded to three digits as makers print."""
-    row = _BallRow(16, 11e-3, 80e-3, np.radians(25.0))
+    row = BallRow(16, 11e-3, 80e-3, np.radians(25.0))
     c, c0 = (float(f"{float(x):.3g}") for x in (row.dynamic_rating(), row.static_rating()))
     found = rw.infer("60 mm", "100 mm", {25: (c, c0)}, maker="NSK")
     assert (found.ball_count.value, found.ball_diameter.value) == (16, pytest.approx(11e-3))

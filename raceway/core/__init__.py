@@ -5,6 +5,8 @@ columns        numbers that may be columns, one of each operating point
 signatures     types of the kernels that are passed as function pointers
 threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws
+ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for
+life           reference life of ISO/TS 16281 and modified life of ISO 281 from contact loads
 excitations    compiled kernels of the built-in excitations
 record         duties of a system that is stepped from Python; schedule, start and record of a time integration
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
