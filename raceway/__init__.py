@@ -10,7 +10,7 @@ pipeline       one run: equilibrium, motion, identification, error, result
 bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
 planning       what a scene needs, what is left out, what it will cost
 contact_laws, integrators   built-in plug-ins of these kinds
-plugins        built-in excitations, identifiers, meshers, formats, reports and executors
+plugins        built-in excitations, identifiers, meshers, formats, quantities and executors
 scene          the scene file: tables, catalogue of bearings, schema
 framework      kinds of plug-ins: contracts, hooks, options, registry
 elastic        finite elements in full: every node of rings and balls an unknown
@@ -19,7 +19,7 @@ storage        files and caches on disk
 errors         exceptions, one class by who must act
 data           bearings and what makers print of them, materials, reference cases, meshes, templates of plug-ins
 
-Imports run one way, from the top of this list to its bottom; contact_laws, integrators, plugins and scene do not know each other.
+Imports run one way, from the top of this list to its bottom; contact_laws, integrators and plugins do not know each other.
 Plug-ins, built in or foreign, are found by the registry alone.
 
 Names below are imported when they are first used, so that ``import raceway`` stays light.
@@ -29,6 +29,7 @@ For plug-ins, beside options and their rules:
 hookimpl       decorator of a function that hands plug-ins in, named after its hook
 Answer         base class of what a study answers: screen, files and picture
 Command        a command from the signature and docstring of a function that gives an Answer;  Option  what its line says otherwise
+Quantity       declares a number of results
 jit            makes a function a kernel of one signature
 LAW            signature of a contact law: (gap [m], gap_rate [m/s], params, state_old, state_new, dt [s], force [N], d_gap, d_rate)
 FORCE          signature of an excitation: (t [s], params, out (5,) [N, N m])
@@ -84,6 +85,7 @@ _MODULES = {
     "raceway.pipeline.result": "Result",
     "raceway.framework.hookspecs": "hookimpl",
     "raceway.out.answer": "Answer",
+    "raceway.out.quantities": "Quantity",
     "raceway.cli.command": "Command Option",
     "raceway.core.jit": "jit",
     "raceway.core.signatures": "LAW FORCE",

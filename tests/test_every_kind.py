@@ -21,7 +21,7 @@ OWN = {
     "identifier": "three_harmonics.py",
     "mesher": "one_cell.py",
     "format": "json_mesh.py",
-    "report": "one_line.py",
+    "quantity": "pressure_ratio.py",
     "executor": "backwards.py",
     "bodies": "radial_balls.py",
     "study": "hardening.py",
@@ -40,13 +40,15 @@ class {cls}:
     """A report of a test."""
 
     name = "{name}"
+    suffixes = (".txt",)
+    of_results = True
 
-    def write(self, result, folder):
+    def write(self, folder, result):
         {body}
 
 
 @hookimpl
-def raceway_reports():
+def raceway_formats():
     return [{cls}]
 '''
 
@@ -87,7 +89,7 @@ def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_p
     """The report is installed, the others are files."""
     site = tmp_path / "site"
     site.mkdir()
-    install(site, "lines", FILES[OWN["report"]])
+    install(site, "lines", FILES["one_line.py"])
     words = [
         "contact.kind=power", "excitation.kind=pulse", "excitation.peak=200.0", "integrator.kind=damped", "integrator.turns=2",
         "identifier.kind=three_harmonics",
@@ -157,7 +159,7 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
     names = ("--plugin", bad, "--plugin", good, "--report", "bad", "--report", "good")
     found = invoke("run", MINIMAL, "--set", "identifier.kind=tangent", *names, "--out", out)
     told = one_message(found)
-    assert f"report 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
+    assert f"format 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
     assert json.loads((out / "result.json").read_text())["title"] and (out / "good.txt").read_text() == "good"
     assert "tangent kyy" in found.stdout
 
@@ -167,7 +169,7 @@ def test_json_holds_the_result_and_the_reports_failure(tmp_path):
     words = ("--set", "identifier.kind=tangent", "--plugin", bad, "--report", "bad", "--json")
     found = invoke("run", MINIMAL, *words, "--out", tmp_path / "out")
     content = json.loads(found.stdout)
-    assert found.exit_code == 2 and "report 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
+    assert found.exit_code == 2 and "format 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
 
 
 def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
@@ -175,7 +177,7 @@ def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
     words = [word for path in twins for word in ("--plugin", path)]
     found = invoke("run", MINIMAL, *words, "--report", "twin", "--out", tmp_path / "out")
     told = one_message(found)
-    assert "two plug-ins claim the name 'twin' as report: `One` of twin_One.py and `Two` of twin_Two.py" in told
+    assert "two plug-ins claim the name 'twin' as format: `One` of twin_One.py and `Two` of twin_Two.py" in told
     assert not (tmp_path / "out").exists()
 
 

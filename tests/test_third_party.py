@@ -185,14 +185,14 @@ def test_what_cannot_be_used_is_refused(tmp_path, kind, name, reason):
 
 
 def test_an_existing_folder_is_not_overwritten(tmp_path):
-    folder = new_plugin("report", "again", tmp_path)
+    folder = new_plugin("quantity", "again", tmp_path)
     (folder / "README.md").write_text("mine")
     with pytest.raises(PluginError, match="exists already and is not overwritten"):
-        new_plugin("report", "again", tmp_path)
+        new_plugin("quantity", "again", tmp_path)
     assert (folder / "README.md").read_text() == "mine"
 
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(PluginError, match="cannot be written"):
-        new_plugin("report", "again", tmp_path / "file")
+        new_plugin("quantity", "again", tmp_path / "file")

@@ -8,7 +8,8 @@ compiled.  These protocols are one level deep: nothing has to inherit from them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import attrs
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from raceway.core.signals import Identification
     from raceway.core.time.schemes import Scheme
     from raceway.errors import Mistake
-    from raceway.pipeline.result import Result
+    from raceway.out.quantities import Quantity
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
@@ -253,30 +254,84 @@ class Mesher(attrs.AttrsInstance, Protocol):
 
 
 class Format(attrs.AttrsInstance, Protocol):
-    """A file format, of meshes (``HexMesh``) or of anything else.
+    """A file format: of meshes (``HexMesh``), of anything else, or of results.
 
     1. ``suffixes``: file endings with the dot.
     2. ``read(path)``.  ``write(path, content)``, which a format that only reads leaves out: what is written is read back the same, sets
        too, real numbers at least to ten figures.
     3. A file that is missing or malformed raises a ``RacewayError`` that names it.
+    4. ``of_results`` = True, else left out: ``write(folder, result)`` writes files of a ``Result`` into a folder and returns their
+       paths (``raceway run --report NAME``); such a format may leave ``read`` out.
     """
 
     name: ClassVar[str]
     suffixes: ClassVar[tuple[str, ...]]
 
     def read(self, path: Path) -> Any: ...
-    def write(self, path: Path, content: Any) -> None: ...
+    def write(self, path: Path, content: Any) -> list[Path] | None: ...
 
 
-class Report(attrs.AttrsInstance, Protocol):
-    """A result for a person.
+@attrs.frozen(eq=False, slots=False)
+class SolvedPoints:
+    """n solved operating points as quantities see them; Z balls of all rows; race 0 is the inner, 1 the outer one.
 
-    1. ``write(result, folder)``: writes files into the folder and returns their paths.
+    Attributes
+    ----------
+    problem : of ``raceway.planning.resolve``: its continuous numbers are scalars, or columns (n,)
+    row : (Z,) row of each ball;  side : (Z,) +1 where its outer race takes an axial force along +x, else -1
+    speed : (n,) of the shaft [rad/s]
+    load : (n, 2, Z) contact forces under the constant loads [N], 0 where a contact is open
+    contact_angle : (n, 2, Z) under them [rad], nan where a contact is open
+    displacement, stiffness : (n, 5), (n, 5, 5) of the inner ring [m, rad; N/m, N/rad, N m/m, N m/rad]
+    ellipse : of contact forces (n, 2, Z) peak pressure [Pa], major and minor semi-axis [m], each (n, 2, Z)
+    turn : of a number T contact forces (n, T, 2, Z) at T equidistant times of a turn of the motion, from phase 0 of the force on [N];
+        None without a motion
+    """
+
+    problem: Problem
+    row: np.ndarray
+    side: np.ndarray
+    speed: np.ndarray
+    load: np.ndarray
+    contact_angle: np.ndarray
+    displacement: np.ndarray
+    stiffness: np.ndarray
+    ellipse: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
+    turn: Callable[[int], np.ndarray] | None = None
+
+    @cached_property
+    def semi_axes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Major and minor semi-axes of the contacts under ``load`` (n, 2, Z) [m]."""
+        return self._ellipses[1:]
+
+    @cached_property
+    def peak_pressure(self) -> np.ndarray:
+        """(n, 2, Z) under ``load`` [Pa]."""
+        return self._ellipses[0]
+
+    @cached_property
+    def _ellipses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return self.ellipse(self.load)
+
+
+class Quantities(attrs.AttrsInstance, Protocol):
+    """Numbers of a solved point; its options are the keys of the table [quantities.NAME], which all have defaults.
+
+    1. ``numbers``: a ``raceway.out.quantities.Quantity`` for each, whose ``path`` begins with the plug-in's name: NAME.KEY is its place
+       in result.json.  They are outputs of functions, columns of sweeps and numbers of bands by their names, which no other
+       quantity has.
+    2. ``why_not(problem)``: what a scene lacks for them, with the keys; empty where it has all.  They are left out then.
+    3. ``compute(points)``: name -> numbers (n,), or arrays (n, ...) over the quantity's ``dims``, of ``SolvedPoints``: what follows for
+       one point follows for columns.  Points are not changed.
+    4. May be left out: ``table(points, values)``: of one point, what result.json has at NAME, plain values; else the numbers.
+    5. May be left out: ``warnings(points, values)``: of one point, what a user should know, sentences.
     """
 
     name: ClassVar[str]
+    numbers: ClassVar[tuple[Quantity, ...]]
 
-    def write(self, result: Result, folder: Path) -> list[Path]: ...
+    def why_not(self, problem: Problem) -> str: ...
+    def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]: ...
 
 
 #: A batch of a study: its number, and what is computed in it as plain values.
@@ -429,12 +484,12 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "steady", "scheme")),
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
-    "format": ("raceway_formats", ("suffixes", "read")),
+    "format": ("raceway_formats", ("suffixes",)),
     "bodies": (
         "raceway_bodies",
         ("faults", "traits", "stable_step", "decide", "cost", "build"),
     ),
-    "report": ("raceway_reports", ("write",)),
+    "quantity": ("raceway_quantities", ("numbers", "why_not", "compute")),
     "executor": ("raceway_executors", ("compute",)),
     "study": ("raceway_studies", ("help", "command")),
 }

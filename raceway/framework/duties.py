@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, TypeVar
 
 import attrs
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 
     from raceway.bodies.model import Bearing
     from raceway.errors import Mistake
-    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation
+    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Format, Quantities, SolvedPoints
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.scene import SceneTables
+    from raceway.storage.tables import Tables
 
 T = TypeVar("T")
 
@@ -73,6 +74,52 @@ def unused_with_bodies(tables: SceneTables) -> list[tuple[str, str]]:
     if not hasattr(tables.bodies, "unused"):
         return []
     return _answer(f"bodies '{tables.bodies.name}'", "unused", lambda: tables.bodies.unused(tables), list)
+
+
+def fitting_quantities(problem: Problem) -> list[Quantities]:
+    """Plug-ins of quantities whose numbers a problem has, by the order of their names; ``PluginError`` where one breaks its duty."""
+    table = problem.quantities
+    plugins = [getattr(table, field.name) for field in attrs.fields(type(table))]
+    return [plugin for plugin in plugins if not why_no_quantities(plugin, problem)]
+
+
+def why_no_quantities(plugin: Quantities, problem: Problem) -> str:
+    """What a problem lacks for the numbers of a plug-in, or ``PluginError``; empty where it has all."""
+    return _answer(f"quantity '{plugin.name}'", "why_not", lambda: plugin.why_not(problem), str)
+
+
+def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
+    """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
+    title, n = f"quantity '{plugin.name}'", len(points.load)
+    values = {
+        name: _array(title, "compute", partial(_as_is, value))
+        for name, value in _answer(title, "compute", lambda: plugin.compute(points), Mapping).items()
+    }
+    names = [number.name for number in plugin.numbers]
+    if missing := [name for name in names if name not in values] or [name for name in values if name not in names]:
+        raise PluginError(f"{title}: compute() must return exactly its `numbers`: {', '.join(names)}; see '{missing[0]}'")
+    for number in plugin.numbers:
+        shape = values[number.name].shape
+        if shape[:1] != (n,) or len(shape) != 1 + len(number.dims):
+            raise PluginError(f"{title}: '{number.name}' has shape {shape}; it must be {(n, *number.dims)}")
+    return values
+
+
+def quantity_report(plugin: Quantities, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> tuple[Tables, list[str]]:
+    """Of one point what result.json has at the plug-in's name, and warnings, or ``PluginError``."""
+    title, numbers = f"quantity '{plugin.name}'", {name: value[0] for name, value in values.items()}
+    table: Tables = {number.path.partition(".")[2]: numbers[number.name].tolist() for number in plugin.numbers}
+    if hasattr(plugin, "table"):
+        table = _answer(title, "table", lambda: plugin.table(points, values), dict)
+    warnings = (
+        _answer(title, "warnings", lambda: plugin.warnings(points, values), list) if hasattr(plugin, "warnings") else []
+    )
+    return table, warnings
+
+
+def of_results(form: type[Format]) -> bool:
+    """Whether a format writes results; not unless it says so."""
+    return bool(getattr(form, "of_results", False))
 
 
 def renews(law: ContactLaw) -> bool:
@@ -129,6 +176,10 @@ def force_params(excitation: Excitation) -> np.ndarray:
     if params.ndim != 1:
         raise PluginError(f"excitation '{excitation.name}': parameters() returned shape {params.shape}; it must be (k,)")
     return params
+
+
+def _as_is(value: T) -> T:
+    return value
 
 
 def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:

@@ -51,8 +51,8 @@ def raceway_formats() -> list[type]:  # type: ignore[empty-body]
 
 
 @hookspec
-def raceway_reports() -> list[type]:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Report``."""
+def raceway_quantities() -> list[type]:  # type: ignore[empty-body]
+    """Classes that follow ``raceway.framework.contracts.Quantities``."""
 
 
 @hookspec

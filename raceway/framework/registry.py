@@ -214,7 +214,12 @@ class Registry:
             No format has the ending (lists those that there are), or two have it.
         """
         name = Path(path).name.lower()
-        endings = [(ending, entry) for entry in self.all() if entry.kind == "format" for ending in entry.plugin.suffixes]
+        endings = [
+            (ending, entry)
+            for entry in self.all()
+            if entry.kind == "format" and hasattr(entry.plugin, "read")
+            for ending in entry.plugin.suffixes
+        ]
         fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
         if not fitting:
             suffixes = ", ".join(sorted({ending for ending, _ in endings}))

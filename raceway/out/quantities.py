@@ -46,6 +46,13 @@ class Quantity:
     attribute : of a ``Result`` that leads to it, in the same form
     symbol : its name in formulas, in fits and among quantities over tolerances;  label : its name on screens
     error : the quantity that is its absolute error;  dims : dimensions of an array
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> ratio = rw.Quantity("stress_ratio", "1", "largest pressure over its limit", "stress.ratio")
+    >>> ratio.of({"stress": {"ratio": 0.7}})
+    0.7
     """
 
     name: str

@@ -8,5 +8,6 @@ error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults
 gradient         derivatives by the keys of the scene, and the band over tolerances to first order
-result           the result: result.json, reports;  run_screen, run_parts: its tables on a screen
+quantities       numbers of plug-ins at one solved point
+result           the result: result.json, formats of results;  run_screen, run_parts: its tables on a screen
 """

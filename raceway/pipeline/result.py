@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import attrs
 import numpy as np
@@ -16,13 +16,16 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
+from raceway.framework.duties import of_results
 from raceway.framework.estimate import Note, short
+from raceway.framework.options import nearest
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, percents, tilt_words
 from raceway.framework.sources import blamed
 from raceway.out.answer import Answer, Part
 from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLOW, C, K, X, Z, nested
-from raceway.pipeline.equilibrium import ball_pass_table, equilibrium_table, largest_contacts, motion_table, pressures
+from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
+from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
 from raceway.planning.resolve import Problem
 from raceway.plugins.labelled import labelled
@@ -35,13 +38,13 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     import xarray
 
-    from raceway.framework.contracts import Report
+    from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry, Registry
     from raceway.pipeline.gradient import Gradient
 
 SCHEMA = 1
-#: A report's entry in the registry, and the report with its options' defaults.
-Chosen = tuple["Entry", "Report"]
+#: The entry in the registry of a format of results, and the format with its options' defaults.
+Chosen = tuple["Entry", "Format"]
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
@@ -55,6 +58,7 @@ class Result(Answer):
     identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
     error, cost, stability, environment : the tables of result.json
     bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
+    stated : numbers, tables and warnings of plug-ins of quantities
     lines : spectral lines of the motion, empty where it was not recorded or its speed changes
     warnings : tuple of str, the weightiest first
     band : numbers [low, high] at both ends of the band of time constants, for ``contact.damping`` = "band"; all else is the low end's
@@ -79,6 +83,7 @@ class Result(Answer):
     stability: Tables
     environment: Tables
     lines: list[Line]
+    stated: StatedQuantities
     warnings: tuple[str, ...]
     bodies: Tables | None = None
     band: Tables | None = None
@@ -228,9 +233,14 @@ class Result(Answer):
         }
 
     @property
+    def quantities(self) -> dict[str, float | np.ndarray]:
+        """Numbers of plug-ins of quantities by their names, arrays over their dimensions."""
+        return self.stated.values
+
+    @property
     def ball_pass(self) -> Tables:
         """``speed_rpm``, and for each row FTF, BPFO, BPFI and BSF over the shaft's speed and in Hz, at the loaded contact angle."""
-        return ball_pass_table(self.model, self.equilibrium)
+        return self.stated.tables["ball_pass"]
 
     @property
     def geometry(self) -> Tables | None:
@@ -291,7 +301,7 @@ class Result(Answer):
                 "plan": self.model.plan.to_dict(),
                 "geometry": self.geometry,
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
-                "ball_pass": self.ball_pass,
+                **self.stated.tables,
                 "identification": self._identification(),
                 "model": self.bodies,
                 "motion": self._motion(),
@@ -352,7 +362,7 @@ class Result(Answer):
 
     def picture(self, folder: str | Path) -> list[Path]:
         """Orbit, spectrum and ball loads, as far as there is data, a PNG each."""
-        return Pictures().write(self, Path(folder))
+        return Pictures().write(Path(folder), self)
 
     def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
         """Write result.json, pictures where they are asked for, and the reports; remove what an earlier run that failed left there.
@@ -464,16 +474,21 @@ def _computed_facts(result: Result) -> list[Fact]:
 
 
 def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
-    """The reports of these names, each once, before anything is computed.
+    """The formats of results of these names, each once, before anything is computed.
 
     Raises
     ------
     PluginError
-        A name that no report has, or two; a report whose options have no defaults.
+        A name that no format of results has, or two; a format whose options have no defaults.
     """
     reports = []
     for name in dict.fromkeys(names):
-        entry = registry.find("report", name)
+        entry = registry.find("format", name)
+        if not of_results(entry.plugin):
+            writing = [each.name for each in registry.all() if each.kind == "format" and of_results(each.plugin)]
+            raise PluginError(
+                f"format '{name}' writes no results{nearest(name, writing)}; those that do: {', '.join(writing)}"
+            )
         with blamed(str(entry), "making it without options"):
             reports.append((entry, entry.plugin()))
     return reports
@@ -491,7 +506,7 @@ def _write_reports(reports: Iterable[Chosen], result: Result, folder: Path) -> l
     for entry, report in reports:
         try:
             with blamed(str(entry), "write()"):
-                files += report.write(result, folder)
+                files += cast(list[Path], report.write(folder, result))
         except PluginError as why:
             failures.append(str(why))
         except RacewayError as why:

@@ -9,7 +9,7 @@ import os
 import platform
 import resource
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from math import inf
 from pathlib import Path
@@ -38,6 +38,7 @@ from raceway.pipeline.plausible import (
     refuse_impossible,
     sliding_warnings,
 )
+from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
@@ -161,6 +162,7 @@ def _run(
         "error_s": answer.error_s,
     }
     simulation = answer.motions[-1] if answer.motions else None
+    stated = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
     return Result(
         model=model,
         equilibrium=equilibrium,
@@ -172,7 +174,8 @@ def _run(
         environment=_environment(model.problem, registry),
         lines=_lines(model, simulation),
         bodies=bodies,
-        warnings=_warnings(model, equilibrium, answer, bodies),
+        stated=stated,
+        warnings=_warnings(model, equilibrium, answer, bodies, stated.warnings),
     )
 
 
@@ -249,7 +252,9 @@ def _moved(
     return model, move(model), [f"{why}: the motion is integrated over time instead"]
 
 
-def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: Tables | None) -> tuple[str, ...]:
+def _warnings(
+    model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: Tables | None, of_quantities: Iterable[str]
+) -> tuple[str, ...]:
     """Each once: a mesh too coarse for its answer comes first, keys without effect last."""
     error, identification = answer.error, answer.identification
     warnings = [
@@ -262,6 +267,7 @@ def _warnings(model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: T
         *([] if identification is None else inertia_warnings(bodies, error["total"])),
         *pressure_warnings(model, equilibrium.contact_force),
         *equilibrium.warnings,
+        *of_quantities,
         *sliding_warnings(model, equilibrium),
         *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
         *scene_warnings(model.problem),

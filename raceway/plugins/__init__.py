@@ -4,6 +4,7 @@ excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
+ball_pass                        quantities: ball-pass frequencies
 processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
 system_libraries                 system libraries that packages for meshes and pictures need
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
 from raceway.plugins.abaqus import Abaqus
+from raceway.plugins.ball_pass import BallPass
 from raceway.plugins.dask import Dask
 from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
 from raceway.plugins.formats import Msh, Vtu
@@ -43,12 +45,12 @@ def raceway_meshers() -> list[type]:
 
 @hookimpl
 def raceway_formats() -> list[type]:
-    return [Vtu, Abaqus, Msh]
+    return [Vtu, Abaqus, Msh, Pictures]
 
 
 @hookimpl
-def raceway_reports() -> list[type]:
-    return [Pictures]
+def raceway_quantities() -> list[type]:
+    return [BallPass]
 
 
 @hookimpl

@@ -33,16 +33,18 @@ class Pictures:
     """
 
     name: ClassVar[str] = "pictures"
+    suffixes: ClassVar[tuple[str, ...]] = (".png",)
+    of_results: ClassVar[bool] = True
 
     dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
 
-    def write(self, result: Result, folder: Path) -> list[Path]:
+    def write(self, folder: Path, result: Result) -> list[Path]:
         """Write the pictures that the result has data for.
 
         Parameters
         ----------
-        result : raceway.pipeline.result.Result
         folder : path, made when it is missing
+        result : raceway.pipeline.result.Result
 
         Returns
         -------

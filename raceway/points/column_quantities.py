@@ -13,7 +13,11 @@ from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
-from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, named
+from raceway.errors import PluginError
+from raceway.framework.contracts import SolvedPoints
+from raceway.framework.duties import fitting_quantities, quantities_at
+from raceway.framework.registry import Registry
+from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, Quantity, named
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
@@ -70,6 +74,40 @@ class Computed:
     def peak(self) -> np.ndarray:
         """(n, 2, Z) largest contact forces."""
         return _races(self.states.force if self.orbits is None else self.orbits.peak)
+
+    @cached_property
+    def points(self) -> SolvedPoints:
+        """As plug-ins of quantities see them."""
+        bearing, states, n = self.bearing, self.states, len(self.states.status)
+        problem, z = bearing.problem, self.states.force.shape[1] // 2
+
+        def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+            halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
+            pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
+            return pressure, major, minor
+
+        return SolvedPoints(
+            problem=problem,
+            row=bearing.basis.row,
+            side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
+            speed=np.broadcast_to(problem.spin_speed, n),
+            load=states.force.reshape(n, 2, z),
+            contact_angle=np.stack(bearing.contact_angles(states), axis=1),
+            displacement=states.q,
+            stiffness=states.stiffness,
+            ellipse=ellipse,
+        )
+
+    @cached_property
+    def _of_plugins(self) -> dict[str, dict[str, np.ndarray]]:
+        return {}
+
+    def of_plugin(self, plugin: str, name: str) -> np.ndarray:
+        """(n, ...) numbers of a plug-in of quantities, which computes all of its own at once."""
+        if plugin not in self._of_plugins:
+            with np.errstate(all="ignore"):
+                self._of_plugins[plugin] = quantities_at(getattr(self.bearing.problem.quantities, plugin), self.points)
+        return self._of_plugins[plugin][name]
 
     @cached_property
     def pressure(self) -> np.ndarray:
@@ -195,9 +233,34 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     # A turn of the steady motion, and its exact Fourier line.
     **dict.fromkeys(("error_transient", "error_identification"), lambda c: np.zeros(len(c.speed))),
 }
-#: Quantities of a motion, and all that a function has.
+#: Quantities of a motion; of the motion where there is one; and all that a function has beside those of plug-ins.
 MOVING, EXTREMES = frozenset(_MOVING), frozenset(_EXTREMES)
 QUANTITIES = _STATIC | _EXTREMES | _MOVING
+_KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
+
+
+def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
+    """Name -> plug-in and quantity of every number that plug-ins of quantities state.
+
+    Raises
+    ------
+    PluginError
+        A name that is another quantity's.
+    """
+    numbers: dict[str, tuple[str, Quantity]] = {}
+    for entry in (each for each in registry.all() if each.kind == "quantity"):
+        for quantity in entry.plugin.numbers:
+            if quantity.name in numbers or quantity.name in QUANTITIES or quantity.name in _KNOWN:
+                raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")
+            numbers[quantity.name] = entry.name, quantity
+    return numbers
+
+
+def stated_columns(problem: Problem, registry: Registry) -> dict[str, Quantity]:
+    """Quantities of plug-ins with one number a point which a problem has, by their names."""
+    fitting = {plugin.name for plugin in fitting_quantities(problem)}
+    numbers = plugin_quantities(registry)
+    return {name: quantity for name, (plugin, quantity) in numbers.items() if plugin in fitting and not quantity.dims}
 
 
 @attrs.frozen(eq=False)
@@ -231,5 +294,4 @@ def of_result(name: str, result: Result) -> np.ndarray | float | None:
         return None if floquet is None else floquet["largest"]
     if name == "contact_angle":
         return np.degrees([result.equilibrium.angle_inner, result.equilibrium.angle_outer])
-    known = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
-    return known[name].of(result)
+    return result.quantities.get(name) if name not in _KNOWN else _KNOWN[name].of(result)

@@ -56,7 +56,9 @@ def values_of(result: Result) -> Tables:
             values[name] = value.tolist()
         elif value is not None and math.isfinite(value):
             values[name] = float(value)
-    return values
+    return values | {
+        name: value for name, value in result.quantities.items() if isinstance(value, float) and math.isfinite(value)
+    }
 
 
 #: Status of points that have numbers.
@@ -74,7 +76,7 @@ class SweepStore(Store):
     Attributes
     ----------
     design : points, in the order of their numbers
-    facts : scene (all keys, at the first point), design, identity (versions and plug-ins), files, schema, created
+    facts : scene (all keys, at the first point), design, labels of plug-ins' quantities, identity (versions and plug-ins), files, schema, created
     """
 
     def __init__(self, path: Path, connection: Connection) -> None:
@@ -91,6 +93,11 @@ class SweepStore(Store):
     def scene(self) -> Tables:
         """Every key of the scene at the first point."""
         return dict(self.facts["scene"])
+
+    @property
+    def labels(self) -> dict[str, dict[str, str]]:
+        """Of the quantities with one number a point: attributes by name."""
+        return {name: COLUMNS[name].labels for name in _NUMBERS} | dict(self.facts["quantities"])
 
     def status(self) -> dict[str, int]:
         """Number of points in each state, and ``total``; of those that are done, how many the compiled loop ``computed``."""
@@ -210,9 +217,12 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
     variables: dict[str, Labelled] = {"status": (dims, points.status.reshape(shape), {"long_name": "state of the point"})}
     if points.columns:
         variables[_WARNINGS.name] = (dims, warnings.reshape(shape), _WARNINGS.labels)
-    for name in (name for name in COLUMNS if name in points.columns):
-        column, quantity = points.columns[name], COLUMNS[name]
-        variables[name] = ((*dims, *quantity.dims), column.reshape(*shape, *column.shape[1:]), quantity.labels)
+    forms: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {name: ((), labels) for name, labels in store.labels.items()}
+    forms |= {name: (quantity.dims, quantity.labels) for name, quantity in _ARRAYS.items()}
+    for name, (further, labels) in forms.items():
+        if name in points.columns:
+            column = points.columns[name]
+            variables[name] = ((*dims, *further), column.reshape(*shape, *column.shape[1:]), labels)
     attributes = {
         "title": store.title,
         "scene": json.dumps(store.scene),
@@ -309,10 +319,11 @@ def write_csv(store: SweepStore, path: Path) -> Path:
 def _lines(store: SweepStore) -> Iterator[list[object]]:
     places = {name: list(product(DOF, repeat=len(quantity.dims))) for name, quantity in _ARRAYS.items()}
     heads = [f"{name}_{'_'.join(entry)}" for name in _ARRAYS for entry in places[name]]
-    yield [*store.design.keys, "status", "reason", "warnings", *_NUMBERS, *heads]
+    numbers = list(store.labels)
+    yield [*store.design.keys, "status", "reason", "warnings", *numbers, *heads]
     for row in store.rows():
         values = row["values"]
         arrays = [np.ravel(values[name]).tolist() if name in values else [""] * len(places[name]) for name in _ARRAYS]
         point = [v if isinstance(v, str) or is_number(v) else json.dumps(v) for v in row["point"].values()]
         words = [row["status"], row["reason"], "; ".join(row["warnings"])]
-        yield [*point, *words, *(values.get(n, "") for n in _NUMBERS), *(v for a in arrays for v in a)]
+        yield [*point, *words, *(values.get(n, "") for n in numbers), *(v for a in arrays for v in a)]

@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from enum import IntEnum
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ from raceway.bodies.columns import Excitations, build_columns, column_problem, w
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
-from raceway.framework.duties import is_foundation
+from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
@@ -26,7 +27,7 @@ from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
+from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result, plugin_quantities
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import continuous_keys, key_of, with_columns, with_number
 from raceway.scene.inputs import SceneSource, as_scene
@@ -64,7 +65,7 @@ class PointStatus(IntEnum):
     FAILED = 3  # no equilibrium or no motion, or not tried
 
 
-@attrs.frozen(eq=False)
+@attrs.frozen(eq=False, slots=False)
 class Function:
     """Quantities of a scene as a function of its keys; see ``raceway.function``.
 
@@ -104,7 +105,12 @@ class Function:
     def moving(self) -> bool:
         """Whether a motion has to be solved for."""
         excited = self.scene.excitation is not None
-        return any(name in MOVING or excited and name in EXTREMES for name in self.outputs)
+        return any(name in MOVING or excited and (name in EXTREMES or name in self._stated) for name in self.outputs)
+
+    @cached_property
+    def _stated(self) -> dict[str, tuple[str, Quantity]]:
+        """Quantities of plug-ins."""
+        return plugin_quantities(default_registry())
 
     @property
     def why_slow(self) -> str:
@@ -248,6 +254,7 @@ class Function:
         same = xarray.broadcast(*arrays)
         shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
         answer, dims, known = self.columns(flat), same[0].dims, _known()
+        known |= {name: quantity for name, (_, quantity) in self._stated.items()}
         variables: Tables = {}
         for name, column in answer.items():
             further, labels = ((), {}) if name not in known else (known[name].dims, known[name].labels)
@@ -284,7 +291,7 @@ class Function:
             fine = ~bearing.conspicuous & computed.fine
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:
-                part = QUANTITIES[name](computed)
+                part = QUANTITIES[name](computed) if name in QUANTITIES else computed.of_plugin(self._stated[name][0], name)
                 values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
         return {**values, "status": status}
 
@@ -489,6 +496,7 @@ def function(
         raise SceneError.at(doubled[0], None, "is an input twice")
     for key in keys:
         key_of(read, key)
+    _refuse_missing(read, names)
     result = Function(read, keys, names, tolerance, force, threads or usable_cores())
     if result.moving and read.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {next(n for n in names if n in MOVING)} is of a motion")
@@ -497,13 +505,21 @@ def function(
     return result
 
 
+def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
+    """Refuse numbers of plug-ins that a scene does not have."""
+    stated, problem = plugin_quantities(default_registry()), resolve(scene)
+    for name in (name for name in names if name in stated):
+        if why := why_no_quantities(getattr(scene.quantities, stated[name][0]), problem):
+            raise SceneError.at("outputs", name, f"is no number of this scene: {why}")
+
+
 def _name(output: str) -> str:
     """The name of a quantity that is asked for by its name or symbol."""
-    known = {name: name for name in QUANTITIES}
+    names = {name: name for name in (*QUANTITIES, *plugin_quantities(default_registry()))}
     symbols = {quantity.symbol: name for name, quantity in _known().items() if name in QUANTITIES}
-    name = {**symbols, **known}.get(output)
+    name = {**symbols, **names}.get(output)
     if name is None:
         raise SceneError.at(
-            "outputs", output, f"is no quantity of a function{nearest(output, [*known, *symbols])}: {', '.join(known)}"
+            "outputs", output, f"is no quantity of a function{nearest(output, [*names, *symbols])}: {', '.join(names)}"
         )
     return name

@@ -24,8 +24,9 @@ from raceway.out.progress import telling
 from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
-from raceway.points.column_quantities import MOVING, QUANTITIES
+from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
 from raceway.points.derivatives import Columns
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
@@ -137,12 +138,13 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
     # What the meshes of bodies are off by is known to runs alone.
     if scene.bodies.name != "rigid" or not all(axis.numeric and axis.key in keys for axis in design.axes):
         return None
+    stated = stated_columns(resolve(scene), registry)
     moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
     outputs = [name for name in COLUMNS if name in QUANTITIES and (moving or name not in MOVING)]
     left_out = [] if tilts else [KYY_TILTS_FOLLOW.name]
     if any(key.startswith("bearing.") for key in design.keys):  # rings grow by their own sections, each solved for alone
         left_out.append(MODEL_BOUND.name)
-    outputs = [name for name in outputs if name not in left_out]
+    outputs = [name for name in (*outputs, *stated) if name not in left_out]
     function = Function(scene, design.keys, tuple(outputs), threads=usable_cores())
     return None if function.why_slow or not _alone(function, tables, design, registry) else function
 
@@ -207,6 +209,7 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
         "scene": surveyed.scene.to_dict(),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
+        "quantities": {name: each.labels for name, each in stated_columns(resolve(surveyed.scene), registry).items()},
         "identity": identity(registry, surveyed.used),
         "files": surveyed.files,
     }

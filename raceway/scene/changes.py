@@ -113,7 +113,7 @@ def without(tables: ReadTables, key: str) -> Tables:
 
 
 #: Tables of plug-ins that are attributes of the scene themselves.
-_PLUGINS = ("excitation", "bodies")
+_PLUGINS = ("excitation", "bodies", "quantities")
 #: Tables of numerical settings: the answer must not depend on them.
 _SETTINGS = ("integrator", "identifier", "mesh")
 _ENTRY = re.compile(r"([^\[\]]+)\[(\d+)\]")

@@ -30,6 +30,7 @@ from raceway.scene.tables import (
     TABLES,
     AutoIntegrator,
     Rig,
+    quantities_table,
 )
 from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
@@ -236,6 +237,7 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     for name, cls in STUDY_TABLES.items():
         if name in plain:
             structure(plain[name], cls, name, mistakes)
+    parts["quantities"] = structure(plain.get("quantities", {}), quantities_table(registry), "quantities", mistakes)
     if mistakes:
         raise SceneError(mistakes)
     scene = Scene(title=title, source=plain, given=Given(checked), **parts)
@@ -246,7 +248,7 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
     """Title, and a copy of the known tables."""
-    names = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "tolerances", "requires", "title"]
+    names = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "quantities", "tolerances", "requires", "title"]
     for name in tables:
         if name not in names:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, names)}; known: {', '.join(names)}"))
@@ -357,7 +359,8 @@ def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
     result = dict(tables)
     for name, table in tables.items():
         if isinstance(table, dict):
-            classes = (TABLES.get(name), STUDY_TABLES.get(name), _plugin(name, tables, registry))
+            quantities = quantities_table(registry) if name == "quantities" else None
+            classes = (TABLES.get(name), STUDY_TABLES.get(name), quantities, _plugin(name, tables, registry))
             for cls in (plugin for plugin in classes if plugin is not None):
                 result[name] = table_without_units(result[name], cls)
     return result

@@ -45,6 +45,7 @@ class SceneTables:
     mounting: Mounting
     integrator: Integration
     identifier: Identifying
+    quantities: Any
 
 
 @attrs.frozen(repr=False)
@@ -56,6 +57,7 @@ class Scene(SceneTables, Shown):
     title : str, says in its second line what was changed since it was read
     bearing, supports, rotor, load, contact, kinematics, mounting, integrator, identifier : tables of the scene file
     excitation, bodies, mesh : plug-ins with their options; excitation and mesh may be None
+    quantities : an attribute for each plug-in of quantities, with its options
     source : the tree of plain tables it was made from, presets resolved
     given : what the user said, presets not resolved, from which ``with_`` goes on
 
@@ -165,6 +167,8 @@ class Scene(SceneTables, Shown):
             plugin = getattr(self, name)
             if plugin is not None:
                 tables[name] = {"kind": plugin.name, **_plain(plugin)}
+        if "quantities" in self.source:
+            tables["quantities"] = {name: _plain(getattr(self.quantities, name)) for name in self.source["quantities"]}
         return tables
 
 

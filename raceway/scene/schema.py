@@ -15,7 +15,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import catalogue, materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
-from raceway.scene.tables import STUDY_TABLES, TABLES, AutoIntegrator
+from raceway.scene.tables import STUDY_TABLES, TABLES, AutoIntegrator, quantities_table
 from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
 
@@ -34,6 +34,7 @@ def scene_schema(registry: Registry | None = None) -> Tables:
         tables[name] = _plugin_table(name, kind, default, registry)
     for name, cls in STUDY_TABLES.items():
         tables[name] = _table(cls)
+    tables["quantities"] = _table(quantities_table(registry))
     words = 'by how much numbers may differ: "load.axial" = "±10 %", class = "P4" (ISO 492, ABEC), balls = "G5" (ISO 3290)'
     tables["tolerances"] = {"type": "object", "description": words}
     return {

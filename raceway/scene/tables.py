@@ -3,6 +3,7 @@ its last attribute."""
 
 from __future__ import annotations
 
+from functools import cache
 from math import pi
 from typing import Any, ClassVar
 
@@ -22,6 +23,7 @@ from raceway.framework.options import (
     word_or,
     worded,
 )
+from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
 
 
@@ -380,6 +382,23 @@ OPTIONAL_TABLES = ("excitation", "mesh")
 
 #: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.scene.unused`` tells.
 SWAPPED_TABLES = ("bodies",)
+
+
+@cache
+def _quantities(plugins: tuple[type, ...]) -> type:
+    fields = {
+        plugin.name: attrs.field(factory=plugin, type=plugin, metadata={"help": (plugin.__doc__ or "").partition("\n")[0]})  # type: ignore[attr-defined]
+        for plugin in plugins
+    }
+    return attrs.make_class("Quantities", fields, frozen=True)
+
+
+def quantities_table(registry: Registry) -> type:
+    """The table [quantities]: a table of options for each plug-in of quantities."""
+    entries = registry.all()
+    return _quantities(
+        tuple(e.plugin for e in entries if e.kind == "quantity" and len(registry.entries[e.kind, e.name]) == 1)
+    )
 
 
 #: Tables that a study reads beside the scene, which keeps them in ``source``.

@@ -2,7 +2,7 @@
 
 suite          what all suites share: duties, rows, expected failures, how they become pytest methods, children with limits
 contact_law, integrator, bodies   one suite a file;  signals: excitations, identifiers
-kinds          suites of few duties: formats, meshers, reports, executors, studies
+kinds          suites of few duties: formats, meshers, quantities, executors, studies
 systems        small mechanical systems with known answers, compiled loops
 scenes         scenes, models and results of a bearing
 scaffold       the package of a new plug-in
@@ -31,7 +31,7 @@ SUITES: dict[str, tuple[str, str]] = {
     kind: (f"raceway.testing.{module}", f"{kind.title().replace('_', '')}Suite")
     for module, kinds in {
         "contact_law": "contact_law", "signals": "excitation identifier", "integrator": "integrator", "bodies": "bodies",
-        "kinds": "mesher format report executor study",
+        "kinds": "mesher format quantity executor study",
     }.items()
     for kind in kinds.split()
 }  # fmt: skip

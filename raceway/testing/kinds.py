@@ -1,7 +1,9 @@
-"""The conformance suites of formats, meshers, reports, executors and studies: kinds of few duties each."""
+"""The conformance suites of formats, meshers, quantities, executors and studies: kinds of few duties each."""
 
 from __future__ import annotations
 
+import copy
+import json
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -12,13 +14,23 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.bodies.columns import build_columns, column_problem
 from raceway.errors import RacewayError
-from raceway.framework.contracts import Batch, Refused
+from raceway.framework.contracts import Batch, Refused, SolvedPoints
+from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
+from raceway.framework.registry import default_registry
+from raceway.pipeline.quantities import solved_point
+from raceway.pipeline.run import run
+from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
+from raceway.points.column_quantities import Computed, plugin_quantities
+from raceway.scene.reading import scene_from_dict
+from raceway.storage.tables import Tables
 from raceway.testing.scenes import b7206c
 from raceway.testing.suite import Suite, check_class, duty, require
 
 if TYPE_CHECKING:
-    from raceway.framework.contracts import Executor, Format, Mesher, Report, Study
+    from raceway.framework.contracts import Executor, Format, Mesher, Quantities, Study
     from raceway.pipeline.result import Result
     from raceway.scene.scene import Scene
 
@@ -48,6 +60,10 @@ def _same(a: Any, b: Any, relative: float = 0.0) -> bool:
     return bool(a == b)
 
 
+def _no_results(form: Format) -> str:
+    return "" if of_results(type(form)) else "is of no results"
+
+
 class FormatSuite(Suite):
     """Duties of ``raceway.framework.contracts.Format``.
 
@@ -66,10 +82,11 @@ class FormatSuite(Suite):
         require(isinstance(suffixes, tuple) and suffixes, "`suffixes` must be a tuple that is not empty")
         bad = [s for s in suffixes if not re.fullmatch(r"(\.[a-z0-9_-]+)+", s)]
         require(not bad, f"suffixes {bad} must be lower case and begin with a dot")
+        require(hasattr(form, "read") or of_results(type(form)), "it has neither `read` nor `of_results`")
 
     @duty(
         "what is written is read back the same, real numbers to ten figures, with every suffix",
-        lambda form: "" if hasattr(form, "write") else "reads only",
+        lambda form: "writes results" if of_results(type(form)) else "" if hasattr(form, "write") else "reads only",
     )
     def test_round_trip(self, form: Format) -> None:
         content = self._content(form)
@@ -81,7 +98,28 @@ class FormatSuite(Suite):
                 equal = _same(form.read(path), content, _TEN_FIGURES)
                 require(equal, f"`{path.name}` is read back different from what was written")
 
-    @duty("a file that is missing or malformed is refused with a RacewayError that names it")
+    @duty(
+        "of results: write(folder, result) returns the paths of its files, a second time too; the result is left untouched",
+        _no_results,
+    )
+    def test_results(self, form: Format) -> None:
+        before = _example_result().to_dict()
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(2):
+                paths = [Path(p) for p in form.write(Path(folder), _example_result()) or ()]
+                require(paths, "write() returns no path")
+                for path in paths:
+                    require(path.is_file() and path.stat().st_size > 0, f"`{path.name}` does not exist or is empty")
+                    require(path.resolve().is_relative_to(Path(folder).resolve()), f"`{path}` lies outside the folder")
+            written = {p.resolve() for p in Path(folder).rglob("*") if p.is_file()}
+            extra = sorted(p.name for p in written - {p.resolve() for p in paths})
+            require(not extra, f"{', '.join(extra)} is written but not returned")
+        require(_example_result().to_dict() == before, "the result was changed")
+
+    @duty(
+        "a file that is missing or malformed is refused with a RacewayError that names it",
+        lambda form: "" if hasattr(form, "read") else "reads nothing",
+    )
     def test_bad_files(self, form: Format) -> None:
         with tempfile.TemporaryDirectory() as folder:
             for suffix in form.suffixes:
@@ -116,8 +154,6 @@ def _within(numbers: np.ndarray, limits: int | tuple[int, int]) -> bool:
 @cache
 def _example_scene() -> Scene:
     """A bearing of 30 mm bore under axial load and a turning force, two turns."""
-    from raceway import scene_from_dict
-
     turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
     method = {"kind": "newmark", "turns": 2, "steps_per_turn": 90}
     return scene_from_dict(
@@ -128,8 +164,6 @@ def _example_scene() -> Scene:
 @cache
 def _example_result() -> Result:
     """The scene's ``Result``."""
-    from raceway.pipeline.run import run
-
     return run(_example_scene())
 
 
@@ -180,30 +214,73 @@ class MesherSuite(Suite):
             require(equal, f"'{name}' differs")
 
 
-class ReportSuite(Suite):
-    """Duties of ``raceway.framework.contracts.Report``."""
+class QuantitySuite(Suite):
+    """Duties of ``raceway.framework.contracts.Quantities``.
 
-    kind = "report"
+    Attributes
+    ----------
+    scene : tables of a scene that has the quantities; a plug-in that needs more than a bearing under load offers ``example_scene()``
+    """
 
-    @duty("write(result, folder) writes files into the folder and returns their paths; a second time too")
-    def test_writes(self, report: Report) -> None:
-        with tempfile.TemporaryDirectory() as folder:
-            for _ in range(2):
-                paths = [Path(p) for p in report.write(_example_result(), Path(folder))]
-                require(paths, "write() returns no path")
-                for path in paths:
-                    require(path.is_file() and path.stat().st_size > 0, f"`{path.name}` does not exist or is empty")
-                    require(path.resolve().is_relative_to(Path(folder).resolve()), f"`{path}` lies outside the folder")
-            written = {p.resolve() for p in Path(folder).rglob("*") if p.is_file()}
-            extra = sorted(p.name for p in written - {p.resolve() for p in paths})
-            require(not extra, f"{', '.join(extra)} is written but not returned")
+    kind = "quantity"
+    scene: Tables | None = None
 
-    @duty("the result is left untouched")
-    def test_result_untouched(self, report: Report) -> None:
-        before = _example_result().to_dict()
-        with tempfile.TemporaryDirectory() as folder:
-            report.write(_example_result(), Path(folder))
-        require(_example_result().to_dict() == before, "the result was changed")
+    @duty("attributes: numbers with name, unit and words, in result.json at the plug-in's name; options with defaults")
+    def test_declaration(self, plugin: Quantities) -> None:
+        check_class("quantity", plugin)
+        type(plugin)()  # every option has a default
+        require(isinstance(plugin.numbers, tuple) and plugin.numbers, "`numbers` must be a tuple that is not empty")
+        for number in plugin.numbers:
+            require(re.fullmatch("[a-z][a-z0-9_]*", number.name), f"'{number.name}' must be letters, digits and underscores")
+            require(number.unit and number.words, f"'{number.name}' must have a unit, \"1\" of ratios, and words")
+            path = f"{plugin.name}."
+            require(number.path.startswith(path), f"the path of '{number.name}' must begin with '{path}'")
+        plugin_quantities(default_registry())
+
+    @duty("numbers of columns are those of each point alone; points are not changed")
+    def test_columns(self, plugin: Quantities) -> None:
+        tables = self._tables(plugin)
+        loads = [0.8 * tables["load"]["axial"], tables["load"]["axial"]]
+        points = _column_points(tables, loads)
+        before = {
+            name: copy.deepcopy(getattr(points, name)) for name in ("load", "contact_angle", "displacement", "stiffness")
+        }
+        values = quantities_at(plugin, points)
+        for name, was in before.items():
+            require(np.array_equal(getattr(points, name), was, equal_nan=True), f"`{name}` of the points is changed")
+        for k, load in enumerate(loads):
+            alone = quantities_at(plugin, _column_points(tables, [load]))
+            for name, value in values.items():
+                same = np.allclose(value[k], alone[name][0], rtol=1e-9, atol=0.0, equal_nan=True)
+                require(same, f"'{name}' of point {k} is {value[k]} in columns and {alone[name][0]} alone")
+
+    @duty("a run states the numbers of columns, tables of plain values, and warnings that are sentences")
+    def test_run(self, plugin: Quantities) -> None:
+        tables = self._tables(plugin)
+        result = run(scene_from_dict(tables))
+        point, columns = (
+            solved_point(result.model, result.equilibrium, None), _column_points(tables, [tables["load"]["axial"]])
+        )  # fmt: skip
+        require(not (why := why_no_quantities(plugin, point.problem)), f"the scene lacks {why}: give `example_scene()`")
+        values = quantities_at(plugin, point)
+        for name, value in quantities_at(plugin, columns).items():
+            same = np.allclose(value, values[name], rtol=1e-6, atol=0.0, equal_nan=True)
+            require(same, f"'{name}' is {value[0]} in columns and {values[name][0]} of a run")
+        table, warnings = quantity_report(plugin, point, values)
+        require(json.loads(json.dumps(table)) == table, "what result.json would have is no plain table")
+        require(all(isinstance(text, str) for text in warnings), "warnings are no sentences")
+
+    def _tables(self, plugin: Quantities) -> Tables:
+        example = getattr(plugin, "example_scene", None)
+        tables = self.scene or (example() if example is not None else b7206c(load={"axial": 1000.0, "radial": [200.0, 0.0]}))
+        return {"kinematics": {"spin_speed_rpm": 6000.0}, **tables}
+
+
+def _column_points(tables: Tables, loads: list[float]) -> SolvedPoints:
+    """The scene at axial loads, as columns."""
+    scene, columns = scene_from_dict(tables), {"load.axial": np.array(loads)}
+    bearing = build_columns(column_problem(scene, columns), make_plan(scene))
+    return Computed.of(resolve(scene), bearing, None, 1e-10, ()).points
 
 
 #: Batches of a trial, and how many may be taken before the first is answered.

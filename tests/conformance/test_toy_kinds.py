@@ -9,9 +9,9 @@ import click
 import numpy as np
 import pytest
 
-from raceway import RacewayError
+from raceway import Quantity, RacewayError
 from raceway.plugins.processes import Serial
-from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, ReportSuite, StudySuite
+from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, QuantitySuite, StudySuite
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 
@@ -74,8 +74,10 @@ class Text:
     """One line of text."""
 
     name = "text"
+    suffixes = (".txt",)
+    of_results = True
 
-    def write(self, result, folder):
+    def write(self, folder, result):
         path = Path(folder) / "result.txt"
         path.write_text(f"{result.identification.equivalent_stiffness:.4g} N/m")
         return [path]
@@ -84,9 +86,33 @@ class Text:
 class Forgetful(Text):
     name = "forgetful"
 
-    def write(self, result, folder):
-        super().write(result, folder)
+    def write(self, folder, result):
+        super().write(folder, result)
         return []
+
+
+@attrs.frozen
+class Share:
+    """Share of the load that the most loaded ball carries."""
+
+    name = "share"
+    numbers = (Quantity("largest_share", "1", "load of the most loaded ball over that of all", "share.largest"),)
+
+    def why_not(self, problem):
+        return ""
+
+    def compute(self, points):
+        inner = points.load[:, 0]
+        return {"largest_share": inner.max(axis=1) / inner.sum(axis=1)}
+
+
+class OfOnePoint(Share):
+    name = "of_one_point"
+    numbers = (Quantity("largest_share", "1", "load of the most loaded ball over that of all", "share.largest"),)
+
+    def compute(self, points):
+        inner = points.load[0, 0]
+        return {"largest_share": np.full(len(points.load), inner.max() / inner.sum())}
 
 
 class Greedy(Serial):
@@ -129,7 +155,14 @@ def failed(suite, plugin):
 
 @pytest.mark.parametrize(
     ("suite", "plugin"),
-    [(MesherSuite, Box()), (FormatSuite, Json()), (ReportSuite, Text()), (ExecutorSuite, Serial()), (StudySuite, Loads())],
+    [
+        (MesherSuite, Box()),
+        (FormatSuite, Json()),
+        (FormatSuite, Text()),
+        (QuantitySuite, Share()),
+        (ExecutorSuite, Serial()),
+        (StudySuite, Loads()),
+    ],
 )
 def test_sound_ones_conform(suite, plugin):
     assert suite.conformity(plugin).conforms
@@ -141,7 +174,8 @@ def test_sound_ones_conform(suite, plugin):
         (MesherSuite, InsideOut(), {"volumes"}),
         (MesherSuite, Dangling(), {"meshes"}),
         (FormatSuite, Careless(), {"declaration", "bad_files"}),
-        (ReportSuite, Forgetful(), {"writes"}),
+        (FormatSuite, Forgetful(), {"results"}),
+        (QuantitySuite, OfOnePoint(), {"declaration", "columns"}),
         (ExecutorSuite, Greedy(), {"answers", "ends"}),
         (ExecutorSuite, Swallowing(), {"ends"}),
         (StudySuite, Misnamed(), {"help", "command"}),

@@ -10,7 +10,8 @@ from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
 from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
-from raceway.pipeline.equilibrium import ball_pass, ball_pass_table
+from raceway.pipeline.quantities import stated_quantities
+from raceway.plugins.ball_pass import ball_pass
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 from validation.ball_pass import SPEED, passing_hz
 from validation.ball_pass import passing_scene as scene
@@ -106,7 +107,7 @@ def test_orbiting_without_speed_is_refused():
 
 def test_a_bearing_of_a_public_data_set_has_the_printed_frequencies():
     """9 balls of 7.9375 mm on 38.50 mm, 0 deg; printed to four digits."""
-    found = ball_pass(9, 7.9375e-3, 38.5e-3, 0.0)
+    found = ball_pass(9, 7.9375e-3, 38.5e-3, 1.0)
     assert found["ftf"] == pytest.approx(0.3969, abs=5e-5)
     assert found["bpfo"] == pytest.approx(3.572, abs=5e-4)
     assert found["bpfi"] == pytest.approx(5.428, abs=5e-4)
@@ -115,7 +116,7 @@ def test_a_bearing_of_a_public_data_set_has_the_printed_frequencies():
 
 @pytest.mark.parametrize("angle", [0.0, 0.3, 0.7])
 def test_ball_passes_are_those_of_the_cage_against_both_rings(angle):
-    found = ball_pass(12, 9.525e-3, 46e-3, angle)
+    found = ball_pass(12, 9.525e-3, 46e-3, np.cos(angle))
     assert found["bpfo"] + found["bpfi"] == pytest.approx(12.0, rel=1e-14)
     assert found["bpfo"] == pytest.approx(12 * found["ftf"], rel=1e-14)
     # A ball rolls on the outer race without slip: its spin times its radius at the contact is the cage's speed there.
@@ -132,7 +133,7 @@ def test_a_result_has_them_at_the_loaded_angle_and_in_hertz():
     result = run(tables)
     (row,) = result.ball_pass["rows"]
     assert row["contact_angle_deg"] == pytest.approx(19.26, abs=0.02)  # shared expectation of the loaded angle, 1200 N
-    assert row["bpfo"] == pytest.approx(ball_pass(12, 9.525e-3, 46e-3, np.radians(row["contact_angle_deg"]))["bpfo"])
+    assert row["bpfo"] == pytest.approx(ball_pass(12, 9.525e-3, 46e-3, np.cos(np.radians(row["contact_angle_deg"])))["bpfo"])
     assert row["bpfo_hz"] == pytest.approx(100.0 * row["bpfo"], rel=1e-12)
     assert result.to_dict()["ball_pass"] == result.ball_pass
     still = run({**tables, "kinematics": {}}).ball_pass
@@ -155,7 +156,7 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
         "kinematics": {"spin_speed_rpm": 15000.0, "orbiting": True},
     }
     model, now = settled(tables)
-    row = ball_pass_table(model, now)["rows"][0]
+    row = stated_quantities(model, now, None).tables["ball_pass"]["rows"][0]
     cage, b = row["ftf_in_forces"] * model.problem.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
     centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2

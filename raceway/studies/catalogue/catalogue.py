@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import cos
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -18,7 +19,7 @@ from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure, save_figure
 from raceway.out.table import Row, sections, written
 from raceway.out.wrapping import Words
-from raceway.pipeline.equilibrium import ball_pass
+from raceway.plugins.ball_pass import ball_pass
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import Preset, found_by, geometry_of, materials, no_preset
 from raceway.scene.reading import scene_from_dict
@@ -221,7 +222,7 @@ def _entry(preset: Preset, picture: Path | None) -> _Listing:
     """One bearing: numbers with source and scatter, ball-pass frequencies at the free contact angle, what is inferred."""
     scene = scene_from_dict({"title": preset.name, "bearing": {"preset": preset.name}}, Registry(third_party=False))
     b, rows = scene.bearing, list[Row]([("Dimensions", "", "")])
-    passes = ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, b.contact_angle)
+    passes = ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, cos(b.contact_angle))
     geometry = geometry_of({"preset": preset.name}, {})
     sources: dict[str, list[str]] = {}
     for fact in preset.facts:

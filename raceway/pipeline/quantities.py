@@ -1,0 +1,78 @@
+"""Quantities of plug-ins at one solved point: their numbers, tables of result.json and warnings."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import attrs
+import numpy as np
+
+from raceway.bodies.model import Equilibrium, Model
+from raceway.core.record import Record
+from raceway.framework.contracts import SolvedPoints
+from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
+from raceway.storage.tables import Tables
+
+
+@attrs.frozen(eq=False)
+class StatedQuantities:
+    """What plug-ins of quantities state of a result.
+
+    Attributes
+    ----------
+    values : name -> number, or array over the quantity's dimensions;  tables : plug-in -> what result.json has;  warnings : sentences
+    """
+
+    values: dict[str, float | np.ndarray]
+    tables: dict[str, Tables]
+    warnings: tuple[str, ...]
+
+
+def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | None) -> StatedQuantities:
+    """Of every plug-in whose numbers the problem has.
+
+    Raises
+    ------
+    PluginError
+        A plug-in that breaks a duty.
+    """
+    points, values, tables, warnings = solved_point(model, equilibrium, record), Tables(), dict[str, Tables](), list[str]()
+    for plugin in fitting_quantities(model.problem):
+        computed = quantities_at(plugin, points)
+        tables[plugin.name], sentences = quantity_report(plugin, points, computed)
+        warnings += sentences
+        values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in computed.items()}
+    return StatedQuantities(values, tables, tuple(warnings))
+
+
+def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) -> SolvedPoints:
+    """One point as quantities see it; ``record`` : of the motion, in the turns that are used."""
+    problem, z = model.problem, model.system.ball_count
+
+    def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        races = (model.bearing.contact_ellipse(model, race, load[0, race]) for race in (0, 1))
+        pressure, major, minor = (np.stack(pair)[np.newaxis] for pair in zip(*races, strict=True))
+        return pressure, major, minor
+
+    repeats = record is not None and problem.excitation is not None and problem.excitation.period_s is not None
+    return SolvedPoints(
+        problem=problem,
+        row=model.basis.row,
+        side=np.array([side for side, _ in problem.bearing.rows])[model.basis.row],
+        speed=np.array([problem.spin_speed]),
+        load=equilibrium.contact_force.reshape(1, 2, z),
+        contact_angle=np.stack([equilibrium.angle_inner, equilibrium.angle_outer])[np.newaxis],
+        displacement=equilibrium.displacement[np.newaxis],
+        stiffness=equilibrium.stiffness[np.newaxis],
+        ellipse=ellipse,
+        turn=partial(_turn, record, problem.period) if repeats and record is not None else None,
+    )
+
+
+def _turn(record: Record, period: float, count: int) -> np.ndarray:
+    """(1, T, 2, Z) contact forces over the last turn, between its samples along straight lines."""
+    last = record.time[-1] - record.time[-1] % period
+    first = last if record.time[-1] - last >= period * (1.0 - 1.0 / len(record.time)) else last - period
+    times = first + period * np.arange(count) / count
+    forces = np.stack([np.interp(times, record.time, column, period=None) for column in record.contact_force.T], axis=1)
+    return forces.reshape(1, count, 2, -1)
