@@ -20,6 +20,8 @@ _COLUMNS = {
     "outer_diameter": (_PRINTED, False, None),
     "width": (_PRINTED, False, None),
     "contact_angle_deg": ("suffix C 15, A5 25, A 30 deg; " + _PRINTED, False, None),
+    "dynamic_rating": (_PRINTED, False, None),
+    "static_rating": (_PRINTED, False, None),
     "ball_count": (
         f"{_HOW}, by the tables of ISO 281 and ISO 76; scatter: what remains for all other counts",
         True,
@@ -90,6 +92,8 @@ def _rows(found: Inferred) -> list[tuple[str, str]]:
             one.outer_diameter,
             one.width,
             rating.contact_angle_deg,
+            rating.dynamic,
+            rating.static,
             *(n.value for n in list(found.numbers.values())[:3]),
         ]
         scatters = [found.ball_count.scatter, found.ball_diameter.scatter, found.pitch_diameter.scatter]

@@ -12,6 +12,7 @@ from raceway import SceneError, run, scene_from_dict
 from raceway.planning.resolve import resolve
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import _single_presets, catalogue, found_by, preset
+from raceway.scene.sets import RATINGS
 from raceway.studies.catalogue.printed import printed_by
 
 POUND = 4.4482216152605
@@ -110,7 +111,7 @@ def test_the_series_hold_all_designations_of_the_printed_table():
 def test_a_series_states_source_and_scatter_of_every_number():
     for fact in catalogue()["7014C"].facts:
         assert len(fact.source) > 20
-        assert fact.inferred is (fact.key not in ("bore", "outer_diameter", "width", "contact_angle_deg"))
+        assert fact.inferred is (fact.key not in ("bore", "outer_diameter", "width", "contact_angle_deg", *RATINGS))
         assert (fact.scatter is not None) is (fact.inferred and "." not in fact.key)
 
 

@@ -57,6 +57,8 @@ _KEYS = frozenset(
         "bearing.bore",
         "bearing.outer_diameter",
         "bearing.width",
+        "bearing.dynamic_rating",
+        "bearing.static_rating",
         "bearing.first_ball_azimuth_deg",
         "bearing.rings.thermal_expansion",
         "bearing.balls.thermal_expansion",

@@ -106,7 +106,7 @@ class BallRow:
 
     def _loads_at(self, pressure: float, modulus: float) -> np.ndarray:
         """Loads (2, ...) of a contact at the inner and at the outer race at a peak pressure [N]."""
-        return np.stack([_load_at_pressure(*shape, modulus, pressure) for shape in self._grooves])
+        return np.stack(np.broadcast_arrays(*(_load_at_pressure(*shape, modulus, pressure) for shape in self._grooves)))
 
     def _share(self, mean: float) -> np.ndarray:
         """Rating over the load of all balls at that of the most loaded one: mean cos(a), of thrust bearings sin(a)."""
@@ -136,7 +136,7 @@ class BallRow:
         share = np.where(radial, np.cos(self.angle) ** 0.7, np.sin(self.angle)) * self.count
         inner = rating / np.where(radial, 0.407, 1.0) / share * (1.0 + ratio ** (10.0 / 3.0)) ** 0.3
         outer = rating / np.where(radial, 0.389, 1.0) / share * (1.0 + ratio ** (-10.0 / 3.0)) ** 0.3
-        return np.stack([inner, outer])
+        return np.stack(np.broadcast_arrays(inner, outer))
 
     def static_contact_ratings(self, rating: ArrayLike) -> np.ndarray:
         """Loads (2, ...) [N] of one contact at the inner and at the outer race that a static rating permits.

@@ -21,7 +21,7 @@ from raceway.framework.options import (
     positive,
 )
 from raceway.framework.rules import Rule, speaking
-from raceway.scene.sets import GEOMETRY, Row, arrangement, check_set, places_of, signs_of, travel
+from raceway.scene.sets import GEOMETRY, RATINGS, Row, arrangement, check_set, places_of, signs_of, travel
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
 STEEL, STEEL_EXPANSION = (2.04e11, 2.14e11), 12.5e-6
@@ -68,6 +68,18 @@ class Bearing:
     width: float | None = option(None, unit="m", help="width", rule=optional(length()))
     shoulder_height: float | None = option(
         None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(length())
+    )
+    dynamic_rating: float | None = option(
+        None,
+        unit="N",
+        help="basic dynamic load rating C of one row; default: the catalogue's, else by ISO 281",
+        rule=optional(positive()),
+    )
+    static_rating: float | None = option(
+        None,
+        unit="N",
+        help="basic static load rating C0 of one row; default: the catalogue's, else by ISO 76",
+        rule=optional(positive()),
     )
     inner_profile: tuple[tuple[float, float], ...] | None = option(
         None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
@@ -207,7 +219,9 @@ class Bearing:
         if not {"ball_diameter", "pitch_diameter"}.isdisjoint(geometry):
             # Dimensions of the set's bearing belong to its balls.
             lost = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
-            geometry = {**dict.fromkeys(lost), **geometry}
+            geometry = {**dict.fromkeys((*lost, *RATINGS)), **geometry}
+        if row is not None and row.preset is not None:
+            geometry["preset"] = row.preset
         plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
         return attrs.evolve(self, **{**plain, **geometry})
 

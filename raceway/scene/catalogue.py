@@ -24,6 +24,7 @@ import attrs
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
+from raceway.scene.sets import RATINGS
 from raceway.storage.tables import ReadTables, Tables
 
 #: Uncertainty of presets with a file of their own and inferred balls: the conformity that the pairs of series 70 give meets what NSK
@@ -78,15 +79,22 @@ class Preset:
 
     @property
     def table(self) -> Tables:
-        """The [bearing] table that the preset stands for."""
+        """The [bearing] table that the preset stands for, without the printed ratings."""
         out: Tables = {}
         for fact in self.facts:
+            if fact.key in RATINGS:
+                continue
             table = out
             *parents, last = fact.key.split(".")
             for parent in parents:
                 table = table.setdefault(parent, {})
             table[last] = fact.value
         return out
+
+    @property
+    def ratings(self) -> dict[str, float]:
+        """Printed load ratings [N] by their keys, where a document prints them."""
+        return {fact.key: float(str(fact.value)) for fact in self.facts if fact.key in RATINGS}
 
 
 @cache
@@ -105,7 +113,7 @@ def _single_presets() -> dict[str, Preset]:
     return {entry.name: entry for entry in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
 
 
-def _preset(name: object) -> Preset | None:
+def preset_of(name: object) -> Preset | None:
     """One preset; a series is read only where it has to be."""
     if not isinstance(name, str):
         return None
@@ -166,7 +174,7 @@ def preset(name: object) -> Tables:
     SceneError
         Unknown name, with the nearest five.
     """
-    entry = _preset(name)
+    entry = preset_of(name)
     if entry is None:
         raise SceneError.at("bearing.preset", name, no_preset(str(name)))
     return {**entry.table, "preset": name}
@@ -215,7 +223,7 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
 
 def _inferred(name: object, tables: ReadTables) -> Tables | None:
     """preset, inferred and uncertainties of one preset, less the keys that the user gives."""
-    entry = _preset(name)
+    entry = preset_of(name)
     if entry is None or entry.stiffness_error is None:
         return None
     facts = [fact for fact in entry.facts if fact.inferred and "." not in fact.key and fact.key not in tables]

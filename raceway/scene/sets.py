@@ -21,6 +21,7 @@ from raceway.framework.options import (
     one_of,
     option,
     optional,
+    positive,
     worded,
 )
 
@@ -134,6 +135,8 @@ class Row:
     bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
     outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
     width: float | None = option(None, unit="m", help="width", rule=optional(length()))
+    dynamic_rating: float | None = option(None, unit="N", help="C of the row", rule=optional(positive()))
+    static_rating: float | None = option(None, unit="N", help="C0 of the row", rule=optional(positive()))
     first_ball_azimuth_deg: float | None = option(
         None, unit="deg", help="azimuth of the row's first ball from +y towards +z", rule=optional(finite())
     )
@@ -143,6 +146,10 @@ class Row:
 GEOMETRY = tuple(
     field.name for field in attrs.fields(Row) if field.name not in ("direction", "position", "preload", "preset")
 )
+
+
+#: Keys of printed load ratings.
+RATINGS = "dynamic_rating", "static_rating"
 
 
 def check_set(bearing: Bearing) -> None:
