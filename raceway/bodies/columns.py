@@ -131,7 +131,7 @@ def why_no_column(scene: Scene, key: str) -> str:
     if key in _SHAPES and scene.bodies.name == "condensed":
         return f"{key} changes the finite elements"
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
-    known = key.startswith("excitation.") or key in _KEYS and not apart
+    known = key.startswith(("excitation.", "quantities.")) or key in _KEYS and not apart
     return "" if known else f"{key} changes more than numbers"
 
 
@@ -218,17 +218,18 @@ class ColumnBearing:
         tolerance: float,
         loop: Callable[..., None] = orbits,
         disturbed: bool = False,
+        times: int = 0,
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium.
 
         Parameters
         ----------
         excitations : periodic ones;  tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
-        disturbed : whether ``transfer`` is computed, too
+        disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
         speed = excitations.speed
-        out = _empty_orbits(n, z, 2 * int(self.linear.free.sum()) * disturbed)
+        out = _empty_orbits(n, z, 2 * int(self.linear.free.sum()) * disturbed, times)
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
@@ -384,9 +385,9 @@ def _empty_states(n: int, z: int, columns: int) -> States:
     )
 
 
-def _empty_orbits(n: int, z: int, disturbances: int) -> Orbits:
+def _empty_orbits(n: int, z: int, disturbances: int, times: int) -> Orbits:
     lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
-    forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z))
+    forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.zeros((n, times, 2 * z))
     counts = np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64)
     return Orbits(
         *lines,

@@ -325,6 +325,8 @@ class Quantities(attrs.AttrsInstance, Protocol):
        one point follows for columns.  Points are not changed.
     4. May be left out: ``table(points, values)``: of one point, what result.json has at NAME, plain values; else the numbers.
     5. May be left out: ``warnings(points, values)``: of one point, what a user should know, sentences.
+    6. May be left out: ``turn_samples(problem)``: T, for how many times of a turn ``compute`` calls ``points.turn(T)``; else no forces
+       along a motion are there in columns.
     """
 
     name: ClassVar[str]

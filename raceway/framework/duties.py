@@ -88,6 +88,13 @@ def why_no_quantities(plugin: Quantities, problem: Problem) -> str:
     return _answer(f"quantity '{plugin.name}'", "why_not", lambda: plugin.why_not(problem), str)
 
 
+def turn_samples(plugin: Quantities, problem: Problem) -> int:
+    """Times of a turn at which a plug-in of quantities asks for contact forces, or ``PluginError``; 0 unless it says more."""
+    if not hasattr(plugin, "turn_samples"):
+        return 0
+    return _answer(f"quantity '{plugin.name}'", "turn_samples", lambda: plugin.turn_samples(problem), int)
+
+
 def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
     """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
     title, n = f"quantity '{plugin.name}'", len(points.load)
@@ -101,7 +108,9 @@ def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndar
     for number in plugin.numbers:
         shape = values[number.name].shape
         if shape[:1] != (n,) or len(shape) != 1 + len(number.dims):
-            raise PluginError(f"{title}: '{number.name}' has shape {shape}; it must be {(n, *number.dims)}")
+            raise PluginError(
+                f"{title}: '{number.name}' has shape {shape}; it must be ({', '.join([str(n), *number.dims])})"
+            )
     return values
 
 

@@ -71,8 +71,7 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
 
 def _turn(record: Record, period: float, count: int) -> np.ndarray:
     """(1, T, 2, Z) contact forces over the last turn, between its samples along straight lines."""
-    last = record.time[-1] - record.time[-1] % period
-    first = last if record.time[-1] - last >= period * (1.0 - 1.0 / len(record.time)) else last - period
-    times = first + period * np.arange(count) / count
-    forces = np.stack([np.interp(times, record.time, column, period=None) for column in record.contact_force.T], axis=1)
-    return forces.reshape(1, count, 2, -1)
+    last = record.time > record.time[-1] - period * (1.0 - 1e-9)
+    times, forces = period * np.arange(count) / count, record.contact_force[last]
+    columns = [np.interp(times, record.time[last], column, period=period) for column in forces.T]
+    return np.stack(columns, axis=1).reshape(1, count, 2, -1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from functools import cached_property
 
@@ -15,8 +16,8 @@ from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import PluginError
 from raceway.framework.contracts import SolvedPoints
-from raceway.framework.duties import fitting_quantities, quantities_at
-from raceway.framework.registry import Registry
+from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
+from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, Quantity, named
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
@@ -59,7 +60,12 @@ class Computed:
         states = bearing.equilibria()
         if excitations is None:
             return cls(example, bearing, states, None, np.zeros(0))
-        motion = bearing.orbits(states, excitations, tolerance, disturbed=_MULTIPLIER in outputs)
+        stated = plugin_quantities(default_registry())
+        plugins = {stated[name][0] for name in outputs if name in stated}
+        samples = [turn_samples(getattr(example.quantities, name), example) for name in plugins]
+        times = math.lcm(*(count for count in samples if count)) if any(samples) else 0
+        disturbed = _MULTIPLIER in outputs
+        motion = bearing.orbits(states, excitations, tolerance, disturbed=disturbed, times=times)
         return cls(example, bearing, states, motion, excitations.speed)
 
     @cached_property
@@ -96,7 +102,13 @@ class Computed:
             displacement=states.q,
             stiffness=states.stiffness,
             ellipse=ellipse,
+            turn=None if self.orbits is None else self._turn,
         )
+
+    def _turn(self, count: int) -> np.ndarray:
+        """(n, T, 2, Z) contact forces at times of a turn, whose number a plug-in has asked for."""
+        turn = self.motion.turn
+        return turn[:, :: turn.shape[1] // count].reshape(len(turn), count, 2, -1)
 
     @cached_property
     def _of_plugins(self) -> dict[str, dict[str, np.ndarray]]:

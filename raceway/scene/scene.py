@@ -167,8 +167,9 @@ class Scene(SceneTables, Shown):
             plugin = getattr(self, name)
             if plugin is not None:
                 tables[name] = {"kind": plugin.name, **_plain(plugin)}
-        if "quantities" in self.source:
-            tables["quantities"] = {name: _plain(getattr(self.quantities, name)) for name in self.source["quantities"]}
+        plugins = [getattr(self.quantities, field.name) for field in attrs.fields(type(self.quantities))]
+        if options := {plugin.name: _plain(plugin) for plugin in plugins if plugin != type(plugin)()}:
+            tables["quantities"] = options
         return tables
 
 

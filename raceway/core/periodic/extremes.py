@@ -1,4 +1,4 @@
-"""Largest and least contact forces along a steady orbit, between its samples.
+"""Contact forces along a steady orbit, between its samples: largest, least, and at equidistant times of a turn.
 
 Notes
 -----
@@ -57,9 +57,20 @@ def _extreme(curve, re, im, sign):
     return max(sign * value, sign * curve[best]) * sign
 
 
-@jit(void(MATRIX, int64[::1], int64, VECTOR, VECTOR), allocates=True)
-def force_extremes(force, order, spans, peak, least):
-    """``peak`` and ``least`` (2 Z,) of forces (n, 2 Z) at the samples of a span; ``order`` (Z,) the ball that stands where each one stood."""
+@jit(float64(VECTOR, VECTOR, float64))
+def _value(re, im, angle):
+    """Of the polynomial."""
+    value, c, s, cosine, sine = 0.0, 1.0, 0.0, np.cos(angle), np.sin(angle)
+    for h in range(re.size):
+        value += re[h] * c - im[h] * s
+        c, s = c * cosine - s * sine, s * cosine + c * sine
+    return value
+
+
+@jit(void(MATRIX, int64[::1], int64, VECTOR, VECTOR, MATRIX), allocates=True)
+def force_extremes(force, order, spans, peak, least, turn):
+    """``peak`` and ``least`` (2 Z,) of forces (n, 2 Z) at the samples of a span; ``order`` (Z,) the ball that stands where each one stood.
+    ``turn`` (T, 2 Z): forces at T equidistant times of a turn."""
     n, z = force.shape[0], order.size
     curve, re, im = np.empty(n * spans), np.empty(n * spans // 2 + 1), np.empty(n * spans // 2 + 1)
     known = np.zeros(z)
@@ -75,7 +86,10 @@ def force_extremes(force, order, spans, peak, least):
             _transform(curve, re, im)
             largest, smallest = _extreme(curve, re, im, 1.0), max(_extreme(curve, re, im, -1.0), 0.0)
             ball = k
-            for _ in range(spans):
+            for m in range(spans):
+                for i in range(turn.shape[0]):
+                    angle = 2.0 * np.pi * (i / turn.shape[0] + m / spans)
+                    turn[i, race * z + ball] = max(_value(re, im, angle), 0.0)
                 peak[race * z + ball], least[race * z + ball] = largest, smallest
                 known[ball] = 1.0
                 ball = order[ball]

@@ -82,7 +82,7 @@ class Turning(NamedTuple):
 class Orbits(NamedTuple):
     """What is computed: 1x lines of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
     of the radial 1x line by the last doubling, over the line (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
-    least contact forces (n, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
+    least contact forces (n, 2 Z), and those at T equidistant times of a turn (n, T, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
     unknowns and their derivatives by the angle over a span, in the frame (n, 2 d, 2 d), else (n, 0, 0)."""
 
     line: np.ndarray
@@ -93,6 +93,7 @@ class Orbits(NamedTuple):
     residual: np.ndarray
     peak: np.ndarray
     least: np.ndarray
+    turn: np.ndarray
     samples: np.ndarray
     status: np.ndarray
     span: np.ndarray
@@ -102,7 +103,9 @@ class Orbits(NamedTuple):
 TURNING = record(
     Turning, FORCE_POINTER, MATRIX, VECTOR, CUBE, MATRIX, float64, float64, int64[::1], int64, int64, float64
 )  # fmt: skip
-ORBITS = record(Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, int64[::1], int64[::1], VECTOR, CUBE)
+ORBITS = record(
+    Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, CUBE, int64[::1], int64[::1], VECTOR, CUBE
+)
 
 
 @jit(void(int64, float64, VECTOR, VECTOR))
@@ -592,7 +595,9 @@ def _report(turning, numbers, level, status, error, p, out):
     out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
     out.span[p] = turning.span
     out.residual[p] = _residual(level.u, turning.sense, out.mean[p], out.line[p])
-    force_extremes(level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p])
+    force_extremes(
+        level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p]
+    )
     for i in range(5):
         out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
 

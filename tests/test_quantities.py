@@ -1,0 +1,163 @@
+"""Numbers of plug-ins: in results and functions, of one point and of columns, along a motion; what breaks a duty is named."""
+
+from __future__ import annotations
+
+import json
+from typing import ClassVar
+
+import attrs
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway import Quantity, hookimpl, option
+from raceway.errors import PluginError, SceneError
+from raceway.framework.registry import default_registry
+
+SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "kinematics": {"spin_speed_rpm": 6000.0}}
+BALLS = {"ball_diameter": 9.5e-3, "pitch_diameter": 46e-3, "ball_count": 9, "width": 16e-3, "radial_clearance": 1e-5}
+BALLS |= {"conformity_inner": 0.52, "conformity_outer": 0.52}
+TURNING = {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 2e-4}
+
+
+@attrs.frozen
+class Loads:
+    """Mean load of the inner contacts, and their loads over a turn of the motion."""
+
+    name: ClassVar[str] = "loads"
+    numbers: ClassVar[tuple[Quantity, ...]] = (
+        Quantity("mean_load", "N", "mean load of the inner contacts over a scale", "loads.mean"),
+        Quantity("turn_load", "N", "over a turn", "loads.turn", dims=("instant", "race", "ball")),
+    )
+
+    scale: float = option(1.0, help="that loads are divided by")
+
+    def why_not(self, problem):
+        return "" if problem.load.axial else "load.axial"
+
+    def turn_samples(self, problem):
+        return 12
+
+    def compute(self, points):
+        turn = points.load[:, None] if points.turn is None else points.turn(12)
+        return {"mean_load": points.load[:, 0].mean(axis=1) / self.scale, "turn_load": turn}
+
+    def warnings(self, points, values):
+        return ["loads are large"] if values["mean_load"][0] > 200.0 else []
+
+
+def registered(plugin):
+    """A module that hands the class in."""
+
+    @hookimpl
+    def raceway_quantities():
+        return [plugin]
+
+    module = type("Module", (), {})()
+    module.raceway_quantities = raceway_quantities
+    return module
+
+
+@pytest.fixture
+def use():
+    """Registers a class for a test."""
+    registry, modules = default_registry(), []
+
+    def add(plugin):
+        modules.append(registered(plugin))
+        registry.add(modules[-1], f"test {plugin.name}")
+
+    yield add
+    for module in modules:
+        registry._remove(module, [e for e in registry.all() if e.source.startswith("test ")])
+
+
+@pytest.fixture
+def loads(use):
+    use(Loads)
+
+
+def test_a_run_states_them_with_options_warnings_and_a_table(loads):
+    result = rw.run({**SCENE, "quantities": {"loads": {"scale": 2.0}}})
+    mean = result.ball_loads.mean()
+    assert result.quantities["mean_load"] == pytest.approx(mean / 2.0, rel=1e-14)
+    tables = json.loads(json.dumps(result.to_dict()))
+    assert tables["loads"]["mean"] == result.quantities["mean_load"]
+    assert tables["scene"]["quantities"] == {"loads": {"scale": 2.0}}
+    assert "loads are large" not in result.warnings and "loads are large" in rw.run(SCENE).warnings
+
+
+def test_a_function_computes_them_as_columns(loads):
+    forces = np.array([400.0, 1000.0])
+    f = rw.function(SCENE, ["load.axial", "quantities.loads.scale"], ["mean_load", "bpfo"])
+    answer = f(forces, 4.0)
+    for k, force in enumerate(forces):
+        result = rw.run({**SCENE, "load": {"axial": force}})
+        assert answer["mean_load"][k] == pytest.approx(result.ball_loads.mean() / 4.0, rel=1e-9)
+        assert answer["bpfo"][k] == pytest.approx(result.quantities["bpfo"], rel=1e-9)
+    assert f.jacobian(1000.0, 4.0)["mean_load"]["quantities.loads.scale"] == pytest.approx(
+        -answer["mean_load"][1] / 4.0, rel=1e-6
+    )
+
+
+@pytest.mark.parametrize("radial", [0.0, 300.0])
+def test_forces_over_a_turn_are_those_of_a_run(loads, radial):
+    """A turn of the orbit as columns is a trigonometric polynomial; a run has it at 360 times, among them these 12."""
+    scene = {**SCENE, "load": {"axial": 1000.0, "radial": [radial, 0.0]}, "excitation": TURNING}
+    turn = rw.function(scene, ["load.axial"], ["turn_load"])([400.0, 1000.0])["turn_load"][1]
+    assert turn == pytest.approx(rw.run(scene).quantities["turn_load"], rel=1e-8)
+    assert np.ptp(turn[:, 0, 0]) > 50.0
+
+
+@attrs.frozen
+class Renamed(Loads):
+    """The same numbers under another name."""
+
+    name: ClassVar[str] = "renamed"
+
+
+def test_two_plugins_with_one_number_are_refused(loads, use):
+    use(Renamed)
+    with pytest.raises(PluginError, match="'mean_load' has the name of another quantity"):
+        rw.function(SCENE, ["load.axial"], ["mean_load"])
+
+
+@attrs.frozen
+class Broken(Loads):
+    """Forgets a number."""
+
+    name: ClassVar[str] = "broken"
+
+    def compute(self, points):
+        return {"mean_load": 1.0}
+
+
+@attrs.frozen
+class Shapeless(Loads):
+    """Numbers without the points' axis."""
+
+    name: ClassVar[str] = "shapeless"
+
+    def compute(self, points):
+        return {"mean_load": 1.0, "turn_load": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("plugin", "words"),
+    [
+        (Broken, "'broken': compute.. must return exactly its `numbers`.*turn_load"),
+        (Shapeless, r"turn_load. has shape \(1,\); it must be \(1, instant, race, ball\)"),
+    ],
+)
+def test_a_broken_duty_is_named(use, plugin, words):
+    use(plugin)
+    with pytest.raises(PluginError, match=words):
+        rw.run(SCENE)
+
+
+def test_what_a_scene_lacks_is_said(loads):
+    scene = {**SCENE, "load": {"axial": 0.0, "radial": [500.0, 0.0]}, "bearing": {**BALLS}}
+    with pytest.raises(SceneError, match=r"mean_load.*is no number of this scene: load\.axial"):
+        rw.function(scene, ["load.radial[0]"], ["mean_load"])
+    with pytest.raises(SceneError, match=r"quantities\.load.*did you mean 'loads'"):
+        rw.run({**SCENE, "quantities": {"load": {}}})
