@@ -3,6 +3,7 @@
 jit            the one decorator for compiled kernels
 columns        numbers that may be columns, one of each operating point
 signatures     types of the kernels that are passed as function pointers
+thermal        steady temperatures of a network of six nodes, and its conductances
 threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws
 ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for

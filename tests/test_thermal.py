@@ -1,0 +1,111 @@
+"""The thermal network of a bearing, and its correlations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+
+from raceway.core.thermal import (
+    LINKS,
+    NODES,
+    STEEL_CONDUCTIVITY,
+    STEEL_EFFUSIVITY,
+    flows,
+    oil_convection,
+    rolling_contact,
+    seat_emission,
+    temperatures,
+)
+
+_INLET, _AMBIENT = 60.0, 20.0
+
+
+def _network(n: int = 50) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    rng = np.random.default_rng(3)
+    return {link: rng.uniform(0.5, 40.0, n) for link in LINKS}, rng.uniform(0.0, 300.0, (n, 6))
+
+
+def test_the_network_balances_its_energy():
+    """What arises leaves with the oil and to the ambient, to 1e-9, at each node, too."""
+    conductances, heats = _network()
+    along = flows(conductances, temperatures(conductances, heats, _INLET, _AMBIENT), heats, _INLET, _AMBIENT)
+    leaving = along["throughput"] + along["shaft_ambient"] + along["housing_ambient"]
+    assert_allclose(leaving, heats.sum(axis=1), rtol=1e-12)
+    for k, node in enumerate(NODES):
+        out = sum(along[link] * ((first == node) - (second == node)) for link, (first, second) in LINKS.items())
+        assert_allclose(out, heats[:, k], rtol=1e-9, atol=1e-9)
+
+
+def test_without_heat_at_one_temperature():
+    conductances, heats = _network()
+    assert_allclose(temperatures(conductances, 0.0 * heats, 45.0, 45.0), 45.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("last", ["throughput", "shaft_ambient"])
+def test_two_resistances_in_series(last):
+    """Heat of the inner ring that can leave by one way only warms it by heat times the resistances on it."""
+    way = {"throughput": "inner_oil", "shaft_ambient": "inner_shaft"}[last]
+    conductances = dict.fromkeys(LINKS, 1e-12) | {way: 4.0, last: 5.0}
+    heats = np.zeros((1, 6))
+    heats[0, 0] = 100.0
+    level = temperatures(conductances, heats, 30.0, 30.0)[0]
+    assert_allclose(level[0] - 30.0, 100.0 / 4.0 + 100.0 / 5.0, rtol=1e-9)
+
+
+def test_infinite_conductances_are_the_limit_of_large_ones():
+    """Of some links and of all: then every node is at the inlet's temperature, and the oil takes what the ambient does not."""
+    conductances, heats = _network()
+    for links in (["inner_oil", "inner_balls", "balls_oil"], ["throughput"], ["outer_housing", "inner_shaft", "outer_oil"]):
+        infinite = temperatures(conductances | dict.fromkeys(links, np.inf), heats, _INLET, _AMBIENT)
+        large = temperatures(conductances | dict.fromkeys(links, 1e9), heats, _INLET, _AMBIENT)
+        assert_allclose(infinite, large, rtol=1e-5)
+    every = {link: value if "ambient" in link else np.inf for link, value in conductances.items()}
+    level = temperatures(every, heats, _INLET, _AMBIENT)
+    assert_allclose(level, _INLET, rtol=1e-15)
+    along = flows(every, level, heats, _INLET, _AMBIENT)
+    assert_allclose(along["throughput"] + along["shaft_ambient"] + along["housing_ambient"], heats.sum(axis=1), rtol=1e-12)
+
+
+def test_more_heat_is_warmer_and_more_oil_is_colder():
+    conductances, heats = _network()
+    level = temperatures(conductances, heats, _INLET, _AMBIENT)
+    warmer = temperatures(conductances, heats + np.eye(6)[2], _INLET, _AMBIENT)
+    assert (warmer > level).all() and (np.argmax(warmer - level, axis=1) == 2).all()
+    more_oil = conductances | {"throughput": 2.0 * conductances["throughput"]}
+    hot = level[:, -1] > _INLET
+    assert (temperatures(more_oil, heats, _INLET, _AMBIENT)[hot] < level[hot]).all()
+
+
+def test_a_fast_contact_takes_up_what_two_half_spaces_exchange():
+    """Strip by strip e dT sqrt(t / pi) a unit of area [J/m2] over the time in contact, integrated by quadrature."""
+    a, b, speed = 6e-4, 6e-5, 2e3
+
+    def strip(y):
+        time = 2.0 * b * np.sqrt(1.0 - (y / a) ** 2) / speed
+        return STEEL_EFFUSIVITY * np.sqrt(time / np.pi) * speed
+
+    assert_allclose(rolling_contact(a, b, speed), quad(strip, -a, a)[0], rtol=3e-4)
+
+
+def test_a_standing_contact_is_two_constrictions():
+    """Of a circle each has 1 / (4 k a); a film is in series; an open contact conducts nothing."""
+    a = 1e-4
+    assert_allclose(rolling_contact(a, a, 0.0), 2.0 * STEEL_CONDUCTIVITY * a, rtol=1e-12)
+    film = rolling_contact(a, a, 0.0, film=1e-6, oil_conductivity=0.14)
+    assert_allclose(1.0 / film, 1.0 / (2.0 * STEEL_CONDUCTIVITY * a) + 1e-6 / (0.14 * np.pi * a**2), rtol=1e-12)
+    assert rolling_contact(0.0, 0.0, 10.0) == 0.0
+
+
+def test_convection_by_hand():
+    """VG 32 at 60 C and 10 000 r/min, D cos(alpha)/d_m = 0.2: nu 14e-6 m2/s, k 0.14 W/m/K, rho c 1.7e6, Pr 170."""
+    h = oil_convection(10_000.0 * np.pi / 30.0, 0.2, 14e-6, 0.14, 1.7e6, 9.525e-3)
+    assert_allclose(h, 0.0986 * (8000.0 / 14e-6) ** 0.5 * 0.14 * 170.0 ** (1.0 / 3.0) + 29.4, rtol=1e-3)
+
+
+def test_emission_of_both_seats_is_that_of_the_standard():
+    """A 6206 of 30 by 62 by 16 mm: 0.016 W/mm2 of 4624 mm2 at 50 K."""
+    both = seat_emission(0.030, 0.092, 0.016) + seat_emission(0.062, 0.092, 0.016)
+    assert_allclose(both, 0.016 * 4624.4 / 50.0, rtol=1e-4)
+    assert seat_emission(0.5, 0.9, 0.1) < 0.016e6 * np.pi * 0.5 * 0.1 / 50.0
