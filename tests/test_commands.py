@@ -437,7 +437,7 @@ SLIPS = {
     "file for a bearing": (["dev", "new-scene", "mine.toml"], "raceway dev new-scene B7206C --out mine.toml", ""),
     "file that is there": (["dev", "new-scene", "--out", MINIMAL], "exists", ""),
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),
-    "unknown format": (["view", "--mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, vtu", ""),
+    "unknown format": (["view", "--mesh", MINIMAL, "--format", "vtk"], "installed: abaqus, msh, pictures, vtu", ""),
     "format that only reads": (["view", "--mesh", MINIMAL, "--format", "msh"], "'msh' only reads; files are written as abaqus, vtu", ""),
     "unknown executor": (["sweep", MINIMAL, "--grid", "load.axial=1,2", "--executor", "moon"], "dask, processes, serial", ""),
     "unknown mesher": (["check", MINIMAL, "--set", "mesh.kind=moon"], "installed: file, gmsh, structured", ""),

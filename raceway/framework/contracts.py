@@ -327,6 +327,8 @@ class Quantities(attrs.AttrsInstance, Protocol):
     5. May be left out: ``warnings(points, values)``: of one point, what a user should know, sentences.
     6. May be left out: ``turn_samples(problem)``: T, for how many times of a turn ``compute`` calls ``points.turn(T)``; else no forces
        along a motion are there in columns.
+    7. May be left out: ``rows(table)``, a static method: of what result.json has at NAME rows of the screen, each name, value with unit,
+       and remark; a row without a value is a heading.  Else the class's first line and its numbers.
     """
 
     name: ClassVar[str]

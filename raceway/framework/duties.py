@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Bearing
     from raceway.errors import Mistake
     from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Format, Quantities, SolvedPoints
+    from raceway.framework.shown import Fact
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.scene import SceneTables
-    from raceway.storage.tables import Tables
+    from raceway.storage.tables import ReadTables, Tables
 
 T = TypeVar("T")
 
@@ -86,6 +87,14 @@ def fitting_quantities(problem: Problem) -> list[Quantities]:
 def why_no_quantities(plugin: Quantities, problem: Problem) -> str:
     """What a problem lacks for the numbers of a plug-in, or ``PluginError``; empty where it has all."""
     return _answer(f"quantity '{plugin.name}'", "why_not", lambda: plugin.why_not(problem), str)
+
+
+def quantity_screen(plugin: type[Quantities], result: ReadTables) -> list[Fact]:
+    """Of a result the rows of a screen: the plug-in's own, or a heading and its numbers."""
+    if hasattr(plugin, "rows"):
+        return _answer(f"quantity '{plugin.name}'", "rows", lambda: plugin.rows(result[plugin.name]), list)
+    heading = (plugin.__doc__ or plugin.name).partition("\n")[0].rstrip(".")
+    return [(heading, "", ""), *(number.fact(result) for number in plugin.numbers if not number.dims)]
 
 
 def turn_samples(plugin: Quantities, problem: Problem) -> int:

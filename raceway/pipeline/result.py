@@ -482,13 +482,13 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
         A name that no format of results has, or two; a format whose options have no defaults.
     """
     reports = []
+    writing = sorted({each.name for each in registry.all() if each.kind == "format" and of_results(each.plugin)})
     for name in dict.fromkeys(names):
-        entry = registry.find("format", name)
-        if not of_results(entry.plugin):
-            writing = [each.name for each in registry.all() if each.kind == "format" and of_results(each.plugin)]
+        if name not in writing:
             raise PluginError(
-                f"format '{name}' writes no results{nearest(name, writing)}; those that do: {', '.join(writing)}"
+                f"no format of results named '{name}'{nearest(name, writing)}; installed: {', '.join(writing)}"
             )
+        entry = registry.find("format", name)
         with blamed(str(entry), "making it without options"):
             reports.append((entry, entry.plugin()))
     return reports

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from raceway.framework.duties import quantity_screen
+from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
 from raceway.out.quantities import FORCE_AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, PHASE_LAG, Z_IMAG, Z_REAL, X
 from raceway.out.table import Row, number, tilt_words
@@ -167,21 +169,13 @@ def _mounted(found: ReadTables) -> list[Row]:
     return rows
 
 
-def ball_pass_rows(found: ReadTables) -> list[Row]:
-    """Frequencies of cage, balls and ball passes over the shaft's, of each row that differs."""
-    words = ("contact_angle_deg", "ftf", "bsf", "bpfo", "bpfi")
+def quantity_rows(result: ReadTables) -> list[Row]:
+    """A section for each plug-in of quantities whose table the result has, of those that are installed."""
     rows: list[Row] = []
-    told = {tuple(f"{one[word]:.4g}" for word in words): (k, one) for k, one in reversed([*enumerate(found["rows"], 1)])}
-    for (angle, cage, spin, outer, inner), (k, one) in sorted(told.items(), key=lambda item: item[1][0]):
-        row = f" of row {k}" if len(told) > 1 else ""
-        rows.append((f"Ball pass{row} at {angle} deg, times the shaft's speed", "", ""))
-        rows.append(("cage FTF, ball BSF", f"{cage}, {spin}", _hertz(one, found["speed_rpm"], "ftf", "bsf")))
-        rows.append(("passes BPFO, BPFI", f"{outer}, {inner}", _hertz(one, found["speed_rpm"], "bpfo", "bpfi")))
+    for entry in default_registry().all():
+        if entry.kind == "quantity" and result.get(entry.name):
+            rows += quantity_screen(entry.plugin, result)
     return rows
-
-
-def _hertz(one: ReadTables, speed: float, *names: str) -> str:
-    return ", ".join(f"{one[name + '_hz']:.5g}" for name in names) + " Hz" if speed else ""
 
 
 def stiffness_rows(result: ReadTables) -> list[Row]:

@@ -25,7 +25,6 @@ from raceway.out.quantities import (
 from raceway.out.table import Row, micro, sections, tilt_words
 from raceway.out.wrapping import Words
 from raceway.pipeline.run_parts import (
-    ball_pass_rows,
     bodies_rows,
     cost_rows,
     equilibrium_rows,
@@ -33,6 +32,7 @@ from raceway.pipeline.run_parts import (
     film_rows,
     loaded_balls,
     orbit_rows,
+    quantity_rows,
     stability_rows,
     stiffness_rows,
     tangent_rows,
@@ -124,7 +124,7 @@ def report(result: ReadTables) -> list[Part]:
         *_answer_rows(result),
         *equilibrium_rows(result),
         *film_rows(result),
-        *ball_pass_rows(result["ball_pass"]),
+        *quantity_rows(result),
         *stiffness_rows(result),
         *_tolerances(result),
         *error_rows(result),

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
     import numpy as np
 
     from raceway.framework.contracts import SolvedPoints
+    from raceway.framework.shown import Fact
     from raceway.planning.resolve import Problem
-    from raceway.storage.tables import Tables
+    from raceway.storage.tables import ReadTables, Tables
 
 
 def _over_shaft(name: str, words: str) -> Quantity:
@@ -71,6 +72,29 @@ class BallPass:
             in_forces = 0.5 * (1.0 - free.ball_diameter * cos(free.contact_angle) / free.pitch_diameter)
             rows.append({"contact_angle_deg": degrees(acos(cosine)), **times, **hertz, "ftf_in_forces": in_forces})
         return {"speed_rpm": 60.0 * speed, "rows": rows}
+
+    @staticmethod
+    def rows(table: ReadTables) -> list[Fact]:
+        """Of each row that differs."""
+        words, facts = ("contact_angle_deg", "ftf", "bsf", "bpfo", "bpfi"), []
+        texts = [tuple(f"{row[word]:.4g}" for word in words) for row in table["rows"]]
+        different = dict.fromkeys(texts)
+        for angle, cage, spin, outer, inner in different:
+            k = texts.index((angle, cage, spin, outer, inner))
+            of_row = f" of row {k + 1}" if len(different) > 1 else ""
+            hertz = {name: _hertz(table, k, name) for name in words[1:]}
+            facts.append((f"Ball pass{of_row} at {angle} deg, times the shaft's speed", "", ""))
+            facts.append(("cage FTF, ball BSF", f"{cage}, {spin}", _together(hertz["ftf"], hertz["bsf"])))
+            facts.append(("passes BPFO, BPFI", f"{outer}, {inner}", _together(hertz["bpfo"], hertz["bpfi"])))
+        return facts
+
+
+def _hertz(table: ReadTables, row: int, name: str) -> str:
+    return f"{table['rows'][row][f'{name}_hz']:.5g}" if table["speed_rpm"] else ""
+
+
+def _together(*hertz: str) -> str:
+    return f"{', '.join(hertz)} Hz" if all(hertz) else ""
 
 
 def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cosine: float | np.ndarray) -> Tables:

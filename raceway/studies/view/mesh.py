@@ -13,6 +13,7 @@ import numpy as np
 
 from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.duties import of_results
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
 from raceway.out.answer import Answer, Part
@@ -217,11 +218,13 @@ def mesh(
 
 def _format(registry: Registry, word: str) -> Entry:
     """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
-    names = [name for name in registry.names("format") if hasattr(registry.find("format", name).plugin, "write")]
-    of_ending = [name for name in names if f".{word}" in registry.find("format", name).plugin.suffixes]
+    plugins = {name: registry.find("format", name).plugin for name in registry.names("format")}
+    names = [name for name, plugin in plugins.items() if hasattr(plugin, "write") and not of_results(plugin)]
+    of_ending = [name for name in names if f".{word}" in plugins[name].suffixes]
     form = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
     if form.name not in names:
-        raise RacewayError(f"`--format {word}`: '{form.name}' only reads; files are written as {', '.join(names)}")
+        fault = "writes results" if of_results(form.plugin) else "only reads"
+        raise RacewayError(f"`--format {word}`: '{form.name}' {fault}; files are written as {', '.join(names)}")
     if form.plugin.__module__ == "raceway.plugins.formats" and find_spec("meshio") is None:
         raise RacewayError(f"files of meshes in the format '{form.name}' need the package meshio: {extra('mesh')}")
     return form
