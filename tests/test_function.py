@@ -36,7 +36,7 @@ def test_sets_and_gyroscopic_moments_are_among_the_cases() -> None:
     assert {"DB", "DF", "DT", "single"} <= {c.scene.bearing.arrangement for c in cases}
     assert any(c.scene.kinematics.gyroscopic != "none" for c in cases)
     assert {"rigid", "condensed"} == {c.scene.bodies.name for c in cases}
-    assert {"hertz", "penalty"} <= {c.scene.contact.kind for c in cases}
+    assert {c.scene.contact.kind for c in cases} == {"hertz", "penalty", "film", "stiffening", "oil_layer"}
     assert {"unidirectional", "bidirectional"} <= {c.scene.excitation.name for c in cases if c.scene.excitation}
 
 
@@ -71,6 +71,45 @@ def test_a_point_does_not_depend_on_its_neighbours() -> None:
     together = f(loads)["stiffness"]
     assert np.array_equal(together[17], f(loads[17])["stiffness"])
     assert np.array_equal(together[::-1], f(loads[::-1])["stiffness"])
+
+
+FILM = STATIC | {
+    "load": {"axial": 1000.0},
+    "kinematics": {"spin_speed_rpm": 9000.0},
+    "contact": {"kind": "film", "oil": "VG 32", "temperature_c": 60.0},
+}
+
+
+def test_a_film_fits_the_loads_of_each_point() -> None:
+    """Also of points that need more rounds than their neighbours; a warmer oil is thinner, and the inner ring nearer."""
+    temperatures = np.linspace(20.0, 100.0, 30)
+    f = rw.function(FILM, ["load.axial", "contact.temperature_c"], ["x", "kyy"])
+    together = f([[100.0], [2000.0]], temperatures)
+    assert (together["status"] == rw.PointStatus.COMPUTED).all()
+    assert (np.diff(together["x"]) > 0.0).all()
+    for k in (0, 17):
+        alone = f([100.0, 2000.0], temperatures[k])
+        np.testing.assert_allclose(together["kyy"][:, k], alone["kyy"], rtol=1e-12)
+    run = rw.run({**FILM, "load": {"axial": 100.0}, "contact": {**FILM["contact"], "temperature_c": temperatures[17]}})
+    assert together["kyy"][0, 17] == pytest.approx(run.stiffness[1, 1], rel=1e-10)
+
+
+def test_derivatives_by_the_options_of_a_film() -> None:
+    """A flooded contact is the end of its range: differences are one-sided there, and met by those of other steps."""
+    f = rw.function(FILM, ["contact.starvation", "contact.temperature_c"], ["x"])
+    slopes = f.jacobian(1.0, 60.0)["x"]
+    less, flooded = f([0.999, 1.0], 60.0)["x"]
+    assert slopes["contact.starvation"] == pytest.approx((flooded - less) / 1e-3, rel=1e-3)
+    cold, warm = f(1.0, [59.9, 60.1])["x"]
+    assert slopes["contact.temperature_c"] == pytest.approx((warm - cold) / 0.2, rel=1e-5)
+
+
+def test_options_of_a_law_that_contradict_each_other_are_refused_alone() -> None:
+    oil = {"kind": "film", "viscosity_40": 32e-6, "viscosity_100": 5.3e-6, "temperature_c": 60.0}
+    f = rw.function({**FILM, "contact": oil}, ["contact.viscosity_40", "contact.viscosity_100"], ["x"])
+    answer = f([4e-6, 4e-6, 32e-6, 32e-6], [2e-6, 5e-6, np.nan, 6e-6])
+    assert [rw.PointStatus(status).name for status in answer["status"]] == ["COMPUTED", "REFUSED", "REFUSED", "COMPUTED"]
+    assert "must be below `viscosity_40`" in answer["reason"][1]
 
 
 def test_threads_change_nothing() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import attrs
@@ -9,7 +10,10 @@ import numpy as np
 
 import raceway as rw
 from raceway.bodies.columns import why_no_column
+from raceway.framework.registry import registry_with
 from raceway.points.column_quantities import of_result
+from raceway.scene.changes import continuous_keys
+from raceway.scene.reading import scene_from_dict
 
 _BEARINGS: list[dict[str, Any]] = [
     {"preset": "B7206C"},
@@ -21,7 +25,8 @@ _BEARINGS: list[dict[str, Any]] = [
 ]  # fmt: skip
 _LAWS: list[dict[str, Any]] = [
     {"kind": "hertz"}, {"kind": "penalty"}, {"kind": "penalty", "calibrate_at": 120.0}, {"kind": "hertz", "damping": 0.01},
-    {"kind": "hertz", "time_constant": 2e-6},
+    {"kind": "hertz", "time_constant": 2e-6}, {"kind": "film", "oil": "VG 32", "temperature_c": 60.0},
+    {"kind": "film", "viscosity": 0.02, "damping": 0.01}, {"kind": "stiffening"}, {"kind": "oil_layer"},
 ]  # fmt: skip
 #: Keys with the ranges of their numbers.
 _RANGES: dict[str, tuple[float, float]] = {
@@ -40,7 +45,14 @@ _RANGES: dict[str, tuple[float, float]] = {
     "mounting.shaft_interference": (0.0, 8e-6),
     "kinematics.radial_expansion": (0.0, 3e-6),
     "supports.tilt": (1e3, 1e6),
+    "contact.temperature_c": (20.0, 100.0),
+    "contact.viscosity": (0.005, 0.1),
+    "contact.starvation": (0.3, 1.0),
+    "contact.cubic": (1e16, 1e18),
+    "contact.thickness": (5e-8, 5e-7),
+    "contact.calibrate_at": (50.0, 200.0),
 }
+_REGISTRY = registry_with([Path(__file__).with_name("laws.py")])
 _OUTPUTS = ("displacement", "stiffness", "largest_ball_load", "ball_load")
 _MOTION = ("z_real", "z_imag", "equivalent_stiffness", "forward_amplitude", "largest_multiplier")
 
@@ -82,7 +94,7 @@ def case(seed: int, points: int = 4) -> Case:
         tables["integrator"] = {"kind": "periodic", "tolerance": 1e-10}
     else:
         tables["kinematics"]["spin_speed_rpm"] = 9000.0
-    scene = rw.Scene.from_dict(tables)
+    scene = scene_from_dict(tables, _REGISTRY)
     speed = "excitation.speed_rpm" if moving else "kinematics.spin_speed_rpm"
     ranges = {**_RANGES, speed: (1000.0, 18_000.0)} | ({"excitation.unbalance": (1e-6, 5e-5)} if moving else {})
     keys = [key for key in ranges if _has(scene, key, ring_growth) and not why_no_column(scene, key)]
@@ -104,7 +116,7 @@ def _has(scene: rw.Scene, key: str, ring_growth: bool) -> bool:
         return b.radial_clearance is None
     if key == "supports.tilt":
         return isinstance(scene.supports.tilt, float)
-    return True
+    return not key.startswith("contact.") or key in {known.path for known in continuous_keys(scene)}
 
 
 def difference(seed: int) -> tuple[float, float, list[str]]:

@@ -127,8 +127,7 @@ def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
 
 def at_points(pairs: ContactPairs, pair: np.ndarray, area: np.ndarray) -> ContactPairs:
     """Surface points of contacts (n,) as a law sees them, with their areas (n,) [m2]."""
-    values = {name: array[pair] for name, array in attrs.asdict(pairs, recurse=False).items() if array is not None}
-    return ContactPairs(**{**values, "area": area})
+    return attrs.evolve(pairs.at(pair), area=area)
 
 
 def linear_parts(problem: Problem, plan: ScenePlan) -> Tables:

@@ -5,7 +5,9 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, TypeVar
 
 import attrs
@@ -15,7 +17,8 @@ from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
 from raceway.bodies.condensed_bearing import elastic_parts
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
-from raceway.core.columns import Number, per_ball, some
+from raceway.bodies.running import renewed
+from raceway.core.columns import Number, distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.jit import address_of
@@ -26,7 +29,7 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW_POINTER, SYSTEM_POINTER, Linear
-from raceway.framework.contracts import Excitation
+from raceway.framework.contracts import ContactLaw, Excitation
 from raceway.framework.duties import force_params, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
@@ -110,7 +113,6 @@ def why_not(scene: Scene, moving: bool) -> str:
         "contacts have surface points": deform and scene.contact.discretisation != "resultant",
         "balls act on each other through elastic rings": deform and scene.bodies.balls_meet(problem),
         "the contact law has a memory": law.state_size > 0,
-        "the contact law follows the running state": renews(law),
         "contacts rub": scene.contact.friction > 0.0,
         "dashpots are given as a band": scene.contact.in_a_band,
         "an axial displacement is held": scene.supports.axial == "displacement",
@@ -131,8 +133,24 @@ def why_no_column(scene: Scene, key: str) -> str:
     if key in _SHAPES and scene.bodies.name == "condensed":
         return f"{key} changes the finite elements"
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
-    known = key.startswith(("excitation.", "quantities.")) or key in _KEYS and not apart
+    of_law = key in law_keys(scene)
+    if of_law and not _same_kernel(scene.contact.law, key.partition(".")[2]):
+        return f"the contact law's kernel is made from {key}"
+    known = of_law or key.startswith(("excitation.", "quantities.")) or key in _KEYS and not apart
     return "" if known else f"{key} changes more than numbers"
+
+
+def law_keys(scene: Scene) -> list[str]:
+    """Keys of the contact law's own options."""
+    return [f"contact.{field.name}" for field in attrs.fields(type(scene.contact.law))]
+
+
+def _same_kernel(law: ContactLaw, option: str) -> bool:
+    """Whether a number of a law's options reaches its kernel as a parameter."""
+    for end in (-math.inf, math.inf):
+        with suppress(ValueError):  # a rule of the option
+            return attrs.evolve(law, **{option: math.nextafter(getattr(law, option), end)}).kernel() is law.kernel()  # type: ignore[misc]
+    return False
 
 
 @np.errstate(all="ignore")
@@ -153,13 +171,10 @@ class Excitations:
     @classmethod
     def of(cls, scene: Scene, columns: Mapping[str, np.ndarray]) -> Excitations:
         """Of a scene with columns of its keys."""
-        keys = [key for key in columns if key.startswith("excitation.")]
-        several, which = [scene.excitation], np.zeros(len(next(iter(columns.values()))), dtype=int)
-        if keys:
-            numbers, which = np.unique(np.stack([columns[key] for key in keys], axis=1), axis=0, return_inverse=True)
-            names = [key.partition(".")[2] for key in keys]
-            several = [attrs.evolve(scene.excitation, **dict(zip(names, row, strict=True))) for row in numbers.tolist()]
-        which = which.ravel()
+        excitation = with_columns(scene, {key: columns[key] for key in columns if key.startswith("excitation.")}).excitation
+        several, which = [excitation], np.zeros(len(next(iter(columns.values()))), dtype=int)
+        if has_columns(excitation):
+            several, which = distinct(excitation)
         speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
         return cls(several, which, speed)
 
@@ -262,6 +277,10 @@ class ColumnBearing:
             out[row] = system.damping_at(states.q[row], system.evaluate(states.q[row], ball=states.ball[row]))
         return out
 
+    def at(self, points: np.ndarray) -> ColumnBearing:
+        """Its numbers at some of the points, by their indices; problem and basis are those of all."""
+        return attrs.evolve(self, points=_rows(self.points, points), faults=self.faults[points])
+
     def _system(self, row: int) -> System:
         """The bearing at one point, at rest."""
         scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
@@ -354,9 +373,10 @@ def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
     bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, faults)
     if some(problem.bearing.preload):
-        return bearing._preloaded()
-    points.guess[:] = first_guess(problem, basis)
-    return bearing
+        bearing = bearing._preloaded()
+    else:
+        points.guess[:] = first_guess(problem, basis)
+    return renewed(bearing) if renews(problem.contact.law) else bearing
 
 
 def _columns(n: int, *numbers: Number) -> np.ndarray:

@@ -10,8 +10,10 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, contact_pairs
 from raceway.bodies.contacts import contact_angles
+from raceway.core.columns import at_rows, per_ball
 from raceway.core.contact.film import entraining_speed
-from raceway.core.ring.kernels.layout import CAGE
+from raceway.core.ring.equilibrium import NOT_CONVERGED
+from raceway.core.ring.kernels.layout import CAGE, OWN_OFFSET_INNER, OWN_OFFSET_OUTER
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs, LawReport
@@ -19,6 +21,7 @@ from raceway.framework.duties import law_params, law_report, reach_of, renews
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
     from raceway.bodies.model import Equilibrium, Model
 
 #: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
@@ -35,34 +38,35 @@ def running_pairs(
     speed: float | None = None,
     mounted: ContactPairs | None = None,
 ) -> ContactPairs:
-    """The contacts as a law sees them in the running equilibrium.
+    """The contacts as a law sees them in the running equilibrium; those of n points (n 2 Z,) one after the other.
 
     Parameters
     ----------
-    force : (2 Z,) [N];  angles : of inner and outer contacts (Z,) [rad], nan where they are open
+    force : (..., 2 Z) [N];  angles : of inner and outer contacts (..., Z) [rad], nan where they are open
     speed : of the inner ring [rad/s], default: the scene's spin speed
     mounted : the contacts at standstill, where they are known
     """
-    z, load = len(basis.azimuth), np.array(force, dtype=float)
-    alpha = np.array(angles, dtype=float)
+    load, alpha = force.reshape(*force.shape[:-1], 2, -1).copy(), np.stack(angles, axis=-2)
     for row, geometry in enumerate(basis.geometries):
         in_row = basis.row == row
-        for race in (0, 1):
-            of_row = load[race * z : (race + 1) * z]
-            if problem.kinematics.orbiting:
-                of_row[in_row] = of_row[in_row].mean()
-            of_row[in_row] = np.maximum(of_row[in_row], _LEAST * of_row[in_row].max())
-            open_, closed = in_row & np.isnan(alpha[race]), in_row & ~np.isnan(alpha[race])
-            alpha[race, open_] = alpha[race, closed].mean() if closed.any() else geometry.contact_angle
+        of_row, angle = load[..., in_row], alpha[..., in_row]
+        if problem.kinematics.orbiting:
+            of_row = of_row.mean(axis=-1, keepdims=True)
+        load[..., in_row] = np.maximum(of_row, _LEAST * of_row.max(axis=-1, keepdims=True))
+        closed = ~np.isnan(angle)
+        count = closed.sum(axis=-1, keepdims=True)
+        mean = np.where(closed, angle, 0.0).sum(axis=-1, keepdims=True) / np.maximum(count, 1)
+        alpha[..., in_row] = np.where(closed, angle, np.where(count, mean, per_ball(per_ball(geometry.contact_angle))))
     pitch, ball = (
-        np.array([getattr(geometry, name) for geometry in basis.geometries])[basis.row]
+        np.stack(np.broadcast_arrays(*(getattr(geometry, name) for geometry in basis.geometries)), axis=-1)[..., basis.row]
         for name in ("pitch_diameter", "ball_diameter")
     )
-    speeds = entraining_speed(problem.spin_speed if speed is None else speed, pitch, ball, *alpha)
+    spin = per_ball(problem.spin_speed if speed is None else speed)
+    speeds = entraining_speed(spin, pitch, ball, alpha[..., 0, :], alpha[..., 1, :])
     # A set of which no ball is loaded runs as one that is about to be.
-    load = np.where(load > 0.0, load, _LEAST * basis.ball_load)
+    load = np.where(load > 0.0, load, _LEAST * per_ball(per_ball(basis.ball_load)))
     pairs = contact_pairs(problem, basis) if mounted is None else mounted
-    return attrs.evolve(pairs, entraining_speed=np.concatenate(speeds), load=load)
+    return attrs.evolve(pairs, entraining_speed=np.concatenate(speeds, axis=-1).ravel(), load=load.ravel())
 
 
 def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
@@ -122,6 +126,37 @@ def renew(
         f"contact law '{problem.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria",
         {"q": q, "ball": ball},
     )
+
+
+def renewed(bearing: ColumnBearing) -> ColumnBearing:
+    """A bearing at n points with its law's parameters at their running speeds: ``renew`` of columns, of which those that fit rest."""
+    problem, basis, points, faults = bearing.problem, bearing.basis, bearing.points, bearing.faults.copy()
+    n, z = points.table.shape[:2]
+    fields = (points.table, points.params, points.guess)
+    table, params, guess = (np.array(field) for field in fields)
+    bearing = attrs.evolve(bearing, points=points._replace(table=table, params=params, guess=guess), faults=faults)
+    mounted, law = contact_pairs(problem, basis), problem.contact.law
+    force, reach, angle = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.full((2, n, z), np.nan)
+    rows = np.flatnonzero((faults == 0) & ~bearing.conspicuous)
+    for _ in range(_LIMIT):
+        part = bearing.at(rows)
+        states = part.equilibria()
+        faults[rows], guess[rows] = states.status, states.q
+        largest = np.maximum(states.force.max(axis=1, initial=0.0), 1e-300)
+        fit = np.abs(states.force - force[rows]).max(axis=1, initial=0.0) <= _TOLERANCE * largest
+        force[rows], angle[:, rows] = states.force, part.contact_angles(states)
+        rows = rows[~fit & (states.status == 0)]
+        if not len(rows):
+            return bearing
+        contacts = (2 * z * rows[:, None] + np.arange(2 * z)).ravel()
+        pairs = running_pairs(problem, basis, force, (angle[0], angle[1]), mounted=mounted).at(contacts)
+        law_there, before = at_rows(law, rows), reach[rows]
+        params[rows] = law_params(law_there, pairs).reshape(len(rows), 2 * z, -1)
+        reach[rows] = reach_of(law_there, pairs).reshape(len(rows), 2 * z)
+        ahead = (reach[rows] - before).reshape(-1, 2, z).swapaxes(1, 2)
+        table[rows, :, OWN_OFFSET_INNER : OWN_OFFSET_OUTER + 1] -= ahead
+    faults[rows] = NOT_CONVERGED
+    return bearing
 
 
 def _following(

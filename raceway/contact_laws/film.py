@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import log, log10
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.core.columns import Number, largest, least, log, log10, where
 from raceway.framework.contracts import LawReport
 from raceway.framework.options import between, nearest, one_of, option, optional, positive
 
@@ -35,30 +35,33 @@ _AT, _ZERO = (40.0, 100.0), 273.15
 class Walther:
     """log10 log10(nu + 0.7) falls linearly with log10 T, nu in mm2/s and T in K (ASTM D341, Walther 1931)."""
 
-    at_40: float
-    at_100: float
+    at_40: Number
+    at_100: Number
 
-    def viscosity(self, temperature: float) -> float:
+    def viscosity(self, temperature: Number) -> Number:
         """Kinematic viscosity [mm2/s] at a temperature [C]."""
         x = [log10(each + _ZERO) for each in (*_AT, temperature)]
         y = [log10(log10(each + 0.7)) for each in (self.at_40, self.at_100)]
         at = y[0] + (y[1] - y[0]) * (x[2] - x[0]) / (x[1] - x[0])
-        return float(10.0**10.0**at - 0.7)
+        return 10.0**10.0**at - 0.7
 
-    def thinning(self, temperature: float) -> float:
+    def thinning(self, temperature: Number) -> Number:
         """beta = -d ln(nu) / dT [1/K] at a temperature [C]; the density's part, 7e-4 1/K, is left out."""
         return log(self.viscosity(temperature - 0.01) / self.viscosity(temperature + 0.01)) / 0.02
 
 
-def _mineral_thinning(viscosity: float, temperature: float) -> float:
+def _mineral_thinning(viscosity: Number, temperature: Number) -> Number:
     """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
-    from numpy import interp
+    at, oils = least(largest(temperature, COLDEST), HOTTEST), [Walther(*pair) for pair in GRADES.values()]
+    nodes, betas = [log(oil.viscosity(at)) for oil in oils], [oil.thinning(at) for oil in oils]
+    x, beta = least(largest(log(viscosity), nodes[0]), nodes[-1]), betas[0]
+    for k in range(len(oils) - 1):
+        slope = (betas[k + 1] - betas[k]) / (nodes[k + 1] - nodes[k])
+        beta = where(x >= nodes[k], slope * (x - nodes[k]) + betas[k], beta)
+    return beta
 
-    at, oils = min(max(temperature, COLDEST), HOTTEST), [Walther(*pair) for pair in GRADES.values()]
-    return float(interp(log(viscosity), [log(oil.viscosity(at)) for oil in oils], [oil.thinning(at) for oil in oils]))
 
-
-def pressure_viscosity(viscosity: float) -> float:
+def pressure_viscosity(viscosity: Number) -> Number:
     """Coefficient alpha [1/Pa] of a mineral oil from its viscosity [Pa s] at the same temperature.
 
     Notes
@@ -71,7 +74,7 @@ def pressure_viscosity(viscosity: float) -> float:
     ----------
     Stachowiak, Batchelor, Engineering Tribology, chapter 2 with table 2.3 of measured coefficients.
     """
-    return 1e-8 * (0.6 + 0.965 * max(log10(max(1e3 * viscosity, 1.0)), 0.0))
+    return 1e-8 * (0.6 + 0.965 * largest(log10(largest(1e3 * viscosity, 1.0)), 0.0))
 
 
 #: Lambda below which surfaces carry through asperities.
@@ -98,6 +101,7 @@ class Film:
     state_size: ClassVar[int] = 0
     dissipative: ClassVar[bool] = False
     renewed: ClassVar[bool] = True
+    elementwise: ClassVar[bool] = True
 
     oil: str | None = option(None, help=f"mineral oil by its grade: {', '.join(GRADES)}; needs temperature_c")
     viscosity_40: float | None = option(
@@ -177,7 +181,7 @@ class Film:
         return Walther(1e6 * self.viscosity_40, 1e6 * self.viscosity_100)
 
     @property
-    def dynamic_viscosity(self) -> float:
+    def dynamic_viscosity(self) -> Number:
         """eta [Pa s] at the running temperature."""
         if self.viscosity is not None:
             return self.viscosity
@@ -185,13 +189,13 @@ class Film:
         return 1e-6 * self._line.viscosity(self.temperature_c) * self.density
 
     @property
-    def alpha(self) -> float:
+    def alpha(self) -> Number:
         """Pressure-viscosity coefficient [1/Pa]."""
         coefficient = self.pressure_viscosity
         return pressure_viscosity(self.dynamic_viscosity) if coefficient is None else coefficient
 
     @property
-    def beta(self) -> float:
+    def beta(self) -> Number:
         """Temperature-viscosity coefficient [1/K]; of a viscosity alone that of the mineral oil that has it, at 40 C by default."""
         at = 40.0 if self.temperature_c is None else self.temperature_c
         if self.temperature_viscosity is not None:
@@ -289,14 +293,14 @@ class Film:
         """A sentence where asperities carry."""
         if self.roughness is None:
             return []
-        least = float(lambdas.min())
-        sentence = f"Lambda = h_min / roughness is {least:.2g} at the thinnest film"
-        if least < _BOUNDARY:
+        thinnest = float(lambdas.min())
+        sentence = f"Lambda = h_min / roughness is {thinnest:.2g} at the thinnest film"
+        if thinnest < _BOUNDARY:
             return [
                 f"boundary lubrication: {sentence}, below {_BOUNDARY:g}: the surfaces touch, and the film of smooth surfaces is not what "
                 "carries. Take a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
             ]
-        return [f"mixed lubrication: {sentence}, below {_MIXED:g}: asperities carry a part"] if least < _MIXED else []
+        return [f"mixed lubrication: {sentence}, below {_MIXED:g}: asperities carry a part"] if thinnest < _MIXED else []
 
 
 def _doubts(thickness: Thickness) -> list[str]:

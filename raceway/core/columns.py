@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
+
+if TYPE_CHECKING:
+    import numpy as np
 
 T = TypeVar("T", bound=attrs.AttrsInstance)
 #: A number, or a column of them.
@@ -37,7 +40,8 @@ def _either(number: Callable[..., float], column: str) -> Callable[..., Any]:
 
 cos, sin = _either(math.cos, "cos"), _either(math.sin, "sin")
 acos, asin = _either(math.acos, "arccos"), _either(math.asin, "arcsin")
-sqrt, log, radians = _either(math.sqrt, "sqrt"), _either(math.log, "log"), _either(math.radians, "radians")
+sqrt, log, log10 = _either(math.sqrt, "sqrt"), _either(math.log, "log"), _either(math.log10, "log10")
+radians = _either(math.radians, "radians")
 least, largest = _either(min, "minimum"), _either(max, "maximum")
 #: Whether a number is not 0, of a column any.
 some = _either(bool, "any")
@@ -71,10 +75,30 @@ def per_ball(value: Number) -> Number:
 
 def at_row(part: T, row: int) -> T:
     """A table with the numbers of one point."""
+    return _selected(part, lambda column: float(column[row]))
+
+
+def at_rows(part: T, rows: np.ndarray) -> T:
+    """A table with the columns (m,) of some of the points, by their indices (m,), which may repeat."""
+    return _selected(part, lambda column: column[rows])
+
+
+def _selected(part: T, choose: Callable[[np.ndarray], object]) -> T:
+    if not has_columns(part):
+        return part
     values = _values(part)
-    numbers = {name: float(value[row]) for name, value in values.items() if is_column(value)}
-    tables = {name: at_row(value, row) for name, value in values.items() if attrs.has(type(value)) and has_columns(value)}
+    numbers = {name: choose(value) for name, value in values.items() if is_column(value)}
+    tables = {name: _selected(value, choose) for name, value in values.items() if attrs.has(type(value))}
     return with_values(part, **numbers, **tables)
+
+
+def distinct(part: T) -> tuple[list[T], np.ndarray]:
+    """Tables with each distinct set of numbers of a table's columns, and the index (n,) of each point's; rules look at them."""
+    import numpy as np
+
+    columns = {name: value for name, value in _values(part).items() if is_column(value)}
+    numbers, index = np.unique(np.stack(list(columns.values()), axis=1), axis=0, return_inverse=True)
+    return [attrs.evolve(part, **dict(zip(columns, row, strict=True))) for row in numbers.tolist()], index.ravel()  # type: ignore[misc]
 
 
 def length(part: attrs.AttrsInstance) -> int:

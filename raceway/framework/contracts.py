@@ -57,6 +57,8 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     9. ``reach(pairs)``, with ``renewed``: how far from touching each contact begins to carry (n,) [m], 0 or more: what stands
        between the surfaces, such as a film.  The bearing makes room for it: the kernel's gap is measured from there.
     10. ``report(pairs)``, with ``renewed``: a ``LawReport`` at the running equilibrium.
+    11. ``elementwise`` = True says that options may be arrays (n,), one number for each contact: many operating points whose
+        options differ are then built at once, else once for each value.
     """
 
     name: ClassVar[str]
@@ -102,6 +104,11 @@ class ContactPairs:
     running_angle: np.ndarray | None = None
     entraining_speed: np.ndarray | None = None
     load: np.ndarray | None = None
+
+    def at(self, contacts: np.ndarray) -> ContactPairs:
+        """Some of the contacts, by their indices (m,)."""
+        arrays = {name: array for name, array in attrs.asdict(self, recurse=False).items() if array is not None}
+        return attrs.evolve(self, **{name: array[contacts] for name, array in arrays.items()})
 
     @property
     def radius_along(self) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import attrs
 
+from raceway.core.columns import at_rows, distinct, has_columns, length
 from raceway.errors import PluginError
 from raceway.framework.contracts import Cost, LawReport, Traits
 from raceway.framework.sources import blamed
@@ -156,8 +157,11 @@ def is_foundation(law: ContactLaw) -> bool:
 
 
 def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair") -> np.ndarray:
-    """(n, k) parameters of a contact law, or ``PluginError``; ``row`` : what a row stands for."""
-    params, n = _array(f"contact law '{law.name}'", "build", lambda: law.build(pairs)), len(pairs.curvature_a)
+    """(n, k) parameters of a contact law, or ``PluginError``; ``row`` : what a row stands for.
+
+    Of options that are columns (m,), one number for each of m operating points, rows belong to these points in turn.
+    """
+    params, n = _of_contacts(law, pairs, "build"), len(pairs.curvature_a)
     if params.ndim != 2 or len(params) != n:
         raise PluginError(
             f"contact law '{law.name}': build() returned parameters of shape {params.shape}; "
@@ -173,12 +177,30 @@ def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
     n = len(pairs.curvature_a)
     if not hasattr(law, "reach"):
         return np.zeros(n)
-    reach = _array(f"contact law '{law.name}'", "reach", lambda: law.reach(pairs))
+    reach = _of_contacts(law, pairs, "reach")
     if reach.shape != (n,) or not (reach >= 0.0).all() or not np.isfinite(reach).all():
         raise PluginError(
             f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more, one for each contact"
         )
     return reach
+
+
+def _of_contacts(law: ContactLaw, pairs: ContactPairs, duty: str) -> np.ndarray:
+    """What a duty returns of contacts (n,): of laws that say ``elementwise`` at once, of others for each distinct value of columns."""
+    import numpy as np
+
+    def of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
+        return _array(f"contact law '{law.name}'", duty, lambda: getattr(law, duty)(pairs))
+
+    if not has_columns(law):
+        return of(law, pairs)
+    rows = np.repeat(np.arange(length(law)), len(pairs.curvature_a) // length(law))
+    if getattr(law, "elementwise", False):
+        return of(at_rows(law, rows), pairs)
+    laws, index = distinct(law)
+    parts = [np.flatnonzero(index[rows] == k) for k in range(len(laws))]
+    values = np.concatenate([of(one_value, pairs.at(part)) for one_value, part in zip(laws, parts, strict=True)])
+    return values[np.argsort(np.concatenate(parts))]
 
 
 def law_report(law: ContactLaw, pairs: ContactPairs) -> LawReport | None:

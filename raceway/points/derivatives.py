@@ -15,6 +15,7 @@ _STEP = 1e-3
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative.
 _CENTRAL = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
 _FORWARD = {0: -25.0 / 12.0, 1: 4.0, 2: -3.0, 3: 4.0 / 3.0, 4: -0.25}
+_BACKWARD = {-shift: -weight for shift, weight in _FORWARD.items()}
 #: What numbers that are 0 are taken for in such a step, by their units; 1 otherwise.
 _LEAST = {"m": 1e-6}
 
@@ -37,7 +38,10 @@ def jacobian(
     for key, value in inputs.items():
         size, least = np.abs(value), _LEAST.get(units[key], 1.0)
         steps[key] = _STEP * np.where(size > 0.0, size, size.max() or least)
-        stencils[key] = _CENTRAL if allowed(key, float((value - 2.0 * steps[key]).min())) else _FORWARD
+        low, high = (
+            allowed(key, float(end)) for end in ((value - 2.0 * steps[key]).min(), (value + 2.0 * steps[key]).max())
+        )
+        stencils[key] = _FORWARD if not low else _CENTRAL if high else _BACKWARD
     answer, out = columns(_moved(inputs, stencils, steps)), dict[str, Columns]()
     for name in outputs:
         parts, first = answer[name].reshape((-1, len(size), *answer[name].shape[1:])), 0

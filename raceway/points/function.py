@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from enum import IntEnum
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +16,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
-from raceway.bodies.columns import Excitations, build_columns, column_problem, why_no_column, why_not
+from raceway.bodies.columns import Excitations, build_columns, column_problem, law_keys, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import door
@@ -29,7 +30,7 @@ from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result, plugin_quantities
 from raceway.points.derivatives import Columns, jacobian
-from raceway.scene.changes import continuous_keys, key_of, with_columns, with_number
+from raceway.scene.changes import continuous_keys, key_of, with_columns, with_numbers
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -164,7 +165,7 @@ class Function:
         """
         shape, flat = self._flat(self._named(columns, by_name))
         units = {key.path: key.unit for key in continuous_keys(self.scene)}
-        slopes = jacobian(self.columns, self._allowed, flat, units, self.outputs)
+        slopes = jacobian(self.columns, lambda key, number: self._allowed([key], [number]), flat, units, self.outputs)
         return {
             name: {key: slope.reshape((*shape, *slope.shape[1:])) for key, slope in by_key.items()}
             for name, by_key in slopes.items()
@@ -298,21 +299,25 @@ class Function:
     def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""
         refused = ~np.all([np.isfinite(column) for column in columns.values()], axis=0)
-        for key, column in columns.items():
-            fit = column[~refused]
-            if len(fit) and not all(self._allowed(key, float(end)) for end in (fit.min(), fit.max())):
-                # Rules are intervals: a few numbers beyond them are looked at one by one.
-                numbers, place = np.unique(column, return_inverse=True)
-                allowed = [np.isfinite(number) and self._allowed(key, float(number)) for number in numbers]
-                refused |= ~np.array(allowed)[place]
+        of_law = [key for key in columns if key in law_keys(self.scene)]
+        for keys in filter(None, [of_law, *([key] for key in columns if key not in of_law)]):
+            numbers = np.stack([columns[key] for key in keys], axis=1)
+            fit = numbers[~refused]
+            if len(fit) and not all(
+                self._allowed(keys, ends) for ends in product(*zip(fit.min(0), fit.max(0), strict=True))
+            ):
+                # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one.
+                several, place = np.unique(numbers, axis=0, return_inverse=True)
+                allowed = [bool(np.isfinite(row).all()) and self._allowed(keys, row) for row in several]
+                refused |= ~np.array(allowed)[place.ravel()]
         return refused
 
-    def _allowed(self, key: str, number: float) -> bool:
+    def _allowed(self, keys: Sequence[str], numbers: Sequence[float] | np.ndarray) -> bool:
         try:
-            with_number(self.scene, key, number)
+            with_numbers(self.scene, dict(zip(keys, map(float, numbers), strict=True)))
         except (ValueError, RacewayError):
             # Another input may make room for it: what contradicts is seen where all are known.
-            return len(self.inputs) > 1 and key.startswith("bearing.") and number > 0.0
+            return len(self.inputs) > 1 and keys[0].startswith("bearing.") and numbers[0] > 0.0
         return True
 
     def _plan(self, columns: Mapping[str, np.ndarray], rows: np.ndarray, turning: bool) -> ScenePlan | None:
@@ -477,7 +482,7 @@ def function(
 
     Notes
     -----
-    Rigid bodies with laws without memory are computed in compiled loops: equilibria, and steady orbits where
+    Rigid bodies with laws without memory, oil films too, are computed in compiled loops: equilibria, and steady orbits where
     ``integrator.kind`` is "auto" or "periodic".  That an orbit is stable and the only one is not looked at there, as ``raceway.run`` does.  Points
     at which the loop finds no regular solution are run one by one: ``status`` says which.
 

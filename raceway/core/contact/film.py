@@ -54,7 +54,7 @@ class Film:
 
 def film(
     viscous: np.ndarray,
-    alpha: float,
+    alpha: np.ndarray | float,
     modulus: np.ndarray,
     along: np.ndarray,
     across: np.ndarray,
@@ -121,7 +121,7 @@ def _by_regime(
 
 
 def entraining_speed(
-    spin: float, pitch_diameter: np.ndarray, ball_diameter: np.ndarray, inner: np.ndarray, outer: np.ndarray
+    spin: np.ndarray | float, pitch_diameter: np.ndarray, ball_diameter: np.ndarray, inner: np.ndarray, outer: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean speed of both surfaces against the contact (n,) [m/s], of the inner and of the outer race.
 
