@@ -11,5 +11,6 @@ schema      JSON schema of a scene file
 catalogue   bearing presets and materials by name
 tolerance   ranges of numbers: the table [tolerances], classes of ISO 492 and ISO 3290
 unused      keys without effect, and those that a change makes so
+ratings     load ratings, by keys, catalogue or geometry
 growth      of the grooves by speed, fits and temperatures; mass, inertia and shoulders of the rings
 """
