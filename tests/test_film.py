@@ -6,9 +6,10 @@ import pytest
 
 import raceway as rw
 from raceway import make_plan
-from raceway.contact_laws.film import GRADES, Film, Walther, _mineral_thinning, pressure_viscosity
+from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
 from raceway.pipeline.result import DRY
+from raceway.scene.lubricant import GRADES, Walther, _mineral_thinning, pressure_viscosity
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.testing import run
 from raceway.testing.contact_law import _example_pairs
@@ -248,6 +249,7 @@ def test_an_explicit_step_is_shortened_by_the_damping(tau):
         ({"kind": "film", "oil": "VG 32", "temperature_c": 200.0}, "outside the oil's data"),
         ({"kind": "film", "viscosity_40": 5e-6, "viscosity_100": 32e-6, "temperature_c": 40.0}, "thin as they warm"),
         ({"kind": "film", "viscosity": 0.03, "oil": "VG 32", "temperature_c": 40.0}, "more than once"),
+        ({"kind": "film", "temperature_c": 40.0}, "no viscosity is given"),
         ({"kind": "film", "viscosity": 0.03, "temperature_c": -274.0}, "must be from -273.15 to 1000"),
         ({"kind": "film", "viscosity": 0.03, "inlet_heating": "gupta"}, "must be one of 'murch_wilson', 'none'"),
         ({"kind": "film", "viscosity": 0.03, "pressure_viscosity": 20.0}, "must be from 1e-11 to 1e-06"),

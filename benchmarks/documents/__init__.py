@@ -73,6 +73,7 @@ _ORDER = (
     ("bodies", "bodies"),
     ("mesh", "mesher"),
     ("contact", "contact_law"),
+    ("lubricant", None),
     ("kinematics", None),
     ("mounting", None),
     ("integrator", "integrator"),
@@ -87,6 +88,8 @@ _NOTES = {
     "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
     "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
     "[bearing] and this one.",
+    "lubricant": "The oil, given once for all that needs one: friction, life, heat, and the film law where `[contact]` has no oil keys. Left out, it is "
+    "the oil of the film law.",
     "kinematics": "`gyroscopic` and `ring_growth` are hypotheses, and no default fits all bearings. What the others would change in K and kyy "
     "is in [`error.model`](physics.md#hypotheses-left-at-their-defaults) and beside K on the screen, as long as the scene does not state them: "
     'a key that is written, `gyroscopic = "none"` too, is a decision.',

@@ -136,7 +136,7 @@ def why_no_column(scene: Scene, key: str) -> str:
     of_law = key in law_keys(scene)
     if of_law and not _same_kernel(scene.contact.law, key.partition(".")[2]):
         return f"the contact law's kernel is made from {key}"
-    known = of_law or key.startswith(("excitation.", "quantities.")) or key in _KEYS and not apart
+    known = of_law or key.startswith(("excitation.", "quantities.", "lubricant.")) or key in _KEYS and not apart
     return "" if known else f"{key} changes more than numbers"
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.core.columns import Number, largest, least, log, log10, where
 from raceway.framework.contracts import LawReport
-from raceway.framework.options import between, nearest, one_of, option, optional, positive
+from raceway.framework.options import between, one_of, option, optional, positive
+from raceway.scene.lubricant import Oil
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,64 +19,6 @@ if TYPE_CHECKING:
     from raceway.storage.tables import Tables
 
 
-#: Mineral oils by their ISO viscosity grade: kinematic viscosity at 40 and at 100 C [mm2/s].  At 40 C it is the grade's
-#: mid-point by definition (ISO 3448), at 100 C that of a viscosity index of 95 (ASTM D2270, inverted), the index that charts of
-#: straight mineral oils are drawn for.
-GRADES: dict[str, tuple[float, float]] = {
-    "VG 10": (10.0, 2.64), "VG 15": (15.0, 3.38), "VG 22": (22.0, 4.25), "VG 32": (32.0, 5.29), "VG 46": (46.0, 6.65),
-    "VG 68": (68.0, 8.53), "VG 100": (100.0, 11.1), "VG 150": (150.0, 14.5), "VG 220": (220.0, 18.8),
-}  # fmt: skip
-#: Temperatures [C] over which a line through two measured viscosities is used.
-COLDEST, HOTTEST = 0.0, 140.0
-_AT, _ZERO = (40.0, 100.0), 273.15
-
-
-@attrs.frozen
-class Walther:
-    """log10 log10(nu + 0.7) falls linearly with log10 T, nu in mm2/s and T in K (ASTM D341, Walther 1931)."""
-
-    at_40: Number
-    at_100: Number
-
-    def viscosity(self, temperature: Number) -> Number:
-        """Kinematic viscosity [mm2/s] at a temperature [C]."""
-        x = [log10(each + _ZERO) for each in (*_AT, temperature)]
-        y = [log10(log10(each + 0.7)) for each in (self.at_40, self.at_100)]
-        at = y[0] + (y[1] - y[0]) * (x[2] - x[0]) / (x[1] - x[0])
-        return 10.0**10.0**at - 0.7
-
-    def thinning(self, temperature: Number) -> Number:
-        """beta = -d ln(nu) / dT [1/K] at a temperature [C]; the density's part, 7e-4 1/K, is left out."""
-        return log(self.viscosity(temperature - 0.01) / self.viscosity(temperature + 0.01)) / 0.02
-
-
-def _mineral_thinning(viscosity: Number, temperature: Number) -> Number:
-    """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
-    at, oils = least(largest(temperature, COLDEST), HOTTEST), [Walther(*pair) for pair in GRADES.values()]
-    nodes, betas = [log(oil.viscosity(at)) for oil in oils], [oil.thinning(at) for oil in oils]
-    x, beta = least(largest(log(viscosity), nodes[0]), nodes[-1]), betas[0]
-    for k in range(len(oils) - 1):
-        slope = (betas[k + 1] - betas[k]) / (nodes[k + 1] - nodes[k])
-        beta = where(x >= nodes[k], slope * (x - nodes[k]) + betas[k], beta)
-    return beta
-
-
-def pressure_viscosity(viscosity: Number) -> Number:
-    """Coefficient alpha [1/Pa] of a mineral oil from its viscosity [Pa s] at the same temperature.
-
-    Notes
-    -----
-    Wooster's rule alpha = (0.6 + 0.965 log10 eta) 1e-8 with eta in mPa s, at least 0.6e-8: an estimate, which was not seen in
-    its own source.  Of the coefficients measured on thirteen mineral oils at 30 to 100 C it gives 0.70 to 1.17 times
-    (``MEASURED`` in validation/film.py), which moves a film, h ~ alpha^0.53, by less than a fifth.
-
-    References
-    ----------
-    Stachowiak, Batchelor, Engineering Tribology, chapter 2 with table 2.3 of measured coefficients.
-    """
-    return 1e-8 * (0.6 + 0.965 * largest(log10(largest(1e3 * viscosity, 1.0)), 0.0))
-
-
 #: Lambda below which surfaces carry through asperities.
 _MIXED, _BOUNDARY = 3.0, 1.0
 #: Thermal reduction that is reported as strong, and the thermal loading to which its formula was compared with Grubin's inlet.
@@ -84,7 +26,7 @@ _STRONG, _LOADING = 0.5, 100.0
 
 
 @attrs.frozen
-class Film:
+class Film(Oil):
     """Hertz contact behind an oil film (Hamrock and Dowson): the surfaces stand off by the central film thickness,
     which the heat of shear in the inlet reduces (Murch and Wilson).
 
@@ -103,67 +45,13 @@ class Film:
     renewed: ClassVar[bool] = True
     elementwise: ClassVar[bool] = True
 
-    oil: str | None = option(None, help=f"mineral oil by its grade: {', '.join(GRADES)}; needs temperature_c")
-    viscosity_40: float | None = option(
-        None, unit="m2/s", help="kinematic, at 40 C (32e-6 is 32 mm2/s); with viscosity_100", rule=optional(positive())
-    )
-    viscosity_100: float | None = option(None, unit="m2/s", help="kinematic, at 100 C", rule=optional(positive()))
-    viscosity: float | None = option(
-        None, unit="Pa s", help="dynamic, at the running temperature, instead of an oil", rule=optional(positive())
-    )
-    temperature_c: float | None = option(
-        None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.15, 1e3))
-    )
-    density: float = option(870.0, unit="kg/m3", help="of the oil", rule=positive())
-    pressure_viscosity: float | None = option(
-        None,
-        unit="1/Pa",
-        help="coefficient alpha; default: Wooster's rule for mineral oils, from the viscosity",
-        rule=optional(between(1e-11, 1e-6)),
-    )
     inlet_heating: str = option(
         "murch_wilson", help="thins the film: by 'murch_wilson', or 'none' (isothermal)", rule=one_of("murch_wilson", "none")
     )
-    temperature_viscosity: float | None = option(
-        None, unit="1/K", help="beta = -d ln(viscosity)/dT; default: the oil's, or mineral oils'", rule=optional(positive())
-    )
-    conductivity: float = option(0.14, unit="W/m/K", help="of the oil; mineral oils have 0.12 to 0.15", rule=positive())
     starvation: float = option(1.0, help="thickness over that of a flooded contact", rule=between(0.0, 1.0))
     roughness: float | None = option(
         None, unit="m", help="rms of both surfaces together, sqrt(R1^2 + R2^2), for Lambda", rule=optional(positive())
     )
-
-    def __attrs_post_init__(self) -> None:
-        pair = self.viscosity_40 is not None or self.viscosity_100 is not None
-        ways = sum((self.oil is not None, pair, self.viscosity is not None))
-        if ways != 1:
-            mistake = "no viscosity is given" if ways == 0 else "the viscosity is given more than once"
-            raise ValueError(
-                f"{mistake}: give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or "
-                "`viscosity` at the running temperature"
-            )
-        if self.viscosity is not None:
-            return
-        if self.oil is not None and self.oil not in GRADES:
-            raise ValueError(f"`oil` = {self.oil!r} is not known{nearest(self.oil, GRADES)}: {', '.join(GRADES)}")
-        if pair and (self.viscosity_40 is None or self.viscosity_100 is None):
-            raise ValueError(
-                "`viscosity_40` and `viscosity_100` belong together: two points make a line over the temperature"
-            )
-        if self.viscosity_40 is not None and self.viscosity_100 is not None and self.viscosity_40 <= self.viscosity_100:
-            raise ValueError(
-                f"`viscosity_100` = {self.viscosity_100:g} m2/s must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils "
-                "thin as they warm"
-            )
-        if min(self._line.at_40, self._line.at_100) <= 0.3:
-            raise ValueError("`viscosity_100` must be above 0.3e-6 m2/s, where Walther's line over the temperature ends")
-        if self.temperature_c is None:
-            raise ValueError("`temperature_c` is missing: the viscosity of an oil belongs to a temperature")
-        if not COLDEST <= self.temperature_c <= HOTTEST:
-            raise ValueError(
-                f"`temperature_c` = {self.temperature_c:g} is outside the oil's data: Walther's line through 40 and 100 C is used from "
-                f"{COLDEST:g} to {HOTTEST:g} C. Give `viscosity` at that temperature instead"
-            )
 
     @classmethod
     def examples(cls) -> list[Film]:
@@ -172,37 +60,6 @@ class Film:
             cls(viscosity=0.03, pressure_viscosity=2e-8, temperature_viscosity=0.03),
             cls(viscosity=0.3, pressure_viscosity=1e-8, temperature_viscosity=0.05, starvation=0.5),
         ]
-
-    @property
-    def _line(self) -> Walther:
-        if self.oil is not None:
-            return Walther(*GRADES[self.oil])
-        assert self.viscosity_40 is not None and self.viscosity_100 is not None, "checked when made"
-        return Walther(1e6 * self.viscosity_40, 1e6 * self.viscosity_100)
-
-    @property
-    def dynamic_viscosity(self) -> Number:
-        """eta [Pa s] at the running temperature."""
-        if self.viscosity is not None:
-            return self.viscosity
-        assert self.temperature_c is not None, "checked when made"
-        return 1e-6 * self._line.viscosity(self.temperature_c) * self.density
-
-    @property
-    def alpha(self) -> Number:
-        """Pressure-viscosity coefficient [1/Pa]."""
-        coefficient = self.pressure_viscosity
-        return pressure_viscosity(self.dynamic_viscosity) if coefficient is None else coefficient
-
-    @property
-    def beta(self) -> Number:
-        """Temperature-viscosity coefficient [1/K]; of a viscosity alone that of the mineral oil that has it, at 40 C by default."""
-        at = 40.0 if self.temperature_c is None else self.temperature_c
-        if self.temperature_viscosity is not None:
-            return self.temperature_viscosity
-        if self.viscosity is None:
-            return self._line.thinning(at)
-        return _mineral_thinning(1e6 * self.viscosity / self.density, at)
 
     def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""

@@ -7,6 +7,7 @@ thermal        steady temperatures of a network of six nodes, and its conductanc
 threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws
 ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for
+rolling_friction  losses of balls in contacts and mixture: inlet, hysteresis, slip, drag
 life           reference life of ISO/TS 16281 and modified life of ISO 281 from contact loads
 excitations    compiled kernels of the built-in excitations
 record         duties of a system that is stepped from Python; schedule, start and record of a time integration

@@ -17,6 +17,7 @@ from raceway.framework.rules import Rule, speaking
 from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
+from raceway.scene.lubricant import lubricated
 from raceway.scene.scene import Scene, SceneTables
 from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
 from raceway.storage.tables import Tables
@@ -366,7 +367,9 @@ _TRANSIENT: tuple[Rule[Problem], ...] = (
 
 def resolve(scene: Scene) -> Problem:
     """What a scene asks for; pure."""
-    problem = Problem(scene=scene, **{table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)})
+    tables = {table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)}
+    tables["contact"], tables["lubricant"] = lubricated(scene.contact, scene.lubricant)
+    problem = Problem(scene=scene, **tables)
     if scene.integrator.kind != AutoIntegrator.name:
         return problem
     why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")

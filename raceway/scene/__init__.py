@@ -9,6 +9,8 @@ structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file
 catalogue   bearing presets and materials by name
+ratings     load ratings of the rows: by keys, as the catalogue prints them, or from geometry
+lubricant   oils, their viscosity, and the table [lubricant]
 tolerance   ranges of numbers: the table [tolerances], classes of ISO 492 and ISO 3290
 unused      keys without effect, and those that a change makes so
 ratings     load ratings, by keys, catalogue or geometry

@@ -19,6 +19,7 @@ from raceway.framework.options import (
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.catalogue import preset, with_material
 from raceway.scene.inputs import Given
+from raceway.scene.lubricant import lubricant_mistakes
 from raceway.scene.scene import Scene
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
@@ -228,7 +229,9 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
     parts: Tables = {}
     for name, cls in TABLES.items():
-        if name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
+        if name in OPTIONAL_TABLES and name not in plain:
+            parts[name] = None
+        elif name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
             parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
@@ -238,6 +241,8 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
         if name in plain:
             structure(plain[name], cls, name, mistakes)
     parts["quantities"] = structure(plain.get("quantities", {}), quantities_table(registry), "quantities", mistakes)
+    if not mistakes:
+        mistakes += lubricant_mistakes(parts["contact"].law, parts["lubricant"])
     if mistakes:
         raise SceneError(mistakes)
     scene = Scene(title=title, source=plain, given=Given(checked), **parts)

@@ -25,6 +25,7 @@ from raceway.framework.options import (
 )
 from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
+from raceway.scene.lubricant import Lubricant
 
 
 def _each(low: float, words: str) -> Rule:
@@ -358,6 +359,7 @@ TABLES: dict[str, type] = {
     "rotor": Rotor,
     "load": Load,
     "contact": Contact,
+    "lubricant": Lubricant,
     "kinematics": Kinematics,
     "mounting": Mounting,
     "integrator": Integration,
@@ -376,8 +378,8 @@ PLUGIN_TABLES = {
 }
 
 
-#: Those of them that may be absent, which means something.
-OPTIONAL_TABLES = ("excitation", "mesh")
+#: Tables that may be absent, which means something.
+OPTIONAL_TABLES = ("excitation", "mesh", "lubricant")
 
 
 #: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.scene.unused`` tells.

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from raceway import build_model, scene_from_dict
-from raceway.contact_laws.film import GRADES, Film, Walther
+from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import simulate
+from raceway.scene.lubricant import GRADES, Walther
 from raceway.scene.tables import TIME_CONSTANTS
 from validation.film import (
     OIL,
