@@ -209,11 +209,10 @@ def ball_rates(contacts: BallContacts, oil: Lubrication, outer_race: bool = Fals
     cosine, sine = np.cos(np.where(np.isnan(angle), 0.0, angle)), np.sin(np.where(np.isnan(angle), 0.0, angle))
     ratio = contacts.ball_diameter / contacts.pitch_diameter
     sign = np.array([[-1.0], [1.0]])
-    width = 1.0 + sign * ratio * cosine
     (x, y), controls = (cosine + sign * ratio, sine), []
     norm = np.hypot(x, y)
     for race in (1, 0):
-        controls.append(_about(x[:, race] / norm[:, race], y[:, race] / norm[:, race], cosine, sine, width, ratio))
+        controls.append(_about(x[:, race] / norm[:, race], y[:, race] / norm[:, race], cosine, sine, contacts))
     by_outer, by_inner = controls
     chosen = by_outer
     if not outer_race:
@@ -224,21 +223,21 @@ def ball_rates(contacts: BallContacts, oil: Lubrication, outer_race: bool = Fals
             part = np.nan_to_num(1.0 / (1.0 + (first / second) ** _SHARPNESS), nan=0.5)[:, 0]
         x, y = (part * v[:, 1] / norm[:, 1] + (1.0 - part) * v[:, 0] / norm[:, 0] for v in (x, y))
         norm = np.hypot(x, y)
-        chosen = _about(x / norm, y / norm, cosine, sine, width, ratio)
+        chosen = _about(x / norm, y / norm, cosine, sine, contacts)
     return chosen
 
 
-def _about(
-    axial: np.ndarray, radial: np.ndarray, cosine: np.ndarray, sine: np.ndarray, width: np.ndarray, ratio: Number
-) -> Rates:
-    """Rates of balls about an axis with cosine and sine (n, Z) of its angle; ``width`` : 1 -+ g, ``ratio`` : D / d_m."""
+def _about(axial: np.ndarray, radial: np.ndarray, cosine: np.ndarray, sine: np.ndarray, contacts: BallContacts) -> Rates:
+    """Rates of balls about an axis with cosine and sine (n, Z) of its angle against the shaft's."""
+    ratio = contacts.ball_diameter / contacts.pitch_diameter
+    width = 1.0 + np.array([[-1.0], [1.0]]) * ratio * cosine
     axial, radial = axial[:, None], radial[:, None]
     along, across = cosine * axial + sine * radial, sine * axial - cosine * radial
     ball = 1.0 / (ratio * (along / width).sum(axis=1, keepdims=True))
     race = ball * ratio * along / width
     cage = race[:, 1:]
     spin = ball * across + np.array([[1.0], [-1.0]]) * race * sine
-    return Rates(cage, race * width, race / ratio, np.abs(spin), np.abs(ball * radial))
+    return Rates(cage, 0.5 * contacts.pitch_diameter * race * width, race / ratio, np.abs(spin), np.abs(ball * radial))
 
 
 def _effective(contacts: BallContacts) -> Number:
