@@ -161,3 +161,12 @@ def test_what_a_scene_lacks_is_said(loads):
         rw.function(scene, ["load.radial[0]"], ["mean_load"])
     with pytest.raises(SceneError, match=r"quantities\.load.*did you mean 'loads'"):
         rw.run({**SCENE, "quantities": {"load": {}}})
+
+
+def test_bands_of_samples_have_them(loads):
+    """All balls carry the same share of an even axial load of 900 to 1100 N, at an angle that moves little."""
+    band = rw.band(SCENE, {"load.axial": "±10 %"}, count=64)
+    mean = band.nominal["mean_load"]
+    assert mean == pytest.approx(rw.run(SCENE).quantities["mean_load"], rel=1e-9)
+    assert band.high["mean_load"] / mean == pytest.approx(1.095, abs=0.02) and band.low["mean_load"] < mean
+    assert band.to_dict()["quantities"]["mean_load"]["unit"] == "N"

@@ -46,6 +46,7 @@ from raceway.framework.duties import renews
 from raceway.framework.shown import Fact, race_words, tilt_words
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X, read_in
 from raceway.pipeline.equilibrium import race_of, solve_equilibrium
+from raceway.pipeline.quantities import quantity_of
 from raceway.planning.resolve import resolve
 from raceway.scene.changes import Key, key_of, with_number, with_numbers
 from raceway.scene.tolerance import stated_tolerances, tolerances_of
@@ -469,7 +470,7 @@ def resolved(real: np.ndarray | float, imag: np.ndarray | float) -> np.ndarray:
 
 def described(name: str, value: float, words: dict[str, str]) -> Tables:
     """A number as JSON files hold it; ``words`` as ``definitions`` has them."""
-    return {"value": value, "unit": DIFFERENTIABLE[name].unit, "definition": words[name]}
+    return {"value": value, "unit": quantity_of(name).unit, "definition": words[name]}
 
 
 def definitions(model: Model, equilibrium: Equilibrium) -> dict[str, str]:

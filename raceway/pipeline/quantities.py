@@ -11,6 +11,8 @@ from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
+from raceway.framework.registry import default_registry
+from raceway.out.quantities import DIFFERENTIABLE, Quantity
 from raceway.storage.tables import Tables
 
 
@@ -43,6 +45,12 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
         warnings += sentences
         values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in computed.items()}
     return StatedQuantities(values, tables, tuple(warnings))
+
+
+def quantity_of(symbol: str) -> Quantity:
+    """That of results which has derivatives, by its symbol, or a plug-in's by its name."""
+    plugins = (entry.plugin for entry in default_registry().all() if entry.kind == "quantity")
+    return DIFFERENTIABLE.get(symbol) or next(n for plugin in plugins for n in plugin.numbers if n.name == symbol)
 
 
 def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) -> SolvedPoints:

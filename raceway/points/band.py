@@ -22,7 +22,10 @@ from raceway.out.quantities import DIFFERENTIABLE, Z_IMAG, Z_REAL, C, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
+from raceway.pipeline.quantities import quantity_of
 from raceway.planning.plan import make_plan
+from raceway.planning.resolve import resolve
+from raceway.points.column_quantities import stated_columns
 from raceway.points.engine import Item, local, work_through
 from raceway.points.function import function
 from raceway.points.sensitivities import Sensitivities, sensitivities
@@ -197,7 +200,7 @@ class Band(Answer):
         rows = [
             (
                 name,
-                number(value, DIFFERENTIABLE[name].unit),
+                number(value, quantity_of(name).unit),
                 f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}",
             )
             for name, value in self.nominal.items()
@@ -253,7 +256,7 @@ class Band(Answer):
 
     def _row(self, name: str) -> dict[str, str]:
         ends = (self.nominal[name], self.low[name], self.high[name])
-        (value, unit), (low, _), (high, _) = (read_in(end, DIFFERENTIABLE[name].unit) for end in ends)
+        (value, unit), (low, _), (high, _) = (read_in(end, quantity_of(name).unit) for end in ends)
         row = {"quantity": f"{name.replace('_', ' ')} [{unit}]", "nominal": f"{value:.5g}"}
         row |= {"2.5 %": f"{low:.5g}", "97.5 %": f"{high:.5g}"}
         indices = self.total.get(name)
@@ -264,8 +267,10 @@ class Band(Answer):
 
 
 def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
-    """Answers at points (n, d) as ``sampled`` gives them, from compiled loops; empty at points that these leave."""
-    outputs = [DIFFERENTIABLE[symbol].name for symbol in nominal]
+    """Answers at points (n, d) as ``sampled`` gives them, from compiled loops, with numbers of plug-ins; empty at points that these leave."""
+    names = {symbol: DIFFERENTIABLE[symbol].name for symbol in nominal}
+    names |= {name: name for name in stated_columns(resolve(scene), default_registry())}
+    outputs = list(names.values())
     if scene.excitation is not None:  # whatever the scene's own integrator is, samples are steady orbits
         outputs += [Z_REAL.name, Z_IMAG.name]
         tables = {**without(scene.source, "identifier"), "integrator": {"kind": "periodic"}}
@@ -276,8 +281,8 @@ def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Ma
     columns = loop.looped(dict(zip(paths, numbers.T.copy(), strict=True)))
     if C.symbol in nominal:
         columns[C.name][~resolved(columns[Z_REAL.name], columns[Z_IMAG.name])] = np.nan
-    table = np.stack([columns[DIFFERENTIABLE[symbol].name] for symbol in nominal], axis=1)
-    return [{symbol: x for symbol, x in zip(nominal, row, strict=True) if not np.isnan(x)} for row in table.tolist()]
+    table = np.stack([columns[name] for name in names.values()], axis=1)
+    return [{symbol: x for symbol, x in zip(names, row, strict=True) if not np.isnan(x)} for row in table.tolist()]
 
 
 def sampled(task: tuple[Tables, Sequence[str], list[list[float]]], registry: Registry) -> Tables:
@@ -396,7 +401,11 @@ def band(
     nominal, words = _answer(read)
     paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in varied), strict=True)
     numbers = np.array(low) + design(count, len(varied), seed) * np.subtract(high, low)
-    rows = _looped(read, paths, numbers, nominal)
+    middle = np.array([[tolerance.key.value for tolerance in varied]])
+    first, *rows = _looped(read, paths, np.concatenate([middle, numbers]), nominal)
+    for name, quantity in stated_columns(resolve(read), registry).items():
+        if name in first:
+            nominal[name], words[name] = first[name], quantity.words
     left = numbers[[not row for row in rows]]
     tasks = [(read.source, paths, left[k : k + _CHUNK].tolist()) for k in range(0, len(left), _CHUNK)]
     items = [Item(row_key(read, registry, f"band {task[1:]}"), "samples", task) for task in tasks]

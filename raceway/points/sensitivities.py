@@ -20,7 +20,7 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import DIFFERENTIABLE, read_in
+from raceway.out.quantities import read_in
 from raceway.out.table import sections
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import (
@@ -34,6 +34,7 @@ from raceway.pipeline.gradient import (
     tolerance_rows,
     values,
 )
+from raceway.pipeline.quantities import quantity_of
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene
@@ -116,7 +117,7 @@ class Sensitivities(Answer):
         ]
         head: Fact = (
             first,
-            number(self.values[first], DIFFERENTIABLE[first].unit),
+            number(self.values[first], quantity_of(first).unit),
             "its change by 1 % of a key; derivative",
         )
         return self.title, [head, *facts]
@@ -156,7 +157,7 @@ class Sensitivities(Answer):
     def report(self) -> Iterator[Part]:
         """Keys in the order of their influence; below, what has none, what has no derivative, and the cost."""
         for name, value in self.values.items():
-            number, unit = read_in(value, DIFFERENTIABLE[name].unit)
+            number, unit = read_in(value, quantity_of(name).unit)
             yield f"{name.replace('_', ' ')} {number:.5g} {unit}: {self.definitions[name]}"
         if self.tolerances is not None:
             yield sections(tolerance_rows(self.tolerances))
