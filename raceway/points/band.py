@@ -308,7 +308,8 @@ def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     """Numbers, and what they are."""
     model = build_model(scene, make_plan(scene))
     equilibrium = solve_equilibrium(model)
-    return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
+    words = {name: quantity.words for name, quantity in stated_columns(model.problem, default_registry()).items()}
+    return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium) | words
 
 
 def _summary(
@@ -347,6 +348,12 @@ def _summary(
 def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
     counts, edges = np.histogram(values[np.isfinite(values)], _BINS)
     return edges.tolist(), counts.tolist()
+
+
+def _points(varied: Sequence[Tolerance], count: int, seed: int) -> np.ndarray:
+    """(1 + (d + 2) n, d) the nominal numbers and the samples."""
+    middle, low, high = np.array([(tolerance.key.value, tolerance.low, tolerance.high) for tolerance in varied]).T
+    return np.vstack([middle, low + design(count, len(varied), seed) * (high - low)])
 
 
 @door
@@ -399,14 +406,10 @@ def band(
         )
     varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _answer(read)
-    paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in varied), strict=True)
-    numbers = np.array(low) + design(count, len(varied), seed) * np.subtract(high, low)
-    middle = np.array([[tolerance.key.value for tolerance in varied]])
-    first, *rows = _looped(read, paths, np.concatenate([middle, numbers]), nominal)
-    for name, quantity in stated_columns(resolve(read), registry).items():
-        if name in first:
-            nominal[name], words[name] = first[name], quantity.words
-    left = numbers[[not row for row in rows]]
+    paths, numbers = [tolerance.key.path for tolerance in varied], _points(varied, count, seed)
+    at_middle, *rows = _looped(read, paths, numbers, nominal)
+    nominal |= {name: number for name, number in at_middle.items() if name not in nominal}
+    left = numbers[1:][[not row for row in rows]]
     tasks = [(read.source, paths, left[k : k + _CHUNK].tolist()) for k in range(0, len(left), _CHUNK)]
     items = [Item(row_key(read, registry, f"band {task[1:]}"), "samples", task) for task in tasks]
     files = [Path(file) for file in plugins]
