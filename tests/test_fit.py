@@ -114,7 +114,7 @@ def test_derivatives_of_residuals_are_those_of_the_residuals():
     )
     free = free_keys(scene, [ANGLE, "rotor.mass"])
     measured = measurements_in(table, "made up", scene)
-    problem = _TableResiduals(measured, free, measured.scenes(scene))
+    problem = _TableResiduals(measured, free, scene)
     at = np.array([15.5, 2.0])
     problem.residuals(at)
     exact = problem.jacobian(at)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway.errors import SceneError
 from raceway.storage.tables import Tables
 from validation.columns import case, difference
 
@@ -135,6 +136,12 @@ def test_derivatives_at_the_end_of_a_range_are_one_sided() -> None:
     secant = float(np.diff(ends["kyy"])[0]) / 1e-8
     assert slopes["kyy"]["mounting.shaft_interference"] == pytest.approx(secant, rel=1e-3)
     assert abs(slopes["x"]["load.radial[1]"]) < 1e-6 * slopes["x"]["load.axial"]  # by symmetry
+
+
+def test_the_difference_of_two_meshes_is_no_derivative() -> None:
+    condensed = rw.function({**FILM, "bodies": {"kind": "condensed"}}, ["bearing.contact_angle_deg"], ["kxx"])
+    with pytest.raises(SceneError, match="changes the meshes"):
+        condensed.jacobian(15.0)
 
 
 def test_a_preload_that_nothing_braces_is_refused_alone() -> None:

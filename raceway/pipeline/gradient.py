@@ -47,7 +47,7 @@ from raceway.framework.shown import Fact, race_words, tilt_words
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X, read_in
 from raceway.pipeline.equilibrium import race_of, solve_equilibrium
 from raceway.pipeline.quantities import quantity_of
-from raceway.planning.resolve import resolve
+from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import Key, key_of, with_number, with_numbers
 from raceway.scene.tolerance import stated_tolerances, tolerances_of
 from raceway.storage.tables import Tables
@@ -219,10 +219,7 @@ class Gradients:
     moving: bool = True
 
     def __attrs_post_init__(self) -> None:
-        traits = self.model.traits
-        if not (traits.compiled and traits.resultants):
-            why = "surface points open and close one by one: their forces have no derivative. Take contact.discretisation = 'resultant'"
-            raise SceneError.at("bodies.kind", self.model.problem.bodies.name, f"{why} on rigid or condensed bodies")
+        refuse_points(self.model.problem)
 
     @cached_property
     def orbit(self) -> _SteadyOrbit | None:
@@ -360,11 +357,8 @@ class Gradients:
         """The model at another number; the plan stays."""
         model = self.model
         problem = resolve(with_number(model.scene, key.path, key.value + by))
-        if not model.problem.body_kind.same_bodies(problem):
-            raise NoDerivative(
-                "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. "
-                "bodies.kind = 'rigid' has one"
-            )
+        if why := other_meshes(model.problem, problem):
+            raise NoDerivative(why)
         try:
             return model_of(problem, model.plan)
         except RacewayError as why:
@@ -383,6 +377,21 @@ class Gradients:
         if self.orbit is not None:
             values["line"] = self.orbit.line if line is None else line
         return values
+
+
+def refuse_points(problem: Problem) -> None:
+    """Raise ``SceneError`` for bodies whose contacts are pressures at surface points, or are not compiled."""
+    traits = problem.traits
+    if not (traits.compiled and traits.resultants):
+        why = "surface points open and close one by one: their forces have no derivative. Take contact.discretisation = 'resultant'"
+        raise SceneError.at("bodies.kind", problem.bodies.name, f"{why} on rigid or condensed bodies")
+
+
+def other_meshes(problem: Problem, changed: Problem) -> str:
+    """Why a changed problem tells no derivative: its bodies have other meshes; empty where they have the same."""
+    if problem.body_kind.same_bodies(changed):
+        return ""
+    return "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. bodies.kind = 'rigid' has one"
 
 
 def _changed(model: Model, neighbour: Model) -> bool:

@@ -27,16 +27,17 @@ def jacobian(
     units: Mapping[str, str],
     outputs: Sequence[str],
 ) -> dict[str, Columns]:
-    """Derivatives (n, ...) of each output by each input: ``jacobian(...)[output][input]``.
+    """Derivatives (n, ...) of each output by each input that has a unit: ``jacobian(...)[output][input]``.
 
     Parameters
     ----------
     columns : computes outputs from columns of all inputs;  allowed : whether a key's rule admits a number
-    inputs : (n,) each, by their keys, with their units
+    inputs : (n,) each, by their keys;  units : of those by which is derived
     """
     stencils, steps = {}, {}
-    for key, value in inputs.items():
-        size, least = np.abs(value), _LEAST.get(units[key], 1.0)
+    for key, unit in units.items():
+        value, least = inputs[key], _LEAST.get(unit, 1.0)
+        size = np.abs(value)
         steps[key] = _STEP * np.where(size > 0.0, size, size.max() or least)
         low, high = (
             allowed(key, float(end)) for end in ((value - 2.0 * steps[key]).min(), (value + 2.0 * steps[key]).max())
@@ -55,7 +56,5 @@ def jacobian(
 
 def _moved(inputs: Columns, stencils: Mapping[str, Mapping[int, float]], steps: Columns) -> Columns:
     """All inputs at all shifts of one key after another."""
-    return {
-        key: np.concatenate([value + steps[key] * shift * (other == key) for other in inputs for shift in stencils[other]])
-        for key, value in inputs.items()
-    }
+    moves = [(moved, shift * steps[moved]) for moved, stencil in stencils.items() for shift in stencil]
+    return {key: np.concatenate([value + move * (moved == key) for moved, move in moves]) for key, value in inputs.items()}

@@ -24,13 +24,14 @@ from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
+from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result, plugin_quantities
 from raceway.points.derivatives import Columns, jacobian
-from raceway.scene.changes import continuous_keys, key_of, with_columns, with_numbers
+from raceway.scene.changes import key_of, with_columns, with_numbers
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -164,12 +165,19 @@ class Function:
         everywhere the steps are 1e-3 of its unit, 1e-9 m of lengths.
         """
         shape, flat = self._flat(self._named(columns, by_name))
-        units = {key.path: key.unit for key in continuous_keys(self.scene)}
-        slopes = jacobian(self.columns, lambda key, number: self._allowed([key], [number]), flat, units, self.outputs)
         return {
             name: {key: slope.reshape((*shape, *slope.shape[1:])) for key, slope in by_key.items()}
-            for name, by_key in slopes.items()
+            for name, by_key in self.slopes(flat, self.inputs).items()
         }
+
+    def slopes(self, flat: Mapping[str, np.ndarray], keys: Iterable[str]) -> dict[str, Columns]:
+        """As ``jacobian``, by some of the inputs, from columns (n,) of all."""
+        units, problem = {key: key_of(self.scene, key).unit for key in keys}, resolve(self.scene)
+        refuse_points(problem)
+        for key in units:
+            if why := other_meshes(problem, resolve(self._changed({key: 1.001 * key_of(self.scene, key).value}))):
+                raise SceneError.at(key, None, why)
+        return jacobian(self.columns, lambda key, number: self._allowed([key], [number]), dict(flat), units, self.outputs)
 
     def columns(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""

@@ -309,19 +309,18 @@ def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate
         try:
             slopes = problem.jacobian(x * sizes) * sizes
         except SceneError as why:
-            raise _no_derivative(free, x * sizes, why) from None
+            raise _at_an_end(free, x * sizes, why) from None
         u, s, v = np.linalg.svd(slopes, full_matrices=False)
         return np.asarray((u * np.where(s > _ROUNDING * s[0], s, 0.0)) @ v)
 
     search = least_squares(residuals, start, jacobian, ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=_TOLERANCE, max_nfev=_MOST)
     if search.status <= 0:
-        raise ConvergenceError(
-            f"no least sum of squares after {search.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
-        )
+        why = f"no least sum of squares after {search.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
+        raise _at_an_end(free, search.x * sizes, ConvergenceError(why))
     return judged(tuple(free), search.x * sizes, search.fun, search.jac / sizes, stated, int(search.nfev))
 
 
-def _no_derivative(free: Sequence[Free], values: np.ndarray, why: SceneError) -> RacewayError:
+def _at_an_end(free: Sequence[Free], values: np.ndarray, why: RacewayError) -> RacewayError:
     """A sentence on the number that ran to the end of its range, where derivatives end; else the reason as it is."""
     for key, value in zip(free, values, strict=True):
         if key.margin(value) < _NEAR:

@@ -6,18 +6,20 @@ Residuals are those of the scene's answers, with their exact derivatives by the 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import attrs
 import numpy as np
 
 from raceway import build_model
-from raceway.errors import SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradients, NoDerivative, definitions, derivatives, values
+from raceway.pipeline.gradient import definitions, resolved
+from raceway.points.function import Function, function
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
+from raceway.scene.inputs import evolve
 from raceway.scene.scene import Scene
 from raceway.scene.units import number_in
 from raceway.storage.number_table import NumberTable
@@ -31,6 +33,8 @@ _ACROSS = {"y": 1, "z": 2}
 MEASURED = {name: quantity.unit for name, quantity in DIFFERENTIABLE.items()} | dict.fromkeys(_ACROSS, X.unit)
 #: Quantities of a motion, which need its orbit.
 _MOTION = (K.symbol, C.symbol, AMPLITUDE.symbol)
+#: Relative tolerance of the 1x lines of orbits.
+_TOLERANCE = 1e-10
 #: Standard errors by which measurements of the same quantity may differ before they contradict each other.
 _CONTRADICT = 6.0
 _HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
@@ -190,43 +194,57 @@ def _refuse_contradictions(measured: _Measurements) -> None:
 class _TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway.studies.fit.estimate.Residuals``.
 
+    All rows, and all steps of the differences that make their derivatives, are columns of one call.
+
     scenes : of the rows
     """
 
     measured: _Measurements
     free: Sequence[Free]
-    scenes: list[Scene]
-    _answers: list[Gradients] = attrs.field(factory=list, init=False)
+    scene: Scene
+    scenes: list[Scene] = attrs.field(init=False)
+    _last: np.ndarray = attrs.field(init=False)
+    _functions: dict[tuple[str, ...], Function] = attrs.field(factory=dict, init=False)
 
-    @property
-    def _moving(self) -> bool:
-        return any(name in _MOTION for name in self.measured.values)
+    def __attrs_post_init__(self) -> None:
+        self.scenes = self.measured.scenes(self.scene)
+        self._last = np.array([key.start for key in self.free])
+        if any(name in _MOTION for name in self.measured.values):
+            self.scene = evolve(self.scene, {"integrator": None, "identifier": None}, {"integrator.kind": "periodic"})
 
     def residuals(self, at: np.ndarray) -> np.ndarray:
         answers, weights = self.answers(at), self.measured.weights
         return np.concatenate([(answers[name] - numbers) / weights[name] for name, numbers in self.measured.values.items()])
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
-        return self._columns([key.name for key in self.free]).T
+        self._last = at
+        return self._slopes([key.name for key in self.free]).T
 
     def answers(self, at: np.ndarray) -> dict[str, np.ndarray]:
         """Quantity -> the scene's answers (n,), SI."""
-        self._answers = []
-        for scene in self.scenes:
-            loaded = with_free(scene, self.free, at)
-            model = build_model(loaded)
-            self._answers.append(Gradients(model, solve_equilibrium(model), self._moving))
-        rows = [self._values(answer) for answer in self._answers]
-        return {name: np.array([row[name] for row in rows]) for name in self.measured.values}
+        self._last = at
+        answer = self._function().columns(self._columns())
+        for row in np.flatnonzero(answer["reason"] != ""):
+            raise RacewayError(f"measurement {row + 1}: {answer['reason'][row]}")
+        if C.symbol in self.measured.values and not resolved(answer["z_real"], answer["z_imag"]).all():
+            raise SceneError.at(C.symbol, None, "is no number that this scene has: its motion has too little of it")
+        return {name: _measured(answer, name) for name in self.measured.values}
 
-    def _values(self, answer: Gradients) -> dict[str, float]:
-        row = values(answer.model, answer.equilibrium, answer.orbit)
-        row |= _across(answer.equilibrium.displacement)
-        if missing := next((name for name in self.measured.values if name not in row), None):
-            raise SceneError.at(
-                missing, None, f"[{MEASURED[missing]}] is no number that this scene has: its motion has too little of it"
-            )
-        return row
+    def _function(self, more: Iterable[str] = ()) -> Function:
+        """The scene as a function of the table's keys, the free ones, and more."""
+        inputs = tuple(dict.fromkeys([*self.measured.keys, *(key.name for key in self.free), *more]))
+        if inputs in self._functions:
+            return self._functions[inputs]
+        outputs = ["displacement" if name in _ACROSS else name for name in self.measured.values]
+        outputs += ["z_real", "z_imag"] if C.symbol in outputs else []
+        self._functions[inputs] = function(self.scene, inputs, outputs, tolerance=_TOLERANCE, force=True)
+        return self._functions[inputs]
+
+    def _columns(self, more: Iterable[str] = ()) -> dict[str, np.ndarray]:
+        """Numbers of these keys (n,)."""
+        numbers = {key: np.full(self.measured.count, key_of(self.scene, key).value) for key in more}
+        free = zip(self.free, self._last, strict=True)
+        return numbers | {key.name: np.full(self.measured.count, number) for key, number in free} | self.measured.keys
 
     def uncertain(self) -> tuple[dict[str, np.ndarray], list[str]]:
         """Cause -> change of the residuals (n, 1) by its standard error, at the last numbers; causes that are left out."""
@@ -237,34 +255,34 @@ class _TableResiduals:
             cause = same[0].cause
             sizes = np.array([list(row.sizes.values()) for row in same]).T
             try:
-                columns[cause] = self._columns(list(same[0].sizes), sizes).sum(axis=0)[:, None]
+                columns[cause] = self._slopes(list(same[0].sizes), sizes).sum(axis=0)[:, None]
             except SceneError as why:
                 left_out.append(f"the uncertainty of {cause} is no part of the intervals: {why.mistakes[0].message}")
         return columns, left_out
 
-    def _columns(self, paths: list[str], sizes: np.ndarray | float = 1.0) -> np.ndarray:
+    def _slopes(self, paths: list[str], sizes: np.ndarray | float = 1.0) -> np.ndarray:
         """Derivatives (k, n) of the weighted residuals by keys, times sizes (k, rows)."""
-        slopes = {name: np.empty((len(paths), len(self._answers))) for name in self.measured.values}
-        for row, answer in enumerate(self._answers):
-            for k, gradient in enumerate(answer.by_all([key_of(answer.model.scene, path) for path in paths])):
-                if isinstance(gradient, NoDerivative):
-                    raise SceneError.at(paths[k], None, str(gradient))
-                numbers = derivatives(answer.model, answer.equilibrium, gradient) | _across(gradient.statics.displacement)
-                for name in slopes:
-                    slopes[name][k, row] = numbers[name]
-        weights = self.measured.weights
-        return np.concatenate([sizes * slope / weights[name] for name, slope in slopes.items()], axis=1)
+        slopes, weights = self._function(paths).slopes(self._columns(paths), paths), self.measured.weights
+        by_keys = [{output: by_key[path] for output, by_key in slopes.items()} for path in paths]
+        out = [sizes * np.array([_measured(slope, name) for slope in by_keys]) / weights[name] for name in weights]
+        for k, path in enumerate(paths):
+            if not all(np.isfinite(part[k]).all() for part in out):
+                raise SceneError.at(path, None, "has no derivative: beside a measurement the scene has no answer")
+        return np.concatenate(out, axis=1)
 
     def notes(self) -> list[str]:
         """Definitions of measured numbers whose names may mean another quantity to the reader."""
-        answer = self._answers[0]
-        words = definitions(answer.model, answer.equilibrium)
-        names = ["largest_ball_load", *(["kyy"] if answer.model.problem.supports.tilt != "locked" else [])]
+        names = ["largest_ball_load", *(["kyy"] if self.scene.supports.tilt != "locked" else [])]
+        if not any(name in self.measured.values for name in names):
+            return []
+        model = build_model(with_free(self.scenes[0], self.free, self._last))
+        words = definitions(model, solve_equilibrium(model))
         return [f"{name} is taken as {words[name]}" for name in names if name in self.measured.values]
 
 
-def _across(displacement: np.ndarray) -> dict[str, float]:
-    return {name: float(displacement[k]) for name, k in _ACROSS.items()}
+def _measured(columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+    """(n,) of a quantity that may be measured, among outputs of a function."""
+    return columns["displacement"][:, _ACROSS[name]] if name in _ACROSS else columns[DIFFERENTIABLE[name].name]
 
 
 def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted:
@@ -278,7 +296,7 @@ def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted
     moving = [name for name in measured.values if name in _MOTION]
     if moving and scene.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
-    problem = _TableResiduals(measured, free, measured.scenes(scene))
+    problem = _TableResiduals(measured, free, scene)
     answer = estimate(problem, free, measured.stated)
     fitted = problem.answers(answer.values)
     causes, left_out = problem.uncertain()
