@@ -10,14 +10,14 @@ from raceway.core.contact.hertz import ellipse
 from raceway.core.rolling_friction import (
     BallContacts,
     Lubrication,
-    ball_rates,
-    drag_force,
-    hydrodynamic_force,
-    hysteresis_moment,
+    _ball_rates,
+    _drag_force,
+    _hydrodynamic_force,
+    _hysteresis_moment,
+    _mean_slip,
+    _spin_shape,
+    _traction_coefficient,
     losses,
-    mean_slip,
-    spin_shape,
-    traction_coefficient,
 )
 
 OIL = Lubrication(0.03, 2e-8, 0.04, 0.14, 870.0, 0.05, 5e6, 0.01, 0.44)
@@ -49,7 +49,7 @@ def brain():
 def test_rolling_resistance_has_the_printed_moment():
     """``RollingResistance0`` of D-BRAIN's tests; it states pi and lengths to other digits than 1.3e-5."""
     oil = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30)
-    moment = hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
+    moment = _hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
     assert moment == pytest.approx(0.7780845243544707e-3, rel=2e-5)
 
 
@@ -74,7 +74,7 @@ def test_rolling_resistance_is_the_shear_of_both_surfaces_in_the_inlet(load, spe
     """An independent quadrature; strips without side flow and a film that the fit does not have differ by up to 30 %."""
     ball = contacts((load, load))
     oil = attrs.evolve(OIL, temperature_viscosity=1e-30)
-    force = hydrodynamic_force(ball, oil, np.full((1, 2, 1), speed))[0, 0, 0]
+    force = _hydrodynamic_force(ball, oil, np.full((1, 2, 1), speed))[0, 0, 0]
     a, b = ball.semi_major[0, 0, 0], ball.semi_minor[0, 0, 0]
     peak, places = 1.5 * load / (np.pi * a * b), np.linspace(-0.995, 0.995, 21)
     radius = b * ball.modulus / (4.0 * peak)
@@ -84,7 +84,7 @@ def test_rolling_resistance_is_the_shear_of_both_surfaces_in_the_inlet(load, spe
 
 def test_heat_of_the_inlet_takes_a_part_of_the_rolling_resistance():
     speed = np.full((1, 2, 1), 20.0)
-    hot, cold = (hydrodynamic_force(contacts(), attrs.evolve(OIL, temperature_viscosity=b), speed) for b in (0.04, 1e-30))
+    hot, cold = (_hydrodynamic_force(contacts(), attrs.evolve(OIL, temperature_viscosity=b), speed) for b in (0.04, 1e-30))
     assert hot / cold == pytest.approx(1.0 / (1.0 + 0.29 * (0.03 * 0.04 * 20.0**2 / 0.14) ** 0.78), rel=1e-12)
 
 
@@ -94,7 +94,7 @@ def test_hysteresis_is_that_of_a_loss_of_two_percent():
     for load in (1.0, 100.0):
         a = np.cbrt(1.5 * load * radius / e)
         ball = BallContacts(*(np.full((1, 2, 1), v) for v in (load, 0.0, a, a)), 2.0 * radius, 1.0, 0.52, e, 0.0)
-        assert 0.02 < hysteresis_moment(ball)[0, 0, 0] / (3.0 / 16.0 * a * load) < 0.026
+        assert 0.02 < _hysteresis_moment(ball)[0, 0, 0] / (3.0 / 16.0 * a * load) < 0.026
 
 
 @pytest.mark.parametrize(("spin", "curvature"), [(1.0, 0.0), (0.0, 1.0), (0.2, 1.0), (0.5, 1.0), (0.8, 1.0), (1.0, 1.0)])
@@ -105,15 +105,15 @@ def test_the_mean_slip_is_the_least_over_the_place_of_rolling(spin, curvature):
         return np.trapezoid(0.75 * (1.0 - t * t) * np.abs(spin * t + curvature * (t * t - c)), t)
 
     least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-    assert float(mean_slip(np.array(spin), np.array(curvature))) == pytest.approx(least, rel=1e-4)
+    assert float(_mean_slip(np.array(spin), np.array(curvature))) == pytest.approx(least, rel=1e-4)
 
 
 def test_slip_has_the_published_limits():
     """Houpert: 3/8 mu Q a of spin and 0.0806 mu Q a^2 / R of the contact's curvature, whose slip is y^2 / (2 R)."""
-    assert float(mean_slip(np.array(1.0), np.array(0.0))) == 0.375
-    assert f"{0.5 * float(mean_slip(np.array(0.0), np.array(1.0))):.4f}" == "0.0806"
+    assert float(_mean_slip(np.array(1.0), np.array(0.0))) == 0.375
+    assert f"{0.5 * float(_mean_slip(np.array(0.0), np.array(1.0))):.4f}" == "0.0806"
     k = np.array([1.0, 1.5, 4.0, 9.0, 30.0])
-    assert spin_shape(k) == pytest.approx(ellipe(1.0 - 1.0 / k**2), abs=4e-5)
+    assert _spin_shape(k) == pytest.approx(ellipe(1.0 - 1.0 / k**2), abs=4e-5)
 
 
 def test_spin_with_curvature_over_the_whole_ellipse():
@@ -129,14 +129,14 @@ def test_spin_with_curvature_over_the_whole_ellipse():
             return float((pressure * np.hypot(along, spin * z / k)).sum())
 
         least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-        shaped = np.array(spin * spin_shape(np.array(k)))
-        assert float(mean_slip(shaped, np.array(curvature))) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
+        shaped = np.array(spin * _spin_shape(np.array(k)))
+        assert float(_mean_slip(shaped, np.array(curvature))) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
 
 
 def test_balls_roll_at_both_races_and_one_contact_does_not_spin():
     for outer in (True, False):
         ball = contacts((60.0, 300.0) if outer else (300.0, 310.0), (0.5, 0.3))
-        rates = ball_rates(ball, OIL, outer_race=True)
+        rates = _ball_rates(ball, outer_race=True)
         g = 9.525e-3 / 46e-3 * np.cos(ball.angle[0, :, 0])
         # Speeds of the surfaces from rates: (w - w_c) d_m (1 - g) / 2 and w_c d_m (1 + g) / 2.
         cage = rates.cage[0, 0, 0]
@@ -144,22 +144,22 @@ def test_balls_roll_at_both_races_and_one_contact_does_not_spin():
         assert rates.entraining[0, :, 0] == pytest.approx(expected, rel=1e-12)
         assert rates.spin[0, 1, 0] == pytest.approx(0.0, abs=1e-14) and rates.spin[0, 0, 0] > 0.1
     # At equal angles without centrifugal force the ball's spin goes where it costs less.
-    free = ball_rates(contacts((300.0, 300.0), (0.5, 0.5)), OIL).spin[0, :, 0]
+    free = _ball_rates(contacts((300.0, 300.0), (0.5, 0.5))).spin[0, :, 0]
     assert 0.0 < free.min() < free.max()
 
 
 def test_traction_follows_eyring_up_to_its_limit():
     ball, speed = contacts(), np.full((1, 2, 1), 5.0)
     thin = attrs.evolve(OIL, pressure_viscosity=1e-12, traction_limit=1.0)
-    slow, fast = (traction_coefficient(ball, thin, np.full((1, 2, 1), v), speed) for v in (1e-6, 2e-6))
+    slow, fast = (_traction_coefficient(ball, thin, np.full((1, 2, 1), v), speed) for v in (1e-6, 2e-6))
     assert fast == pytest.approx(2.0 * slow, rel=1e-6)  # Newton's fluid below the Eyring stress
-    assert traction_coefficient(ball, OIL, np.full((1, 2, 1), 0.5), speed) == pytest.approx(0.05)
-    assert traction_coefficient(ball, OIL, np.zeros((1, 2, 1)), speed) == pytest.approx(0.0)
+    assert _traction_coefficient(ball, OIL, np.full((1, 2, 1), 0.5), speed) == pytest.approx(0.05)
+    assert _traction_coefficient(ball, OIL, np.zeros((1, 2, 1)), speed) == pytest.approx(0.0)
 
 
 def test_drag_is_that_of_a_sphere():
     """By hand: mixture 0.01 * 870 + 0.99 * 1.2 = 9.888 kg/m3, 0.5 * 9.888 * 0.44 * pi/4 * 0.009525^2 * (0.023 * 500)^2 N."""
-    force = drag_force(contacts(), OIL, np.array([[[500.0]]]))
+    force = _drag_force(contacts(), OIL, np.array([[[500.0]]]))
     assert float(force[0, 0, 0]) == pytest.approx(0.5 * 9.888 * 0.44 * 0.25 * np.pi * 9.525e-3**2 * 11.5**2, rel=1e-12)
 
 

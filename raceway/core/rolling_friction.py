@@ -6,10 +6,10 @@ Powers are work that the shaft loses: force or moment times the rate at which it
 speed w.  Divided by w they are the torque on the shaft.  Of a contact, with its load Q, semi-axes a across and b along the running
 direction, entraining speed u, radius R_x = D (1 -+ g) / 2 along it, g = D cos(angle) / d_m, - at the inner race:
 
-rolling          u 2 F_R, the oil's shear in the inlet (``hydrodynamic_force``)
-elastic rolling  u / R_x M, hysteresis of the bodies (``hysteresis_moment``)
-sliding          mu Q times the mean slip by spin and by the curvature of the contact (``mean_slip``), with the coefficient of the oil's
-                 traction curve (``traction_coefficient``); the gyroscopic moment adds slip across the running direction
+rolling          u 2 F_R, the oil's shear in the inlet (``_hydrodynamic_force``)
+elastic rolling  u / R_x M, hysteresis of the bodies (``_hysteresis_moment``)
+sliding          mu Q times the mean slip by spin and by the curvature of the contact (``_mean_slip``), with the coefficient of the oil's
+                 traction curve (``_traction_coefficient``); the gyroscopic moment adds slip across the running direction
 
 Balls turn about an axis in the plane of the two contacts, rolling without slip at both centres.  Its angle is between those at which the
 outer and the inner contact do not spin, next to the one that dissipates less: of Coulomb friction all angles between cost the same where
@@ -24,24 +24,32 @@ Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 
 
 from __future__ import annotations
 
+from functools import cached_property
+from typing import TypeVar
+
 import attrs
 import numpy as np
 
 from raceway.core.columns import Number
 
+T = TypeVar("T", bound=attrs.AttrsInstance)
+#: - at the inner race, + at the outer one.
+_SIDES = np.array([[-1.0], [1.0]])
+#: Points that are computed at once: their arrays stay in the processor's caches.
+_BLOCK = 512
 #: Slip by curvature stops at +-0.3473 a where spin is absent: half of the load lies inside.
 _ROLLING = 0.34729635533386066**2
 #: How sharply the axis of a ball turns from one race's control to the other's, as a power of the ratio of their losses.
 _SHARPNESS = 8
 #: Part of the traction limit that the gyroscopic moment takes at most: beyond, balls slip sideways and the slip is not bounded.
-GYROSCOPIC_LIMIT = 0.9
+_GYROSCOPIC_LIMIT = 0.9
 #: Density of air [kg/m3].
 _AIR = 1.2
 #: E' of steel on steel, 206 GPa and 0.3 [Pa], for which the hysteresis moment was published.
 _STEEL = 226.4e9
 
 
-@attrs.frozen(eq=False)
+@attrs.frozen(eq=False, slots=False)
 class BallContacts:
     """Contacts of Z balls at n points; arrays that broadcast to (n, 2, Z), race 0 inner, 1 outer.
 
@@ -62,6 +70,21 @@ class BallContacts:
     conformity: Number
     modulus: Number
     inertia: Number
+
+    @cached_property
+    def direction(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cosine and sine of the angle; of an open contact those of the ball's other one."""
+        angle = self.angle
+        if (unknown := np.isnan(angle)).any():
+            angle = np.where(unknown, angle[:, ::-1], angle)
+            angle = np.where(np.isnan(angle), 0.0, angle)
+        return np.cos(angle), np.sin(angle)
+
+    @cached_property
+    def along(self) -> np.ndarray:
+        """Effective radius R_x along the running direction [m]."""
+        g = self.ball_diameter / self.pitch_diameter * self.direction[0]
+        return np.asarray(0.5 * self.ball_diameter * (1.0 + _SIDES * g))
 
 
 @attrs.frozen(eq=False)
@@ -88,8 +111,8 @@ class Lubrication:
 
 
 @attrs.frozen(eq=False)
-class Rates:
-    """Rates of n points over the shaft's speed; (n, 2, Z), but cage (n, 1, Z).
+class _Rates:
+    """_Rates of n points over the shaft's speed; (n, 2, Z), but cage (n, 1, Z).
 
     Attributes
     ----------
@@ -160,40 +183,46 @@ def losses(
     speed : (n,) of the shaft [rad/s], 0 or more;  seals : torque of seals and cage [N m]
     outer_race : the outer race controls the spin and takes all of the gyroscopic moment; else the race that it costs less
     """
-    rates = ball_rates(contacts, oil, outer_race)
-    w = speed[:, None, None]
-    loaded = contacts.load > 0.0
-    a, q = contacts.semi_major, contacts.load
+    if len(speed) > _BLOCK:
+        blocks = [slice(k, k + _BLOCK) for k in range(0, len(speed), _BLOCK)]
+        parts = [losses(_at(contacts, k), _at(oil, k), speed[k], _part(seals, k), outer_race) for k in blocks]
+        joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in attrs.fields_dict(Losses)}
+        return Losses(**joined)
     with np.errstate(divide="ignore", invalid="ignore"):
-        rolling = rates.entraining * hydrodynamic_force(contacts, oil, rates.entraining * w)
-        elastic = rates.rolling * hysteresis_moment(contacts)
-        slip = mean_slip(
-            rates.spin * a * spin_shape(a / contacts.semi_minor), rates.rolling * a**2 / (2.0 * _effective(contacts))
+        rates = _ball_rates(contacts, outer_race)
+        w, q, a = speed[:, None, None], contacts.load, contacts.semi_major
+        entraining = rates.entraining * w
+        slip = _mean_slip(
+            rates.spin * a * _spin_shape(a / contacts.semi_minor), rates.rolling * (a * a / (2.0 * _effective(contacts)))
         )
-        mu = traction_coefficient(contacts, oil, slip * w, rates.entraining * w)
-        sliding = mu * q * slip
-        # The moment acts on the ball, traction on its surface; of the load's share of a race, or all on the outer one.
-        moment = contacts.inertia * rates.gyroscopic * rates.cage * w**2
-        share = np.where(loaded, q, 0.0)
-        share = share * np.array([[0.0], [1.0]]) if outer_race else share
-        able = (oil.traction_limit * share).sum(axis=1, keepdims=True)
-        taken = np.where(able > 0.0, 2.0 * moment.max(axis=1, keepdims=True) / (contacts.ball_diameter * able), 0.0)
-        turned = np.minimum(taken, GYROSCOPIC_LIMIT) * (share > 0.0)
-        sliding = sliding / np.sqrt(1.0 - turned**2)
-    drag = drag_force(contacts, oil, rates.cage * w) * 0.5 * contacts.pitch_diameter * rates.cage
-    return Losses(
-        speed=speed,
-        rolling=np.where(loaded, rolling, 0.0),
-        elastic_rolling=np.where(loaded, elastic, 0.0),
-        sliding=np.where(loaded, sliding, 0.0),
-        drag=np.broadcast_to(drag, rates.cage.shape)[:, 0],
-        seals=np.broadcast_to(seals, speed.shape),
-        gyroscopic=np.broadcast_to(taken, rates.cage.shape)[:, 0],
-    )
+        sliding = _traction_coefficient(contacts, oil, slip * w, entraining) * q * slip
+        # The moment acts on the ball, traction on its surface: as loads share it, or all at the outer race.
+        able = oil.traction_limit * q
+        held = able[:, 1:] if outer_race else able[:, :1] + able[:, 1:]
+        moment = contacts.inertia * rates.gyroscopic * rates.cage * (w * w)
+        sideways = np.where(held > 0.0, 2.0 * moment / (contacts.ball_diameter * held), 0.0)
+        across = 1.0 / np.sqrt(1.0 - np.minimum(sideways, _GYROSCOPIC_LIMIT) ** 2)
+        sliding = sliding * (np.concatenate([np.ones_like(across), across], axis=1) if outer_race else across)
+        rolling = rates.entraining * _hydrodynamic_force(contacts, oil, entraining)
+        elastic = rates.rolling * _hysteresis_moment(contacts)
+    if not (loaded := q > 0.0).all():
+        rolling, elastic, sliding = (np.where(loaded, part, 0.0) for part in (rolling, elastic, sliding))
+    drag = _drag_force(contacts, oil, rates.cage * w) * 0.5 * contacts.pitch_diameter * rates.cage
+    return Losses(speed, rolling, elastic, sliding, drag[:, 0], np.broadcast_to(seals, speed.shape), sideways[:, 0])
 
 
-def ball_rates(contacts: BallContacts, oil: Lubrication, outer_race: bool = False) -> Rates:
-    """Rates of balls that roll without slip at the centres of both contacts; the axis as in ``losses``.
+def _part(number: Number, block: slice) -> Number:
+    """A number, or of a column or an array with a first axis of points those of a block."""
+    return number[block] if np.ndim(number) and len(number) > 1 else number
+
+
+def _at(part: T, block: slice) -> T:
+    """A record with the points of a block."""
+    return type(part)(*(_part(value, block) for value in attrs.astuple(part, recurse=False)))
+
+
+def _ball_rates(contacts: BallContacts, outer_race: bool = False) -> _Rates:
+    """_Rates of balls that roll without slip at the centres of both contacts; the axis as in ``losses``.
 
     Notes
     -----
@@ -205,39 +234,33 @@ def ball_rates(contacts: BallContacts, oil: Lubrication, outer_race: bool = Fals
     ----------
     Jones, J. Basic Eng. 81 (1959) 1; Harris, J. Lubr. Technol. 93 (1971) 32.
     """
-    angle = np.where(np.isnan(contacts.angle), contacts.angle[:, ::-1], contacts.angle)
-    cosine, sine = np.cos(np.where(np.isnan(angle), 0.0, angle)), np.sin(np.where(np.isnan(angle), 0.0, angle))
-    ratio = contacts.ball_diameter / contacts.pitch_diameter
-    sign = np.array([[-1.0], [1.0]])
-    (x, y), controls = (cosine + sign * ratio, sine), []
-    norm = np.hypot(x, y)
-    for race in (1, 0):
-        controls.append(_about(x[:, race] / norm[:, race], y[:, race] / norm[:, race], cosine, sine, contacts))
-    by_outer, by_inner = controls
-    chosen = by_outer
-    if not outer_race:
-        weight = contacts.load * contacts.semi_major
-        # The contact that spins under the other race's control.
-        first, second = ((weight * np.abs(rates.spin)).sum(axis=1, keepdims=True) for rates in (by_outer, by_inner))
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            part = np.nan_to_num(1.0 / (1.0 + (first / second) ** _SHARPNESS), nan=0.5)[:, 0]
-        x, y = (part * v[:, 1] / norm[:, 1] + (1.0 - part) * v[:, 0] / norm[:, 0] for v in (x, y))
-        norm = np.hypot(x, y)
-        chosen = _about(x / norm, y / norm, cosine, sine, contacts)
-    return chosen
+    (cosine, sine), ratio = contacts.direction, contacts.ball_diameter / contacts.pitch_diameter
+    axial, radial = cosine + _SIDES * ratio, sine
+    outer = axial[:, 1:], radial[:, 1:]
+    if outer_race:
+        return _about(*outer, contacts)
+    inner = axial[:, :1], radial[:, :1]
+    weight = contacts.load * contacts.semi_major
+    # The contact that spins under the other race's control.
+    first = weight[:, :1] * _about(*outer, contacts).spin[:, :1]
+    second = weight[:, 1:] * _about(*inner, contacts).spin[:, 1:]
+    share = first / np.maximum(first + second, 1e-300)
+    by_inner, by_outer = share**_SHARPNESS, (1.0 - share) ** _SHARPNESS
+    part = by_outer / (by_inner + by_outer)
+    x, y = (part * of_outer + (1.0 - part) * of_inner for of_outer, of_inner in zip(outer, inner, strict=True))
+    return _about(x, y, contacts)
 
 
-def _about(axial: np.ndarray, radial: np.ndarray, cosine: np.ndarray, sine: np.ndarray, contacts: BallContacts) -> Rates:
-    """Rates of balls about an axis with cosine and sine (n, Z) of its angle against the shaft's."""
-    ratio = contacts.ball_diameter / contacts.pitch_diameter
-    width = 1.0 + np.array([[-1.0], [1.0]]) * ratio * cosine
-    axial, radial = axial[:, None], radial[:, None]
-    along, across = cosine * axial + sine * radial, sine * axial - cosine * radial
-    ball = 1.0 / (ratio * (along / width).sum(axis=1, keepdims=True))
-    race = ball * ratio * along / width
-    cage = race[:, 1:]
-    spin = ball * across + np.array([[1.0], [-1.0]]) * race * sine
-    return Rates(cage, 0.5 * contacts.pitch_diameter * race * width, race / ratio, np.abs(spin), np.abs(ball * radial))
+def _about(axial: np.ndarray, radial: np.ndarray, contacts: BallContacts) -> _Rates:
+    """_Rates of balls about an axis with components (n, 1, Z) along and across the shaft, of any length."""
+    (cosine, sine), ratio = contacts.direction, contacts.ball_diameter / contacts.pitch_diameter
+    width = contacts.along / (0.5 * contacts.ball_diameter)
+    along = cosine * axial + sine * radial
+    over = along / width
+    ball = 1.0 / (ratio * (over[:, :1] + over[:, 1:]))
+    race = ball * ratio * over
+    spin = np.abs(ball * (sine * axial - cosine * radial) - _SIDES * race * sine)
+    return _Rates(race[:, 1:], 0.5 * contacts.pitch_diameter * race * width, race / ratio, spin, np.abs(ball * radial))
 
 
 def _effective(contacts: BallContacts) -> Number:
@@ -246,7 +269,7 @@ def _effective(contacts: BallContacts) -> Number:
     return 2.0 * f * contacts.ball_diameter / (2.0 * f + 1.0)
 
 
-def hydrodynamic_force(contacts: BallContacts, oil: Lubrication, entraining: np.ndarray) -> np.ndarray:
+def _hydrodynamic_force(contacts: BallContacts, oil: Lubrication, entraining: np.ndarray) -> np.ndarray:
     """2 F_R [N], shear of the oil in the inlet on both surfaces together, by which the entraining speed is resisted.
 
     Parameters
@@ -259,7 +282,7 @@ def hydrodynamic_force(contacts: BallContacts, oil: Lubrication, entraining: np.
     W = Q / (E' R_x^2), U = 2 eta u / (E' R_x) and M = r^(1/4) (b/a) W U^(-3/4),
     2 F_R = 2 a E' R_x ((0.77 r^(-1/3) (b/a)^0.12 U^(2/3) - f) / (1 + M / 6.6) + f), f = 1.8 r^(-1/4) U^(3/4); reduced by the heat of the
     inlet, 1 / (1 + 0.29 L^0.78) at the thermal loading L = eta beta u^2 / k.  The shear of both surfaces in Grubin's inlet, summed over
-    strips of the ellipse, is 0.85 to 1.3 times the isothermal force where contacts are elastohydrodynamic.
+    strips of the ellipse, is 0.75 to 1.25 times the isothermal force where contacts are elastohydrodynamic.
 
     References
     ----------
@@ -267,20 +290,20 @@ def hydrodynamic_force(contacts: BallContacts, oil: Lubrication, entraining: np.
     exponent -1/3 is written as an integer division and the number is that of the exact one; Aihara, J. Tribol. 109 (1987) 471 for the
     heat of the inlet, as coded there.
     """
-    along = 0.5 * contacts.ball_diameter * _width(contacts)
+    along = contacts.along
     a, b, q, e = contacts.semi_major, contacts.semi_minor, contacts.load, contacts.modulus
     r = 2.0 * e * a * b**2 / (3.0 * q * along)
     u = 2.0 * oil.viscosity * entraining / (e * along)
     root, cube = np.sqrt(u), np.cbrt(u)
     elastic, quarter = 1.8 * root * np.sqrt(root), np.sqrt(np.sqrt(r))
     regime = quarter * (b / a) * q / (e * along**2) / (root * np.sqrt(root))
-    rigid = 0.77 * (b / a) ** 0.12 * cube**2 / np.cbrt(r)
+    rigid = 0.77 * np.exp(0.12 * np.log(b / a)) * cube * cube / np.cbrt(r)
     force = 2.0 * a * e * along * ((rigid - elastic / quarter) / (1.0 + regime / 6.6) + elastic / quarter)
-    loading = oil.viscosity * oil.temperature_viscosity * entraining**2 / oil.conductivity
-    return np.asarray(np.where(entraining > 0.0, force / (1.0 + 0.29 * loading**0.78), 0.0))
+    heated = 1.0 + 0.29 * np.exp(0.78 * np.log(_loading(oil, entraining)))
+    return np.asarray(np.where(entraining > 0.0, force / heated, 0.0))
 
 
-def hysteresis_moment(contacts: BallContacts) -> np.ndarray:
+def _hysteresis_moment(contacts: BallContacts) -> np.ndarray:
     """(n, 2, Z) moment against rolling by elastic hysteresis of steel [N m].
 
     Notes
@@ -297,7 +320,7 @@ def hysteresis_moment(contacts: BallContacts) -> np.ndarray:
     return np.asarray(moment * np.cbrt(_STEEL / contacts.modulus))
 
 
-def mean_slip(spin: np.ndarray, curvature: np.ndarray) -> np.ndarray:
+def _mean_slip(spin: np.ndarray, curvature: np.ndarray) -> np.ndarray:
     """Mean of the slip's size over a contact, weighted by the pressure: v = spin t + curvature (t^2 - c), t from -1 to 1 across.
 
     Parameters
@@ -311,27 +334,24 @@ def mean_slip(spin: np.ndarray, curvature: np.ndarray) -> np.ndarray:
     the mean hardly minds.  The slip is integrated exactly.  Limits: 3/8 spin, and 0.1611 curvature: Houpert's 0.0806 mu Q a^2 / R of
     curvature and 3/8 mu Q a of spin.
     """
-    large = np.maximum(spin, curvature)
-    scale = np.where(large > 0.0, large, 1.0)
-    s, h = spin / scale, curvature / scale
-    ratio = np.minimum(s / np.maximum(h, 1e-300), 1.0)
-    c = _ROLLING * (1.0 - ratio**2) ** 1.5
-    root = np.sqrt(s**2 + 4.0 * h**2 * c)
+    h = curvature
+    ratio = np.minimum(spin / np.maximum(h, 1e-300), 1.0)
+    c = _ROLLING * (1.0 - ratio * ratio) ** 1.5
+    root = spin + np.sqrt(spin * spin + 4.0 * c * h * h)
     # Zeros of the slip: the upper one always within the contact, the lower one where curvature is the larger.
-    upper = np.where(root + s > 0.0, 2.0 * h * c / np.maximum(root + s, 1e-300), 0.0)
-    lower = np.maximum(-(root + s) / np.maximum(2.0 * h, 1e-300), -1.0)
+    upper = 2.0 * h * c / np.maximum(root, 1e-300)
+    lower = np.maximum(-0.5 * root / np.maximum(h, 1e-300), -1.0)
 
-    def below(t: np.ndarray | float) -> np.ndarray:
+    def below(t: np.ndarray) -> np.ndarray:
         square = t * t
         return np.asarray(
-            s * square * (0.5 - 0.25 * square) + h * t * (square / 3.0 - square**2 / 5.0 - c + c * square / 3.0)
+            square * (spin * (0.5 - 0.25 * square)) + t * h * (square * (1.0 / 3.0 - 0.2 * square + c / 3.0) - c)
         )
 
-    total = below(1.0) - 2.0 * below(upper) + 2.0 * below(lower) - below(-1.0)
-    return np.asarray(0.75 * total * scale * (large > 0.0))
+    return np.asarray(h * (0.2 - c) + 1.5 * (below(lower) - below(upper)))
 
 
-def spin_shape(k: np.ndarray) -> np.ndarray:
+def _spin_shape(k: np.ndarray) -> np.ndarray:
     """Complete elliptic integral of the second kind at 1 - 1/k^2, by which 3/8 mu Q a is the moment of spin, to 4e-5.
 
     References
@@ -344,7 +364,7 @@ def spin_shape(k: np.ndarray) -> np.ndarray:
     )
 
 
-def traction_coefficient(contacts: BallContacts, oil: Lubrication, slip: np.ndarray, entraining: np.ndarray) -> np.ndarray:
+def _traction_coefficient(contacts: BallContacts, oil: Lubrication, slip: np.ndarray, entraining: np.ndarray) -> np.ndarray:
     """Mean shear stress over mean pressure of the film.
 
     Parameters
@@ -360,21 +380,25 @@ def traction_coefficient(contacts: BallContacts, oil: Lubrication, slip: np.ndar
     ----------
     Johnson, Tevaarwerk, Proc. R. Soc. A 356 (1977) 215 (Eyring); Jacod, Venner, Lugt, J. Tribol. 123 (2001) 248.
     """
-    pressure = contacts.load / (np.pi * contacts.semi_major * contacts.semi_minor)
-    along = 0.5 * contacts.ball_diameter * _width(contacts)
-    e = contacts.modulus
-    u, w = oil.viscosity * entraining / (e * along), contacts.load / (e * along**2)
-    k = contacts.semi_major / contacts.semi_minor
-    loading = oil.viscosity * oil.temperature_viscosity * entraining**2 / oil.conductivity
-    film = 2.69 * along * u**0.67 * (oil.pressure_viscosity * e) ** 0.53 * w**-0.067 * (1.0 - 0.61 * np.exp(-0.73 * k))
-    shear = oil.viscosity * slip * (1.0 + 0.254 * loading**0.62) / np.maximum(film, 1e-300) / oil.eyring_stress
-    # asinh(x exp(y)) without overflow.
-    rise = np.minimum(oil.pressure_viscosity * pressure, 600.0)
-    stress = oil.eyring_stress * np.arcsinh(np.minimum(shear, 1e40) * np.exp(rise))
-    return np.asarray(np.minimum(stress / pressure, oil.traction_limit))
+    a, b, q, along, e = contacts.semi_major, contacts.semi_minor, contacts.load, contacts.along, contacts.modulus
+    pressure = q / (np.pi * a * b)
+    u, w = oil.viscosity * entraining / (e * along), q / (e * along * along)
+    film = 0.67 * np.log(u) - 0.067 * np.log(w) + 0.53 * np.log(oil.pressure_viscosity * e)
+    bracket = 2.69 * along * (1.0 - 0.61 * np.exp(-0.73 * a / b)) * oil.eyring_stress
+    thinned = 1.0 + 0.254 * np.exp(0.62 * np.log(_loading(oil, entraining)))
+    # asinh(exp(y)) = y + log(1 + sqrt(1 + exp(-2 y)))
+    y = np.log(np.maximum(oil.viscosity * slip * thinned / bracket, 1e-300)) - film + oil.pressure_viscosity * pressure
+    y = np.maximum(y, -300.0)
+    stress = oil.eyring_stress * (y + np.log1p(np.sqrt(1.0 + np.exp(-2.0 * y))))
+    return np.asarray(np.where((slip > 0.0) & (entraining > 0.0), np.minimum(stress / pressure, oil.traction_limit), 0.0))
 
 
-def drag_force(contacts: BallContacts, oil: Lubrication, cage: np.ndarray) -> np.ndarray:
+def _loading(oil: Lubrication, entraining: np.ndarray) -> np.ndarray:
+    """Thermal loading of the inlets."""
+    return np.asarray(oil.viscosity * oil.temperature_viscosity / oil.conductivity * entraining * entraining)
+
+
+def _drag_force(contacts: BallContacts, oil: Lubrication, cage: np.ndarray) -> np.ndarray:
     """Force of oil and air on each ball [N]: half the density of the mixture times C_D pi D^2 / 4 and the square of its speed.
 
     Parameters
@@ -394,9 +418,3 @@ def drag_force(contacts: BallContacts, oil: Lubrication, cage: np.ndarray) -> np
     density = oil.oil_fraction * oil.density + (1.0 - oil.oil_fraction) * _AIR
     front = 0.25 * np.pi * contacts.ball_diameter**2
     return np.asarray(0.5 * density * oil.drag_coefficient * front * (0.5 * contacts.pitch_diameter * cage) ** 2)
-
-
-def _width(contacts: BallContacts) -> np.ndarray:
-    """1 -+ g."""
-    angle = np.where(np.isnan(contacts.angle), 0.0, contacts.angle)
-    return 1.0 + np.array([[-1.0], [1.0]]) * contacts.ball_diameter / contacts.pitch_diameter * np.cos(angle)

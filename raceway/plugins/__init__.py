@@ -4,7 +4,7 @@ excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
-ball_pass                        quantities: ball-pass frequencies
+ball_pass, friction              quantities: ball-pass frequencies; friction torque by source
 processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
 system_libraries                 system libraries that packages for meshes and pictures need
@@ -18,6 +18,7 @@ from raceway.plugins.ball_pass import BallPass
 from raceway.plugins.dask import Dask
 from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
 from raceway.plugins.formats import Msh, Vtu
+from raceway.plugins.friction import Friction
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
 from raceway.plugins.measured_force import Measured
@@ -50,7 +51,7 @@ def raceway_formats() -> list[type]:
 
 @hookimpl
 def raceway_quantities() -> list[type]:
-    return [BallPass]
+    return [BallPass, Friction]
 
 
 @hookimpl

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 
-from raceway.core.columns import Number, largest, least, log, log10, where, with_values
+from raceway.core.columns import Number, is_column, largest, least, log, log10, where, with_values
 from raceway.errors import Mistake
-from raceway.framework.options import between, nearest, option, optional, positive
+from raceway.framework.options import at_least, between, nearest, option, optional, positive
+
+if TYPE_CHECKING:
+    from raceway.core.rolling_friction import Lubrication
 
 T = TypeVar("T", bound=Any)
 
@@ -186,10 +189,34 @@ class Oil:
 class Lubricant(Oil):
     """The oil of all that a bearing's lubricant decides: films, friction, life, heat."""
 
+    traction_limit: float = option(
+        0.05,
+        help="largest traction coefficient of its films; 0.05 mineral, 0.04 synthetic oils (SKF)",
+        rule=between(0.0, 0.3),
+    )
+    eyring_stress: float = option(5e6, unit="Pa", help="shear stress from which its films thin by shear", rule=positive())
+    oil_fraction: float = option(
+        0.01, help="volume of oil over that of the space around the balls; 0: dry air, 1: flooded", rule=between(0.0, 1.0)
+    )
+    drag_coefficient: float = option(
+        0.44, help="of a ball in the mixture of oil and air; 0.44: of a sphere alone", rule=at_least(0.0)
+    )
+
     @classmethod
     def of(cls, oil: Oil) -> Lubricant:
         """The lubricant of an oil; its other keys have their defaults."""
         return with_values(cls(), **_oil_of(oil))
+
+    def around_balls(self) -> Lubrication:
+        """As friction sees it; columns are spread over contacts."""
+        from raceway.core.rolling_friction import Lubrication
+
+        def spread(number: Number) -> Number:
+            return number[:, None, None] if is_column(number) else number
+
+        coefficients = self.dynamic_viscosity, self.alpha, self.beta, self.conductivity, self.density
+        keys = self.traction_limit, self.eyring_stress, self.oil_fraction, self.drag_coefficient
+        return Lubrication(*map(spread, (*coefficients, *keys)))
 
 
 def lubricated(contact: T, lubricant: Lubricant | None) -> tuple[T, Lubricant | None]:

@@ -1,0 +1,101 @@
+"""Friction torque as results, functions and screens state it; Palmgren's rule by hand; warnings and mistakes."""
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.errors import RacewayError
+from raceway.plugins.friction import PARTS, Friction
+from raceway.testing import run
+
+OIL = {"oil": "VG 32", "temperature_c": 60.0}
+TABLES = {
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]},
+    "kinematics": {"spin_speed_rpm": 6000.0}, "lubricant": OIL,
+}  # fmt: skip
+
+
+def scene(**tables):
+    return rw.Scene.from_dict({**TABLES, **tables})
+
+
+def friction(**tables):
+    result = run(scene(**tables))
+    return result.to_dict()["friction"], result.warnings
+
+
+def test_parts_rows_and_places_sum_up():
+    table, _ = friction(quantities={"friction": {"seal_torque": 0.02, "cage_torque": 0.01}})
+    speed = 6000.0 * np.pi / 30.0
+    assert set(table["parts"]) == set(PARTS) and min(table["parts"].values()) > 0.0
+    assert sum(table["parts"].values()) == pytest.approx(table["torque_nm"], rel=1e-12)
+    assert table["power_w"] == pytest.approx(speed * table["torque_nm"], rel=1e-12)
+    assert sum(table["heat_w"].values()) == pytest.approx(table["power_w"], rel=1e-12)
+    assert table["parts"]["seals"] == pytest.approx(0.03) and table["rows"][0]["torque_nm"] == pytest.approx(
+        table["torque_nm"] - 0.03
+    )
+    bands = {"rolling": 0.4, "elastic_rolling": 0.5, "sliding": 0.3, "drag": 0.7}
+    spread = np.sqrt(sum((band * table["parts"][name]) ** 2 for name, band in bands.items()))
+    assert table["band"]["high"] - table["torque_nm"] == pytest.approx(spread, rel=1e-12)
+    # Palmgren's rule of an oil bath: 13.1 mPa s are 15.0 mm2/s, 1e-7 3.3 (15.0 6000)^(2/3) 46^3 N mm; 4.7e-4 0.9 1000 / tan(15 deg) 46.
+    nu = table["viscosity_pa_s"] / 870.0 * 1e6
+    load = 4.7e-4 * (0.9 * 1000.0 / np.tan(np.radians(15.0)) - 0.1 * 200.0) * 46.0
+    assert table["palmgren_nm"]["oil_bath"] == pytest.approx(
+        1e-3 * (1e-7 * 3.3 * (nu * 6000.0) ** (2 / 3) * 46.0**3 + load), rel=1e-6
+    )
+    assert 0.3 < table["torque_nm"] / table["palmgren_nm"]["oil_bath"] < 1.5
+
+
+def test_rows_of_a_pair_have_torques_of_their_own():
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "preload_kind": "rigid", "row_distance": 0.016}
+    table, _ = friction(bearing=pair, load={"axial": 200.0})
+    first, second = (row["torque_nm"] for row in table["rows"])
+    assert first + second == pytest.approx(table["torque_nm"], rel=1e-12) and first != pytest.approx(second, rel=1e-3)
+
+
+@pytest.mark.parametrize("inputs", [{"lubricant.temperature_c": [40.0, 80.0]}, {"load.axial": [300.0, 900.0]}])
+def test_a_function_has_the_numbers_of_runs(inputs):
+    ((key, values),) = inputs.items()
+    outputs = [number.name for number in Friction.numbers]
+    computed = rw.function(scene(), list(inputs), outputs)(**{key: np.array(values)})
+    for k, value in enumerate(values):
+        table, name = key.split(".")
+        stated = run(scene(**{table: {**TABLES[table], name: value}})).quantities
+        for output in outputs:
+            assert float(np.asarray(computed[output])[k]) == pytest.approx(stated[output], rel=1e-8, abs=1e-15)
+
+
+def test_at_rest_nothing_is_lost():
+    table, _ = friction(kinematics={"spin_speed_rpm": 0.0})
+    assert table["power_w"] == table["parts"]["drag"] == table["parts"]["rolling"] == 0.0
+
+
+def test_balls_that_slip_sideways_are_told():
+    fast = {"kinematics": {"spin_speed_rpm": 20000.0}}
+    assert not [warning for warning in friction(**fast)[1] if "sideways" in warning]
+    table, warnings = friction(lubricant={**OIL, "traction_limit": 0.004}, **fast)
+    assert any("slip sideways" in warning for warning in warnings) and table["gyroscopic_over_traction"] > 1.0
+
+
+def test_without_oil_it_is_left_out_and_asked_for_it_names_the_keys():
+    dry = {name: table for name, table in TABLES.items() if name != "lubricant"}
+    assert "friction" not in run(rw.Scene.from_dict(dry)).to_dict()
+    with pytest.raises(RacewayError) as caught:
+        rw.function(rw.Scene.from_dict(dry), ["load.axial"], ["torque_nm"])
+    assert "[lubricant] with `oil` and `temperature_c`" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"lubricant": {**OIL, "oil_fraction": -0.1}}, "must be from 0 to 1"),
+        ({"lubricant": {**OIL, "traction_limit": 0.4}}, "must be from 0 to 0.3"),
+        ({"lubricant": {**OIL, "temperature_c": 180.0}}, "outside the oil's data"),
+        ({"quantities": {"friction": {"seal_torque": -1.0}}}, "must be at least 0"),
+        ({"quantities": {"friction": {"drag_band": 2.0}}}, "must be from 0 to 1"),
+    ],
+)
+def test_mistakes_are_told(tables, words):
+    with pytest.raises(rw.SceneError) as caught:
+        scene(**tables)
+    assert words in str(caught.value)
