@@ -8,7 +8,7 @@ import pytest
 from raceway import SceneError, scene_from_dict
 from raceway.core.columns import with_values
 from raceway.scene.catalogue import catalogue
-from raceway.scene.ratings import load_ratings, missing_rating
+from raceway.scene.ratings import load_ratings
 from raceway.studies.catalogue.printed import printed_by
 
 BARE = {
@@ -84,8 +84,8 @@ def test_rows_of_other_bearings_have_their_own_ratings():
 
 def test_steep_bearings_need_a_rating():
     steep = {**BARE, "contact_angle_deg": 60.0}
-    assert missing_rating(bearing(**steep)).startswith("bearing.dynamic_rating is missing")
-    assert not missing_rating(bearing(**steep, dynamic_rating=1e5)) and not missing_rating(bearing(**BARE))
+    assert load_ratings(bearing(**steep)).missing.startswith("bearing.dynamic_rating is missing")
+    assert load_ratings(bearing(**steep, dynamic_rating=1e5)).missing == load_ratings(bearing(**BARE)).missing == ""
 
 
 @pytest.mark.parametrize("key", ["dynamic_rating", "static_rating"])

@@ -38,13 +38,13 @@ def equivalent_loads(load: np.ndarray) -> np.ndarray:
     return np.stack([np.cbrt(cube[..., 0, :].mean(axis=-1)), standing.mean(axis=-1) ** 0.3], axis=-1)
 
 
-def equivalent_loads_of_turn(load: np.ndarray) -> np.ndarray:
-    """Equivalent loads Q_ei, Q_ee (..., 2) [N] of inner and outer ring under contact loads that change with the turning shaft.
+def equivalent_loads_of_turn(load: np.ndarray, follows: ArrayLike = True) -> np.ndarray:
+    """Equivalent loads Q_ei, Q_ee (..., 2) [N] of inner and outer ring under contact loads that repeat themselves.
 
     Parameters
     ----------
-    load : (..., T, 2, Z) at T equally spaced moments of one turn of the inner ring, T a multiple of Z, of balls that stand for their
-        places: ball j is at the azimuth 2 pi j / Z
+    load : (..., T, 2, Z) at T equally spaced moments of the motion, T a multiple of Z, at Z places that stand: the azimuths 2 pi j / Z
+    follows : whether the inner ring turns once while the loads repeat themselves; else each of its points meets all of them
 
     Notes
     -----
@@ -59,9 +59,23 @@ def equivalent_loads_of_turn(load: np.ndarray) -> np.ndarray:
     inner = cube[..., 0, :].reshape(*cube.shape[:-3], balls, turn // balls, balls)
     # Axes: parts of a turn, moments within a part, points of the ring.
     inner = np.moveaxis(inner, -2, -3)[..., moment, (np.arange(balls) + moment) % balls]
-    points = inner.mean(axis=-2), cube[..., 1, :].mean(axis=-2)
-    means = [(point * np.cbrt(point) ** (1.0 / 3.0)).reshape(*load.shape[:-3], -1).mean(axis=-1) for point in points]
-    return np.stack(means, axis=-1) ** 0.3
+    points = inner.mean(axis=-2).reshape(*load.shape[:-3], turn), cube[..., 1, :].mean(axis=-2)
+    of_inner, of_outer = ((point * np.cbrt(point) ** (1.0 / 3.0)).mean(axis=-1) ** 0.3 for point in points)
+    return np.stack([np.where(follows, of_inner, np.cbrt(points[0].mean(axis=-1))), of_outer], axis=-1)
+
+
+def at_places(load: np.ndarray, travel: np.ndarray) -> np.ndarray:
+    """Contact loads (..., T, 2, Z) of balls that travel, at the places where they started, straight between neighbours.
+
+    Parameters
+    ----------
+    load : (..., T, 2, Z) of each ball [N];  travel : (..., T) of all balls towards growing azimuths, in pitches
+    """
+    pitches = np.floor(travel).astype(int)
+    share = (travel - pitches)[..., None, None]
+    ball = (np.arange(load.shape[-1]) - pitches[..., None])[..., None, :] % load.shape[-1]
+    first, second = (np.take_along_axis(load, np.broadcast_to(each, load.shape), -1) for each in (ball, ball - 1))
+    return np.asarray((1.0 - share) * first + share * second)
 
 
 def ring_lives(load: np.ndarray, rating: np.ndarray) -> np.ndarray:

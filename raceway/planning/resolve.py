@@ -18,6 +18,7 @@ from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.lubricant import lubricated
+from raceway.scene.ratings import LoadRatings, load_ratings
 from raceway.scene.scene import Scene, SceneTables
 from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
 from raceway.storage.tables import Tables
@@ -138,6 +139,11 @@ class Problem(SceneTables):
     def traits(self) -> Traits:
         """Of the bodies."""
         return self.body_kind.traits
+
+    @cached_property
+    def ratings(self) -> tuple[LoadRatings, ...]:
+        """Load ratings of each row."""
+        return tuple(map(load_ratings, self.bearing.of_rows))
 
     @Derived
     def spin_speed(self) -> tuple[float, str]:

@@ -4,7 +4,7 @@ excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
-ball_pass, friction              quantities: ball-pass frequencies; friction torque by source
+ball_pass, friction, life        quantities: ball-pass frequencies; friction torque by source; reference and modified life
 processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
 system_libraries                 system libraries that packages for meshes and pictures need
@@ -21,6 +21,7 @@ from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.friction import Friction
 from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
+from raceway.plugins.life import Life
 from raceway.plugins.measured_force import Measured
 from raceway.plugins.mesh_files import File
 from raceway.plugins.order_tracking import OrderTracking
@@ -51,7 +52,7 @@ def raceway_formats() -> list[type]:
 
 @hookimpl
 def raceway_quantities() -> list[type]:
-    return [BallPass, Friction]
+    return [BallPass, Friction, Life]
 
 
 @hookimpl

@@ -9,7 +9,6 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.contact.hertz import contact_modulus
 from raceway.core.ratings import STEEL, STEEPEST, BallRow
 from raceway.scene.bearing import STEEL as STEEL_YOUNG
 from raceway.scene.bearing import Bearing
@@ -27,6 +26,7 @@ class LoadRatings:
     row : balls and grooves at the nominal contact angle
     modulus : contact modulus E* of permitted pressures [Pa]: that of the standards where balls and rings are of steel
     dynamic, static : C and C0 [N];  dynamic_from, static_from : "key", "catalogue" or "geometry"
+    missing : why there is no dynamic rating, which is nan then; else empty
     """
 
     row: BallRow
@@ -35,13 +35,7 @@ class LoadRatings:
     dynamic_from: str
     static: Number
     static_from: str
-
-
-def missing_rating(bearing: Bearing) -> str:
-    """Why a bearing of one row has no dynamic rating; empty where it has one."""
-    if bearing.dynamic_rating is not None or not np.any(_row(attrs.asdict(bearing, recurse=False)).angle > STEEPEST):
-        return ""
-    return "bearing.dynamic_rating is missing: ISO 281 rates contact angles up to 45 deg by their radial load"
+    missing: str = ""
 
 
 def load_ratings(bearing: Bearing) -> LoadRatings:
@@ -56,9 +50,12 @@ def load_ratings(bearing: Bearing) -> LoadRatings:
     a little more.
     """
     row, modulus = _row(attrs.asdict(bearing, recurse=False)), _modulus(bearing)
-    dynamic, dynamic_from = _rating(bearing, "dynamic_rating", row.dynamic_rating(), BallRow.dynamic_rating)
     static_rating = row.static_rating_of_grooves(modulus)
     static, static_from = _rating(bearing, "static_rating", static_rating, BallRow.static_rating_of_grooves)
+    if bearing.dynamic_rating is None and np.any(row.angle > STEEPEST):
+        missing = "bearing.dynamic_rating is missing: ISO 281 rates contact angles up to 45 deg by their radial load"
+        return LoadRatings(row, modulus, np.nan, "", static, static_from, missing)
+    dynamic, dynamic_from = _rating(bearing, "dynamic_rating", row.dynamic_rating(), BallRow.dynamic_rating)
     return LoadRatings(row, modulus, dynamic, dynamic_from, static, static_from)
 
 
@@ -88,4 +85,6 @@ def _modulus(bearing: Bearing) -> Number:
     rings, balls = bearing.rings, bearing.balls
     if all(np.all((STEEL_YOUNG[0] <= part.young) & (part.young <= STEEL_YOUNG[1])) for part in (rings, balls)):
         return STEEL
+    from raceway.core.contact.hertz import contact_modulus
+
     return contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)

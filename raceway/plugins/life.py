@@ -1,0 +1,221 @@
+"""Reference life of a bearing and of its rows, modified life, equivalent load and static safety.
+
+Notes
+-----
+Lives follow from the loads of all contacts, which know clearance, preload, tilts and speed: the constant ones, or, where a force
+repeats itself, those over a turn of the motion, in which a load that turns with the inner ring meets its points otherwise than those of
+the outer ring (``raceway.core.life``).  Whatever fails first ends the life: rings and rows add up.
+
+The static safety factor is the contact load that C0 permits over the largest one, on the race where it is less; where C0 is by the
+geometry, (4200 MPa / p_max)^3 of steel.
+
+References
+----------
+ISO/TS 16281:2008; ISO 281:2007; ISO 76:2006.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite, lcm, pi
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+import numpy as np
+
+from raceway.core.life import (
+    VISCOSITY_RATIOS,
+    at_places,
+    equivalent_loads,
+    equivalent_loads_of_turn,
+    life_factor,
+    reliability_factor,
+    ring_lives,
+    set_rating,
+    system_life,
+)
+from raceway.framework.options import between, option, optional, positive
+from raceway.out.quantities import Quantity
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import SolvedPoints
+    from raceway.planning.resolve import Problem
+    from raceway.scene.ratings import LoadRatings
+    from raceway.storage.tables import Tables
+
+#: Moments of a turn at least.
+_MOMENTS = 32
+#: Equivalent load over dynamic rating up to which ISO 281 holds.
+_LARGEST_LOAD = 0.5
+
+
+def _number(name: str, unit: str, words: str, label: str, symbol: str) -> Quantity:
+    return Quantity(name, unit, words, f"life.{name}", symbol=symbol, label=label)
+
+
+_NUMBERS = (
+    _number("l10r_million_revolutions", "1e6", "reference life, which 90 % reach", "reference life L10r", "L10r"),
+    _number("l10r_hours", "h", "reference life at the shaft's speed", "reference life in hours", "L10rh"),
+    _number("l10mr_million_revolutions", "1e6", "modified life a_1 a_ISO L10r", "modified life Lnmr", "Lnmr"),
+    _number("l10mr_hours", "h", "modified life at the shaft's speed", "modified life in hours", "Lnmrh"),
+    _number("equivalent_load_n", "N", "load of the reference life, C L10r^(-1/3)", "equivalent load P", "P"),
+    _number("static_safety", "1", "permitted over largest contact load", "static safety s0", "s0"),
+    _number("rating_n", "N", "basic dynamic load rating of all rows together", "dynamic rating C", "C_rating"),
+)
+
+
+@attrs.frozen
+class Life:
+    """Reliability, cleanliness and lubrication of the modified life."""
+
+    name: ClassVar[str] = "life"
+    numbers: ClassVar[tuple[Quantity, ...]] = _NUMBERS
+
+    reliability: float = option(0.9, help="share of bearings that reach the modified life", rule=between(0.9, 0.9995))
+    contamination: float = option(
+        0.5, help="factor e_C of ISO 281: 1 extremely clean, 0.5 normal, 0 severely contaminated", rule=between(0.0, 1.0)
+    )
+    viscosity_ratio: float | None = option(
+        None,
+        help="kappa: viscosity over that which ISO 281 asks for; default: of the oil, if there is one",
+        rule=optional(positive()),
+    )
+
+    def why_not(self, problem: Problem) -> str:
+        return next((ratings.missing for ratings in problem.ratings if ratings.missing), "")
+
+    def turn_samples(self, problem: Problem) -> int:
+        balls = lcm(*(bearing.ball_count for bearing in problem.bearing.of_rows))
+        return balls * -(-_MOMENTS // balls)
+
+    def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
+        rows = self._rows(points)
+        life = system_life(np.concatenate([row.ring_lives for row in rows], axis=-1))
+        modified = reliability_factor(self.reliability) * system_life(np.stack([row.modified for row in rows], axis=-1))
+        rating = set_rating(np.stack([np.broadcast_to(row.ratings.dynamic, life.shape) for row in rows]))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            hours = 1e6 / (1800.0 / pi * points.speed)
+            return {
+                "l10r_million_revolutions": life,
+                "l10r_hours": life * hours,
+                "l10mr_million_revolutions": modified,
+                "l10mr_hours": modified * hours,
+                "equivalent_load_n": rating / np.cbrt(life),
+                "static_safety": np.minimum.reduce([row.static_safety for row in rows]),
+                "rating_n": rating,
+            }
+
+    def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
+        """The numbers, None where they have no limit or are not known; origin of the ratings; the same of each row and its rings."""
+        rows, why = self._rows(points), self._why_not_modified(points)
+        numbers = {name: _stated(value) for name, value in values.items()}
+        origin = ", ".join(dict.fromkeys(row.ratings.dynamic_from for row in rows))
+        loads = "constant" if points.turn is None else "over a turn of the motion"
+        return {**numbers, "rating_from": origin, "loads": loads, "not_modified": why, "rows": [row.table for row in rows]}
+
+    def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
+        sentences, share = [], float(values["equivalent_load_n"][0] / values["rating_n"][0])
+        if share > _LARGEST_LOAD:
+            sentences.append(
+                f"life: the equivalent load is {share:.2g} of the dynamic rating; ISO 281 holds up to {_LARGEST_LOAD:g}"
+            )
+        ratio = min(float(row.viscosity_ratio[0]) for row in self._rows(points))
+        if ratio < VISCOSITY_RATIOS[0]:
+            sentences.append(
+                f"life: not modified: the viscosity ratio {ratio:.2g} is below {VISCOSITY_RATIOS[0]:g}, where ISO 281 ends"
+            )
+        return sentences
+
+    def _why_not_modified(self, points: SolvedPoints) -> str:
+        """What is missing for the modified life."""
+        return "" if self.viscosity_ratio is not None else "quantities.life.viscosity_ratio is missing"
+
+    def _rows(self, points: SolvedPoints) -> list[_Row]:
+        rows = []
+        for k, ratings in enumerate(points.problem.ratings):
+            loads, most = self._loads(points, k)
+            lives = ring_lives(loads, ratings.row.contact_ratings(ratings.dynamic).T)
+            with np.errstate(divide="ignore"):
+                safety = (ratings.row.static_contact_ratings(ratings.static).T / most).min(axis=-1)
+            row = _Row(ratings, loads, lives, safety, np.full(len(lives), np.nan), np.full(len(lives), np.nan))
+            if self.viscosity_ratio is not None:
+                ratio = np.broadcast_to(self.viscosity_ratio, len(lives))
+                limit = self.contamination * ratings.row.fatigue_load_limit(ratings.modulus)
+                with np.errstate(divide="ignore"):
+                    factor = life_factor(ratio, limit / row.equivalent_load)
+                row = attrs.evolve(row, viscosity_ratio=ratio, life_factor=factor)
+            rows.append(row)
+        return rows
+
+    def _loads(self, points: SolvedPoints, row: int) -> tuple[np.ndarray, np.ndarray]:
+        """Equivalent and largest loads (n, 2) of the rings at a row [N]."""
+        problem, places = points.problem, np.flatnonzero(points.row == row)
+        balls = slice(places[0], places[-1] + 1)  # those of a row follow each other
+        if points.turn is None:
+            load = points.load[..., balls]
+            return equivalent_loads(load), load.max(axis=-1)
+        period, moments = problem.excitation.period_s, self.turn_samples(problem)
+        turn = points.turn(moments)[..., balls]
+        largest = turn.max(axis=(1, 3))
+        if problem.kinematics.orbiting:
+            from raceway.core.contact.geometry import BallBearing
+
+            cage = np.asarray(BallBearing.of(problem.bearing.of_rows[row]).cage_speed(points.speed))
+            pitches = cage[:, None] * np.asarray(period)[..., None] * len(places) / (2.0 * pi)
+            turn = at_places(turn, pitches * np.arange(moments) / moments)
+        follows = np.abs(points.speed * period / (2.0 * pi) - 1.0) < 1e-6
+        return equivalent_loads_of_turn(turn, follows), largest
+
+
+@attrs.frozen(eq=False)
+class _Row:
+    """A row of balls: equivalent loads of its rings and their lives (n, 2), and numbers (n,)."""
+
+    ratings: LoadRatings
+    ring_loads: np.ndarray
+    ring_lives: np.ndarray
+    static_safety: np.ndarray
+    viscosity_ratio: np.ndarray
+    life_factor: np.ndarray
+
+    @property
+    def life(self) -> np.ndarray:
+        """L10r [million revolutions]."""
+        return system_life(self.ring_lives)
+
+    @property
+    def equivalent_load(self) -> np.ndarray:
+        """P [N]."""
+        return np.asarray(self.ratings.dynamic * np.cbrt(1.0 / self.life))
+
+    @property
+    def modified(self) -> np.ndarray:
+        """a_ISO L10r [million revolutions]."""
+        return np.asarray(self.life_factor * self.life)
+
+    @property
+    def table(self) -> Tables:
+        """Of one point."""
+        ratings = self.ratings
+        return {
+            "l10r_million_revolutions": _stated(self.life),
+            "equivalent_load_n": _stated(self.equivalent_load),
+            "static_safety": _stated(self.static_safety),
+            "rating_n": _stated(ratings.dynamic),
+            "rating_from": ratings.dynamic_from,
+            "static_rating_n": _stated(ratings.static),
+            "static_rating_from": ratings.static_from,
+            "fatigue_load_limit_n": _stated(ratings.row.fatigue_load_limit(ratings.modulus)),
+            "viscosity_ratio": _stated(self.viscosity_ratio),
+            "life_factor": _stated(self.life_factor),
+            "rings": [
+                {"ring": ring, "equivalent_load_n": _stated(load), "l10_million_revolutions": _stated(life)}
+                for ring, load, life in zip(("inner", "outer"), self.ring_loads.T, self.ring_lives.T, strict=True)
+            ],
+        }
+
+
+def _stated(value: np.ndarray | float) -> float | None:
+    """The number of one point, None where it is infinite or unknown."""
+    number = float(np.ravel(value)[0])
+    return number if isfinite(number) else None
