@@ -288,7 +288,7 @@ class SolvedPoints:
     row : (Z,) row of each ball;  side : (Z,) +1 where its outer race takes an axial force along +x, else -1
     speed : (n,) of the shaft [rad/s]
     load : (n, 2, Z) contact forces under the constant loads [N], 0 where a contact is open
-    contact_angle : (n, 2, Z) under them [rad], nan where a contact is open
+    contact_angles : (n, 2, Z) under them [rad], nan where a contact is open
     displacement, stiffness : (n, 5), (n, 5, 5) of the inner ring [m, rad; N/m, N/rad, N m/m, N m/rad]
     ellipse : of contact forces (n, 2, Z) peak pressure [Pa], major and minor semi-axis [m], each (n, 2, Z)
     turn : of a number T contact forces (n, T, 2, Z) at T equidistant times of a turn of the motion, from phase 0 of the force on [N];
@@ -300,11 +300,16 @@ class SolvedPoints:
     side: np.ndarray
     speed: np.ndarray
     load: np.ndarray
-    contact_angle: np.ndarray
+    contact_angles: Callable[[], np.ndarray]
     displacement: np.ndarray
     stiffness: np.ndarray
     ellipse: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
     turn: Callable[[int], np.ndarray] | None = None
+
+    @cached_property
+    def contact_angle(self) -> np.ndarray:
+        """(n, 2, Z) under ``load`` [rad], nan where a contact is open."""
+        return self.contact_angles()
 
     @cached_property
     def semi_axes(self) -> tuple[np.ndarray, np.ndarray]:

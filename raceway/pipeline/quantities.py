@@ -69,7 +69,7 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
         side=np.array([side for side, _ in problem.bearing.rows])[model.basis.row],
         speed=np.array([problem.spin_speed]),
         load=equilibrium.contact_force.reshape(1, 2, z),
-        contact_angle=np.stack([equilibrium.angle_inner, equilibrium.angle_outer])[np.newaxis],
+        contact_angles=lambda: np.stack([equilibrium.angle_inner, equilibrium.angle_outer])[np.newaxis],
         displacement=equilibrium.displacement[np.newaxis],
         stiffness=equilibrium.stiffness[np.newaxis],
         ellipse=ellipse,

@@ -35,16 +35,17 @@ from raceway.core.life import (
     system_life,
 )
 from raceway.framework.options import between, option, optional, positive
+from raceway.framework.shown import Fact, number
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import SolvedPoints
     from raceway.planning.resolve import Problem
     from raceway.scene.ratings import LoadRatings
-    from raceway.storage.tables import Tables
+    from raceway.storage.tables import ReadTables, Tables
 
 #: Moments of a turn at least.
-_MOMENTS = 32
+_MOMENTS = 20
 #: Equivalent load over dynamic rating up to which ISO 281 holds.
 _LARGEST_LOAD = 0.5
 
@@ -111,7 +112,26 @@ class Life:
         numbers = {name: _stated(value) for name, value in values.items()}
         origin = ", ".join(dict.fromkeys(row.ratings.dynamic_from for row in rows))
         loads = "constant" if points.turn is None else "over a turn of the motion"
-        return {**numbers, "rating_from": origin, "loads": loads, "not_modified": why, "rows": [row.table for row in rows]}
+        words = {"rating_from": origin, "loads": loads, "reliability": self.reliability, "not_modified": why}
+        return {**numbers, **words, "rows": [row.table for row in rows]}
+
+    @staticmethod
+    def rows(table: ReadTables) -> list[Fact]:
+        """Lives, equivalent load and static safety of the bearing."""
+        facts: list[Fact] = [("Life", "", "")]
+        for name, words, share in (
+            ("l10r", "reference life L10r", 0.9),
+            ("l10mr", "modified life Lnmr", table["reliability"]),
+        ):
+            turns, hours = table[f"{name}_million_revolutions"], table[f"{name}_hours"]
+            if turns is not None:
+                at_speed = f"{hours:.4g} h; " if hours is not None else ""
+                facts.append((words, f"{turns:.4g} million", f"{at_speed}turns that {100.0 * share:g} % reach"))
+        origin = f"C = {number(table['rating_n'], 'N')}, by {table['rating_from']}"
+        facts.append(("equivalent load P", number(table["equivalent_load_n"], "N"), origin))
+        if table["static_safety"] is not None:
+            facts.append(("static safety s0", f"{table['static_safety']:.3g}", "ISO 76, most loaded contact"))
+        return facts
 
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         sentences, share = [], float(values["equivalent_load_n"][0] / values["rating_n"][0])

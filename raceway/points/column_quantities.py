@@ -98,7 +98,7 @@ class Computed:
             side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
             speed=np.broadcast_to(problem.spin_speed, n),
             load=states.force.reshape(n, 2, z),
-            contact_angle=np.stack(bearing.contact_angles(states), axis=1),
+            contact_angles=lambda: np.stack(bearing.contact_angles(states), axis=1),
             displacement=states.q,
             stiffness=states.stiffness,
             ellipse=ellipse,

@@ -57,14 +57,18 @@ def _extreme(curve, re, im, sign):
     return max(sign * value, sign * curve[best]) * sign
 
 
-@jit(float64(VECTOR, VECTOR, float64))
-def _value(re, im, angle):
-    """Of the polynomial."""
-    value, c, s, cosine, sine = 0.0, 1.0, 0.0, np.cos(angle), np.sin(angle)
-    for h in range(re.size):
-        value += re[h] * c - im[h] * s
-        c, s = c * cosine - s * sine, s * cosine + c * sine
-    return value
+@jit(void(VECTOR, VECTOR, VECTOR, VECTOR))
+def _values(re, im, cosine, values):
+    """Of the polynomial at m equidistant angles of a turn, whose cosines and sines (2 m,) are given; forces do not pull."""
+    m = values.size
+    for i in range(m):
+        value, at = 0.0, 0
+        for h in range(re.size):
+            value += re[h] * cosine[at] - im[h] * cosine[at + m]
+            at += i
+            if at >= m:
+                at -= m
+        values[i] = max(value, 0.0)
 
 
 @jit(void(MATRIX, int64[::1], int64, VECTOR, VECTOR, MATRIX), allocates=True)
@@ -73,7 +77,13 @@ def force_extremes(force, order, spans, peak, least, turn):
     ``turn`` (T, 2 Z): forces at T equidistant times of a turn."""
     n, z = force.shape[0], order.size
     curve, re, im = np.empty(n * spans), np.empty(n * spans // 2 + 1), np.empty(n * spans // 2 + 1)
-    known = np.zeros(z)
+    known, times = np.zeros(z), turn.shape[0]
+    fine = times
+    while fine % spans:
+        fine += times
+    values = np.empty(fine)
+    angle = 2.0 * np.pi * np.arange(fine) / max(fine, 1)
+    cosine = np.concatenate((np.cos(angle), np.sin(angle)))
     for k in range(z):
         if known[k] > 0.0:
             continue
@@ -85,11 +95,15 @@ def force_extremes(force, order, spans, peak, least, turn):
                 ball = order[ball]
             _transform(curve, re, im)
             largest, smallest = _extreme(curve, re, im, 1.0), max(_extreme(curve, re, im, -1.0), 0.0)
+            _values(re, im, cosine, values)
             ball = k
             for m in range(spans):
-                for i in range(turn.shape[0]):
-                    angle = 2.0 * np.pi * (i / turn.shape[0] + m / spans)
-                    turn[i, race * z + ball] = max(_value(re, im, angle), 0.0)
+                at, step = m * (fine // spans), fine // max(times, 1)
+                for i in range(times):
+                    turn[i, race * z + ball] = values[at]
+                    at += step
+                    if at >= fine:
+                        at -= fine
                 peak[race * z + ball], least[race * z + ball] = largest, smallest
                 known[ball] = 1.0
                 ball = order[ball]
