@@ -180,9 +180,9 @@ class Life:
         if problem.kinematics.orbiting:
             from raceway.core.contact.geometry import BallBearing
 
-            cage = np.asarray(BallBearing.of(problem.bearing.of_rows[row]).cage_speed(points.speed))
-            pitches = cage[:, None] * np.asarray(period)[..., None] * len(places) / (2.0 * pi)
-            turn = at_places(turn, pitches * np.arange(moments) / moments)
+            geometry = BallBearing.of(problem.bearing.of_rows[row])
+            pitches = 0.5 * (1.0 - geometry.gamma) * points.speed * period * len(places) / (2.0 * pi)
+            turn = at_places(turn, pitches[:, None] * np.arange(moments) / moments)
         follows = np.abs(points.speed * period / (2.0 * pi) - 1.0) < 1e-6
         return equivalent_loads_of_turn(turn, follows), largest
 
