@@ -10,6 +10,7 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.scene.lubricant import Lubricant
 
 DGB7 = {"preset": "DGB7-MASTA", "tilt_arm": "pitch"}
 CASE_5 = {"bearing": DGB7, "load": {"radial": [1000.0, 0.0], "axial": 1000.0}, "supports": {"tilt": "free"}}
@@ -44,7 +45,7 @@ def test_without_a_speed_there_are_no_hours_and_without_a_viscosity_no_modified_
     found = life(CASE_5)
     assert found["l10r_hours"] is None and found["l10r_million_revolutions"] > 0.0
     assert found["l10mr_million_revolutions"] is found["l10mr_hours"] is None
-    assert found["not_modified"].startswith("quantities.life.viscosity_ratio is missing")
+    assert found["not_modified"] == "no oil: [lubricant] or quantities.life.viscosity_ratio"
     json.dumps(found, allow_nan=False)
 
 
@@ -71,6 +72,29 @@ def test_the_modified_life_is_the_standards():
     assert found["l10mr_million_revolutions"] == pytest.approx(expected, rel=1e-12)
     assert found["l10mr_hours"] == pytest.approx(expected * 1e6 / (60.0 * 12000.0), rel=1e-12)
     assert found["not_modified"] == ""
+
+
+OIL = {"oil": "VG 32", "temperature_c": 60.0}
+
+
+def test_the_oil_gives_the_viscosity_ratio():
+    """nu_1 of 46 mm at 12 000 r/min: 4500 / sqrt(12000 * 46) mm2/s."""
+    found = life({**B7206, "lubricant": OIL})
+    viscosity = Lubricant(**OIL).kinematic_viscosity
+    ratio = found["rows"][0]["viscosity_ratio"]
+    assert ratio == pytest.approx(viscosity / (1e-6 * 4500.0 / np.sqrt(12000.0 * 46.0)), rel=1e-12)
+    assert found["l10mr_million_revolutions"] > found["l10r_million_revolutions"]
+    # The oil of a film is the bearing's; a key goes before either.
+    film = life({**B7206, "contact": {"kind": "film", **OIL}})
+    assert film["rows"][0]["viscosity_ratio"] == ratio
+    assert life({**B7206, "lubricant": OIL}, viscosity_ratio=0.2)["rows"][0]["viscosity_ratio"] == 0.2
+    assert life({**CASE_5, "lubricant": OIL})["not_modified"].startswith("nothing turns")
+    # At 1 r/min this oil parts no surfaces.
+    slow = rw.run({**CASE_5, **SLOW, "lubricant": OIL})
+    assert any("the viscosity ratio is" in text for text in slow.warnings)
+    answers = rw.function({**B7206, "lubricant": OIL}, ["lubricant.temperature_c"], ["l10mr_hours"])([60.0, 90.0])
+    assert answers["l10mr_hours"][0] == pytest.approx(found["l10mr_hours"], rel=1e-9)
+    assert answers["l10mr_hours"][1] < answers["l10mr_hours"][0]
 
 
 def test_rows_of_a_set_add_up():
@@ -184,7 +208,7 @@ def test_options_out_of_range_are_refused(key, value, words):
 def test_what_the_standard_does_not_hold_for_is_told():
     heavy = rw.run({**B7206, "load": {"axial": 20000.0}, "quantities": {"life": {"viscosity_ratio": 0.05}}})
     sentences = [text for text in heavy.warnings if text.startswith("life: ")]
-    assert len(sentences) == 2 and "ISO 281 holds up to 0.5" in sentences[0] and "below 0.1" in sentences[1]
+    assert len(sentences) == 2 and "ISO 281 holds up to 0.5" in sentences[0] and "begins at 0.1" in sentences[1]
     assert heavy.to_dict()["life"]["l10mr_hours"] is None
 
 

@@ -29,6 +29,7 @@ from raceway.core.life import (
     equivalent_loads,
     equivalent_loads_of_turn,
     life_factor,
+    reference_viscosity,
     reliability_factor,
     ring_lives,
     set_rating,
@@ -39,6 +40,7 @@ from raceway.framework.shown import Fact, number
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
+    from raceway.core.columns import Number
     from raceway.framework.contracts import SolvedPoints
     from raceway.planning.resolve import Problem
     from raceway.scene.ratings import LoadRatings
@@ -108,7 +110,8 @@ class Life:
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
         """The numbers, None where they have no limit or are not known; origin of the ratings; the same of each row and its rings."""
-        rows, why = self._rows(points), self._why_not_modified(points)
+        rows = self._rows(points)
+        why = self._why_not_modified(points, rows)
         numbers = {name: _stated(value) for name, value in values.items()}
         origin = ", ".join(dict.fromkeys(row.ratings.dynamic_from for row in rows))
         loads = "constant" if points.turn is None else "over a turn of the motion"
@@ -139,32 +142,43 @@ class Life:
             sentences.append(
                 f"life: the equivalent load is {share:.2g} of the dynamic rating; ISO 281 holds up to {_LARGEST_LOAD:g}"
             )
-        ratio = min(float(row.viscosity_ratio[0]) for row in self._rows(points))
-        if ratio < VISCOSITY_RATIOS[0]:
-            sentences.append(
-                f"life: not modified: the viscosity ratio {ratio:.2g} is below {VISCOSITY_RATIOS[0]:g}, where ISO 281 ends"
-            )
+        rows = self._rows(points)
+        if any(row.viscosity_ratio[0] < VISCOSITY_RATIOS[0] for row in rows):
+            sentences.append(f"life: not modified: {self._why_not_modified(points, rows)}")
         return sentences
 
-    def _why_not_modified(self, points: SolvedPoints) -> str:
-        """What is missing for the modified life."""
-        return "" if self.viscosity_ratio is not None else "quantities.life.viscosity_ratio is missing"
+    def _why_not_modified(self, points: SolvedPoints, rows: list[_Row]) -> str:
+        """Of one point what is missing for the modified life; empty where it is known."""
+        ratio = min(row.viscosity_ratio[0] for row in rows)
+        if ratio >= VISCOSITY_RATIOS[0]:
+            return ""
+        if ratio > 0.0:
+            return f"the viscosity ratio is {ratio:.2g}, and ISO 281 begins at {VISCOSITY_RATIOS[0]:g}"
+        if points.problem.lubricant is None:
+            return "no oil: [lubricant] or quantities.life.viscosity_ratio"
+        return "nothing turns: the viscosity that an oil needs belongs to a speed"
+
+    def _viscosity_ratio(self, points: SolvedPoints, pitch_diameter: Number) -> np.ndarray:
+        """kappa (n,), nan where it is not known."""
+        ratio, oil = self.viscosity_ratio, points.problem.lubricant
+        if ratio is None and oil is not None:
+            ratio = oil.kinematic_viscosity / reference_viscosity(
+                np.where(points.speed, points.speed, np.nan), pitch_diameter
+            )
+        return np.broadcast_to(np.nan if ratio is None else ratio, points.speed.shape)
 
     def _rows(self, points: SolvedPoints) -> list[_Row]:
         rows = []
         for k, ratings in enumerate(points.problem.ratings):
             loads, most = self._loads(points, k)
             lives = ring_lives(loads, ratings.row.contact_ratings(ratings.dynamic).T)
+            equivalent = ratings.dynamic * np.cbrt(1.0 / system_life(lives))
+            ratio = self._viscosity_ratio(points, ratings.row.pitch)
             with np.errstate(divide="ignore"):
                 safety = (ratings.row.static_contact_ratings(ratings.static).T / most).min(axis=-1)
-            row = _Row(ratings, loads, lives, safety, np.full(len(lives), np.nan), np.full(len(lives), np.nan))
-            if self.viscosity_ratio is not None:
-                ratio = np.broadcast_to(self.viscosity_ratio, len(lives))
-                limit = self.contamination * ratings.row.fatigue_load_limit(ratings.modulus)
-                with np.errstate(divide="ignore"):
-                    factor = life_factor(ratio, limit / row.equivalent_load)
-                row = attrs.evolve(row, viscosity_ratio=ratio, life_factor=factor)
-            rows.append(row)
+                limit = ratings.row.fatigue_load_limit(ratings.modulus)
+                factor = life_factor(ratio, self.contamination * limit / equivalent)
+            rows.append(_Row(ratings, loads, lives, equivalent, safety, ratio, factor))
         return rows
 
     def _loads(self, points: SolvedPoints, row: int) -> tuple[np.ndarray, np.ndarray]:
@@ -194,6 +208,7 @@ class _Row:
     ratings: LoadRatings
     ring_loads: np.ndarray
     ring_lives: np.ndarray
+    equivalent_load: np.ndarray
     static_safety: np.ndarray
     viscosity_ratio: np.ndarray
     life_factor: np.ndarray
@@ -202,11 +217,6 @@ class _Row:
     def life(self) -> np.ndarray:
         """L10r [million revolutions]."""
         return system_life(self.ring_lives)
-
-    @property
-    def equivalent_load(self) -> np.ndarray:
-        """P [N]."""
-        return np.asarray(self.ratings.dynamic * np.cbrt(1.0 / self.life))
 
     @property
     def modified(self) -> np.ndarray:
