@@ -100,6 +100,7 @@ _NOTES = {
     "memory, balls that orbit, or forces that are not compiled; also where `turns`, `steps_per_turn` or `start` is given, which a transient has. "
     "Where no steady orbit is found, or it is unstable, `newmark` is taken instead and a warning says so. `raceway plan` and the table `plan` of "
     "result.json say which and why. A comparison whose points would differ takes `newmark` at all of them.",
+    "quantities": "Options of plug-ins that state numbers of a result, a table each: [life](life.md), [friction torque](friction.md).",
     "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
     "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }
@@ -121,6 +122,9 @@ def scene_page() -> str:
             sentence = (entry.plugin.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ")
             parts.append(f'### {name}.kind = "{entry.name}"\n\n{sentence}\n')
             parts += _tables(entry.plugin, name)
+    parts += ["## [quantities]\n", _NOTES["quantities"] + "\n"]
+    for entry in (e for e in registry.all() if e.kind == "quantity" and attrs.fields(e.plugin)):
+        parts += [f"### [quantities.{entry.name}]\n", *_tables(entry.plugin, f"quantities.{entry.name}")]
     for name, cls in STUDY_TABLES.items():
         parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(cls, name)]
     return "\n".join(parts)

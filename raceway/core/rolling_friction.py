@@ -228,31 +228,31 @@ def _ball_rates(contacts: BallContacts, outer_race: bool = False) -> _Rates:
     -----
     In the cage's frame, with the ball's rate w_B about an axis at the angle t against the shaft's:
     (w - w_c) d_m (1 - g_i) = w_B D cos(a_i - t), w_c d_m (1 + g_o) = w_B D cos(a_o - t).  Spin: (w - w_c) sin a_i + w_B sin(a_i - t) at
-    the inner race, w_B sin(a_o - t) - w_c sin a_o at the outer one.  It is 0 at tan t = sin a / (cos a +- D / d_m), + at the outer race.
+    the inner race, w_B sin(a_o - t) - w_c sin a_o at the outer one.  It is 0 at tan t = sin a / (cos a +- D / d_m), + at the outer race;
+    the other contact then spins by w sin a + w sin(a_i - a_o) d_m / (D (1 + v)), v = (cos(a_i - a_o) -+ g) / (1 +- g), upper signs at the
+    outer race.
 
     References
     ----------
     Jones, J. Basic Eng. 81 (1959) 1; Harris, J. Lubr. Technol. 93 (1971) 32.
     """
     (cosine, sine), ratio = contacts.direction, contacts.ball_diameter / contacts.pitch_diameter
-    axial, radial = cosine + _SIDES * ratio, sine
-    outer = axial[:, 1:], radial[:, 1:]
+    axial = cosine + _SIDES * ratio
     if outer_race:
-        return _about(*outer, contacts)
-    inner = axial[:, :1], radial[:, :1]
-    weight = contacts.load * contacts.semi_major
-    # The contact that spins under the other race's control.
-    first = weight[:, :1] * _about(*outer, contacts).spin[:, :1]
-    second = weight[:, 1:] * _about(*inner, contacts).spin[:, 1:]
-    share = first / np.maximum(first + second, 1e-300)
+        return _about(axial[:, 1:], sine[:, 1:], contacts)
+    (inner, outer), (inner_sine, outer_sine) = ((part[:, :1], part[:, 1:]) for part in (cosine, sine))
+    level, tilt = inner * outer + inner_sine * outer_sine, inner_sine * outer - inner * outer_sine
+    over = (level - _SIDES * ratio * cosine) / (contacts.along / (0.5 * contacts.ball_diameter))
+    loss = contacts.load * contacts.semi_major * np.abs(sine + tilt / (ratio * (1.0 + over)))
+    share = loss[:, :1] / np.maximum(loss[:, :1] + loss[:, 1:], 1e-300)
     by_inner, by_outer = share**_SHARPNESS, (1.0 - share) ** _SHARPNESS
     part = by_outer / (by_inner + by_outer)
-    x, y = (part * of_outer + (1.0 - part) * of_inner for of_outer, of_inner in zip(outer, inner, strict=True))
+    x, y = (part * each[:, 1:] + (1.0 - part) * each[:, :1] for each in (axial, sine))
     return _about(x, y, contacts)
 
 
 def _about(axial: np.ndarray, radial: np.ndarray, contacts: BallContacts) -> _Rates:
-    """_Rates of balls about an axis with components (n, 1, Z) along and across the shaft, of any length."""
+    """Rates of balls about an axis with components (n, 1, Z) along and across the shaft, of any length."""
     (cosine, sine), ratio = contacts.direction, contacts.ball_diameter / contacts.pitch_diameter
     width = contacts.along / (0.5 * contacts.ball_diameter)
     along = cosine * axial + sine * radial
