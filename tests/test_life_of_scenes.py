@@ -133,6 +133,15 @@ def test_keys_of_the_rating_and_of_the_life_are_columns():
     assert answers["l10mr_hours"][2] == pytest.approx(third["l10mr_hours"], rel=1e-9)
 
 
+def test_sweeps_and_bands_have_them():
+    """P of one row goes with the axial load to a power near 1, its contact angle growing a little."""
+    swept = rw.sweep(B7206, {"load.axial": [500.0, 1000.0]})["l10r_hours"].values
+    assert swept[1] == pytest.approx(life(B7206)["l10r_hours"], rel=1e-9) and 5.0 < swept[0] / swept[1] < 8.0
+    found = rw.band({**B7206, "tolerances": {"load.axial": "±10 %"}}, count=64)
+    assert 1.05 < found.high["equivalent_load_n"] / found.nominal["equivalent_load_n"] < 1.1
+    assert found.low["l10r_hours"] < found.nominal["l10r_hours"] < found.high["l10r_hours"]
+
+
 # --- along a motion
 
 

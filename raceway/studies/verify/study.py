@@ -60,7 +60,7 @@ def _numbers(case: Case, computed: dict[str, tuple[str, float]]) -> Rows:
 
 
 def _masta(case: Case, registry: Registry) -> Rows:
-    """Displacements of a deep-groove bearing with tilts free.
+    """Displacements and reference life of a deep-groove bearing with tilts free.
 
     Frame: the source's radial x is our y, its axial z our x.  Both arms of a tilt are d_m / 2: ``tilt_arm = "pitch"``.
     The source counts the axial displacement from the middle of the axial clearance, we from the first touch: add
@@ -68,7 +68,10 @@ def _masta(case: Case, registry: Registry) -> Rows:
     """
     inputs = case.inputs
     clearance, azimuth = float(inputs["Gr_mm"]) * 1e-3, inputs["first_ball_angle_deg"]
-    bearing = {"preset": "DGB7-MASTA", "radial_clearance": clearance, "first_ball_azimuth_deg": azimuth, "tilt_arm": "pitch"}
+    bearing = {
+        "preset": "DGB7-MASTA", "radial_clearance": clearance, "first_ball_azimuth_deg": azimuth, "tilt_arm": "pitch",
+        "dynamic_rating": float(inputs["C_N"]),
+    }  # fmt: skip
     radial, moment = [float(inputs["Fx_N"]), 0.0], [inputs["Mx_Nmm"] * 1e-3, 0.0]
     load = {"axial": float(inputs["Fz_N"]), "radial": radial, "moment": moment}
     result = run(_scene(case, registry, bearing=bearing, supports={"tilt": "free"}, load=load), registry)
@@ -77,6 +80,7 @@ def _masta(case: Case, registry: Registry) -> Rows:
         "dr_um": ("radial displacement [um]", 1e6 * float(np.hypot(q[1], q[2]))),
         "da_um": ("axial displacement from mid-clearance [um]", 1e6 * float(q[0] + result.model.geometry.rest[0])),
         "psi_mrad": ("tilt [mrad]", 1e3 * float(np.hypot(q[3], q[4]))),
+        "l10r_million_revolutions": ("reference life [million turns]", float(result.quantities["l10r_million_revolutions"])),
     })  # fmt: skip
 
 
