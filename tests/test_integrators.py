@@ -12,7 +12,6 @@ from raceway import PluginError, SceneError, StabilityError, build_model, hookim
 from raceway.core.record import Schedule, State
 from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.ring import Increment, _SteppedBearing
-from raceway.core.ring.system import by_address
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
@@ -115,7 +114,7 @@ def test_progress_and_stop():
 def test_the_ramp_grows_from_nothing_to_all_of_the_force_smoothly(built):
     """10 s^3 - 15 s^4 + 6 s^5, whose slope and curvature are zero at both ends."""
     excitation = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 100.0}
-    system, ramp, out = by_address(built(excitation=excitation, rotor={"mass": 2.0}).system), 0.02, np.empty(5)
+    system, ramp, out = built(excitation=excitation, rotor={"mass": 2.0}).system, 0.02, np.empty(5)
     for s in (0.0, 0.1, 0.25, 0.5, 0.9, 1.0, 1.5):
         outer_force(Outer(system.force, system.force_params, ramp), s * ramp, out)
         share = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5 if s < 1.0 else 1.0

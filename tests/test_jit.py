@@ -8,7 +8,6 @@ import shutil
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
-from ctypes import CFUNCTYPE, c_double
 from itertools import count
 from pathlib import Path
 
@@ -17,11 +16,11 @@ import numpy as np
 import pytest
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile
-from numba.experimental.function_type import _get_wrapper_address
 
 import raceway
 from raceway import LAW, PluginError, jit
 from raceway.core.jit import clock
+from raceway.core.signatures import Pointer
 from raceway.storage.kernel_cache import current_folder, make, opened, refusal
 from validation.command_line import python
 
@@ -229,6 +228,27 @@ def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeyp
     assert clock["loaded"] == loaded + 2
 
 
+@jit(numba.float64(Pointer(numba.float64(numba.float64)), numba.float64))
+def called(function, x):
+    return function(x)
+
+
+def test_a_kernel_is_called_by_its_address():
+    @jit(numba.float64(numba.float64))
+    def root(x):
+        if x < 0.0:
+            raise ValueError("negative")
+        return np.sqrt(x)
+
+    assert called(root, 4.0) == 2.0
+    with pytest.raises(ValueError, match="negative"):
+        called(root, -4.0)
+    with pytest.raises(AttributeError, match="address"):
+        called(np.sqrt, 4.0)
+    with pytest.raises(PluginError, match="does not compile"):
+        jit(numba.float64(Pointer(numba.float64(numba.float64))))(lambda function: function(1.0, 2.0)).compile()
+
+
 def test_variants_of_a_closure_from_two_processes_are_loaded_apart(tmp_path, monkeypatch):
     """numba counts the functions of a process: the symbols of both may have one number."""
     monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
@@ -239,8 +259,7 @@ def test_variants_of_a_closure_from_two_processes_are_loaded_apart(tmp_path, mon
     for kernel in kernels:
         kernel.compile()
     assert clock["loaded"] == loaded + 2
-    addresses = [_get_wrapper_address(kernel, kernel.signature) for kernel in kernels]
-    assert [CFUNCTYPE(c_double, c_double)(address)(1.0) for address in addresses] == [2.0, 3.0]
+    assert [called(kernel, 1.0) for kernel in kernels] == [2.0, 3.0]
 
 
 def test_division_by_zero_is_not_an_exception():

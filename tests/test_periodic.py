@@ -29,7 +29,6 @@ from raceway.core.periodic.search import (
 from raceway.core.periodic.steady import _equilibrium
 from raceway.core.record import Motion, Schedule
 from raceway.core.ring.orbit import steady_orbit
-from raceway.core.ring.system import by_address
 from raceway.core.time.schemes import integrate
 from raceway.integrators.methods import Periodic
 from raceway.pipeline.simulate import steady_record
@@ -320,7 +319,7 @@ def test_a_recorded_turn_leads_to_its_own_motion(which):
     """80 kg, two stable motions: a turn of each leads to that one, without it the first is found."""
     model = model_of(heavy(80.0))
     equilibrium, period = solve_equilibrium(model), model.excitation.period_s
-    system = by_address(model.system)
+    system = model.system
     problem = problem_of(system, 2.0 * np.pi / period, equilibrium.displacement)
     found = find(problem, equilibrium.displacement, equilibrium.stiffness, 1e-8)
     lasting = [one.refined.solved for one in found.all if one.floquet.verdict != "unstable"]
@@ -349,7 +348,7 @@ def test_the_linear_response_at_another_speed_has_the_lines_of_the_force():
     model = model_of(scene())
     q, w = solve_equilibrium(model).displacement, 2.0 * np.pi / model.excitation.period_s
     tangent = model.system.evaluate(q).stiffness
-    here = problem_of(by_address(model.system), w, q, False)
+    here = problem_of(model.system, w, q, False)
     for ratio in (0.85, 1.15):
         orders, lines = _response(attrs.evolve(here, speed=ratio * w, clock=w), tangent)
         assert orders.tolist() == [1]

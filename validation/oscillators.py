@@ -16,7 +16,7 @@ from scipy.special import beta
 
 from raceway import LAW, jit
 from raceway.core.periodic.collocation import Path, Problem, Solved, one_turn, solve
-from raceway.core.ring.system import System, by_address
+from raceway.core.ring.system import System
 from raceway.testing.systems import along_x, contact_system
 
 
@@ -46,11 +46,10 @@ class Oscillator:
         """As the compiled loops take it, under its force with w [rad/s]."""
         one = np.zeros((5, 5))
         one[0, 0] = 1.0
-        made = attrs.evolve(
+        return attrs.evolve(
             contact_system(0.0), law=odd_power, law_params=np.full((2, 2), [self.factor, self.exponent]), mass=self.mass * np.eye(5),
             damping=self.damping * one, stiffness=self.stiffness * one, force=along_x, force_params=np.array([self.force, speed]),
         )  # fmt: skip
-        return by_address(made)
 
     def problem(self, speed: float, turns: int = 1) -> Problem:
         system = self.system(speed)
@@ -129,11 +128,10 @@ class Pressed:
         """Under a force at ``ratio`` times the natural frequency."""
         one, w = np.zeros((5, 5)), ratio * self.natural
         one[0, 0] = 2.0 * self.damping * self.natural
-        made = attrs.evolve(
+        system = attrs.evolve(
             contact_system(1.0), law_params=np.full((2, 1), 1.0), mass=np.eye(5), damping=one, force=along_x,
             force_params=np.array([self.part, w]),
         )  # fmt: skip
-        system = by_address(made)
         return Problem(system, w, one_turn(system))
 
     def section(self, ratio: float, first: tuple[float, float], turns: int) -> np.ndarray:

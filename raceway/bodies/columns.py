@@ -21,14 +21,13 @@ from raceway.bodies.running import renewed
 from raceway.core.columns import Number, distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
-from raceway.core.jit import address_of
 from raceway.core.periodic.collocation import one_pitch
 from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
 from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
-from raceway.core.signatures import FORCE, FORCE_POINTER, LAW_POINTER, SYSTEM_POINTER, Linear
+from raceway.core.signatures import FORCE, Linear
 from raceway.framework.contracts import ContactLaw, Excitation
 from raceway.framework.duties import force_params, renews
 from raceway.framework.probe import plugin_kernel
@@ -249,7 +248,7 @@ class ColumnBearing:
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
         params = np.array([force_params(excitation) for excitation in excitations.several])[excitations.which]
-        force = address_of(plugin_kernel(excitations.several[0], "excitation", FORCE, "FORCE"), FORCE_POINTER)
+        force = plugin_kernel(excitations.several[0], "excitation", FORCE, "FORCE")
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, _MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
@@ -362,9 +361,8 @@ def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     if problem.bodies.name != "rigid":
         parts, too_stiff = elastic_parts(problem, basis, parts)
         faults[too_stiff] = LOOSE
-    kernel, base = (address_of(parts[name], SYSTEM_POINTER) for name in ("kernel", "base_kernel"))
     columns = 2 + elastic_columns(parts["scalars"][0])
-    kernels = Kernels(kernel, base, columns, address_of(parts["law"], LAW_POINTER))
+    kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"])
     load = _columns(n, problem.load.axial, *problem.load.radial, *problem.load.moment)
     tilt = problem.supports.tilt
     shaft = np.broadcast_to(0.0 if isinstance(tilt, str) else tilt, n).astype(float)

@@ -46,9 +46,8 @@ def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: 
     edges, warnings = groove_edges(problem, basis), []
     overs = ellipse_ends(basis, inner, outer, force)
     for race, (word, angle, over) in enumerate(zip(("inner", "outer"), (inner, outer), overs, strict=True)):
-        beyond = over - edges
-        if np.nanmax(beyond, initial=0.0) > 0.0:
-            ball = int(np.nanargmax(beyond))
+        if (over > edges).any():
+            ball = int(np.nanargmax(over - edges))
             bearing, edge, reach = problem.bearing.of_rows[basis.row[ball]], edges[ball], over[ball]
             depth = groove_depth(bearing)
             begins = load_at_edge(basis.of_ball(ball)[race], 0.5 * bearing.ball_diameter, edge - abs(angle[ball]))

@@ -16,7 +16,7 @@ from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.system import System, by_address
+from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
@@ -50,7 +50,6 @@ def build(problem: Problem, plan: ScenePlan) -> RigidBearing:
     basis = make_basis(problem)
     system = rigid_system(problem, plan, basis)
     probe(problem, basis, system)
-    system = by_address(system)
     return RigidBearing(basis, system, place_ring(problem, basis, system))
 
 

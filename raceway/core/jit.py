@@ -17,11 +17,11 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numba
 import numpy as np
@@ -30,10 +30,11 @@ from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.targetconfig import ConfigStack
+from numba.core.types.functions import BaseFunction
 from numba.core.typing.templates import Signature
-from numba.experimental.function_type import _get_wrapper_address
-from numba.extending import typeof_impl
 
+from raceway.core.signatures import Pointer
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
 
@@ -106,9 +107,41 @@ def _collector_off() -> Iterator[None]:
             gc.enable()
 
 
+#: A part of numba's compiler, which types some of itself only.
+_Numba = Any
+_Function: _Numba = BaseFunction
+_resolve = _Function.get_call_type
+#: Signatures and implementations of operators and functions of numba's own, by their arguments' types and the compiler's flags.
+_resolved: dict[tuple[_Numba, ...], tuple[Signature, _Numba]] = {}
+
+
+@contextmanager
+def _resolved_once() -> Iterator[None]:
+    """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types."""
+    words: dict[int, tuple[object, str]] = {}
+
+    def resolve(function: _Numba, context: _Numba, args: _Numba, kws: _Numba) -> Signature:
+        flags = ConfigStack.top_or_none()
+        if id(flags) not in words:
+            words[id(flags)] = flags, "" if flags is None else flags.summary()
+        key = function, args, tuple(kws.items()), words[id(flags)][1]
+        if key not in _resolved:
+            signature = _resolve(function, context, args, kws)
+            _resolved[key] = signature, function._impl_keys[signature.args]
+        signature, implementation = _resolved[key]
+        function._impl_keys[signature.args] = implementation
+        return signature
+
+    before, _Function.get_call_type = _Function.get_call_type, resolve
+    try:
+        yield
+    finally:
+        _Function.get_call_type = before
+
+
 @contextmanager
 def _numba_cache_in(folder: Path) -> Iterator[None]:
-    config: Any = numba.config
+    config: _Numba = numba.config
     before = config.CACHE_DIR
     config.CACHE_DIR = str(folder)
     try:
@@ -133,7 +166,7 @@ def _numbered_from(base: str) -> Iterator[None]:
         FunctionIdentity._unique_ids = before
 
 
-_Dispatcher: Any = CPUDispatcher  # numba types a part of it only
+_Dispatcher: _Numba = CPUDispatcher
 
 
 class Kernel(_Dispatcher):
@@ -149,29 +182,43 @@ class Kernel(_Dispatcher):
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
         super().__init__(function, targetoptions=options)
         self.signature = signature
+        self._compiler._customize_flags = self._flags
 
-    def compile(self, sig: object = None) -> Any:
+    @staticmethod
+    def _flags(flags: _Numba) -> _Numba:
+        """Without the entry point that C calls: no kernel is called by that."""
+        flags.no_cfunc_wrapper = True
+        return flags
+
+    def compile(self, sig: object = None) -> _Numba:
         """The machine code's entry point, for ``signature`` whatever is asked for; numba's own calls come here, too."""
         with global_compiler_lock:  # numba's, not one of our own: kernels of others may call this one
             if self._can_compile:
-                with _collector_off():
+                with _collector_off(), _resolved_once():
                     self._make()
         return self.overloads[tuple(self.signature.args)].entry_point
+
+    @cached_property
+    def address(self) -> int:
+        """Where its machine code begins, for kernels that it is an argument of."""
+        self.compile()
+        code = self.overloads[tuple(self.signature.args)]
+        return int(code.library.get_pointer_to_function(code.fndesc.llvm_func_name))
 
     @property
     def nopython_signatures(self) -> list[Any]:
         self.compile()
         return list(super().nopython_signatures)
 
-    def get_compile_result(self, sig: object) -> Any:
+    def get_compile_result(self, sig: object) -> _Numba:
         self.compile()
         return super().get_compile_result(sig)
 
-    def get_call_template(self, args: Any, kws: Any) -> Any:
+    def get_call_template(self, args: _Numba, kws: _Numba) -> _Numba:
         """The types of a call by a kernel that is being compiled, which takes a part where this kernel is not compiled by itself."""
         return super().get_call_template(args, kws) if self.overloads else self._part.get_call_template(args, kws)
 
-    def get_overload(self, sig: object) -> Any:
+    def get_overload(self, sig: object) -> _Numba:
         return super().get_overload(sig) if self.overloads else self._part.get_overload(sig)
 
     @cached_property
@@ -265,7 +312,7 @@ class Kernel(_Dispatcher):
         once each would take the same number, and the index of one would name the machine code of the other.
         """
         self.enable_caching()
-        cache_: Any = self._cache
+        cache_: _Numba = self._cache
         key = cache_._index_key(self.signature, self.targetctx.codegen())
         base = f"{cache_._impl.filename_base}.{hashlib.blake2b(repr(key).encode(), digest_size=8).hexdigest()}"
         cache_._cache_file = IndexDataCacheFile(cache_.cache_path, base, cache_._impl.locator.get_source_stamp())
@@ -302,16 +349,12 @@ class _Part(Kernel):
 
     get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
 
-    def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        super().__init__(function, signature, options)
-        self._compiler._customize_flags = self._flags
-
     @staticmethod
-    def _flags(flags: Any) -> Any:
+    def _flags(flags: _Numba) -> _Numba:
         flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
         return flags
 
-    def add_overload(self, cres: Any) -> None:
+    def add_overload(self, cres: _Numba) -> None:
         cres.library.__class__ = _Linked
         self.overloads[tuple(cres.signature.args)] = cres = cres._replace(entry_point=object())
         self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
@@ -328,70 +371,29 @@ class _Part(Kernel):
             _Dispatcher.compile(self, self.signature)
 
 
-class _KernelOfRecords(Kernel):
-    """A kernel with named tuples among its arguments, called from Python without numba's search for a matching signature.
+class _DirectKernel(Kernel):
+    """A kernel with named tuples or kernels among its arguments, called from Python without numba's search for a matching signature.
 
     That search takes 50 microseconds for nested tuples.  numba itself checks of an array what size its numbers have, but not
     that they lie one behind the other.
     """
 
-    _entry: Any = None
+    _entry = cached_property(Kernel.compile)
 
     def __call__(self, *arguments: Any) -> Any:
-        if self._entry is None:
-            self._entry = self.compile()
         _refuse_strided(arguments, self.py_func.__name__)
         return self._entry(*arguments)
 
 
-class _Address(numba.types.WrapperAddressProtocol):
-    """A kernel of one signature, its machine code looked up once; can be called from Python too.
-
-    Notes
-    -----
-    Handing a dispatcher to a compiled loop as a function pointer costs numba some 35 microseconds a call, in which it looks
-    up the machine code by the signature again; an address whose type is at hand costs 3. For a loop of milliseconds that is
-    nothing; a periodic motion is solved for in a few dozen calls of 50 microseconds each.
-    """
-
-    def __init__(self, kernel: Kernel, pointer: numba.types.FunctionType) -> None:
-        self.pointer = pointer
-        self._kernel, self._signature = kernel, pointer.signature
-        self._address = _get_wrapper_address(kernel, pointer.signature)
-
-    def __wrapper_address__(self) -> int:
-        return self._address
-
-    def signature(self) -> Signature:
-        return self._signature
-
-    def __call__(self, *arguments: Any) -> Any:
-        return self._kernel(*arguments)
-
-
-@typeof_impl.register(_Address)
-def _type_of(address: _Address, _context: object) -> numba.types.FunctionType:
-    """The type that the address was made for; numba would make an equal one anew in every call."""
-    return address.pointer
-
-
-@lru_cache(maxsize=64)
-def address_of(kernel: Kernel, pointer: numba.types.FunctionType) -> Kernel:
-    """A kernel as an address, of which there is one and which stands for it."""
-    return kernel if isinstance(kernel, _Address) else cast(Kernel, _Address(kernel, pointer))
-
-
-def plain(kernel: Kernel) -> Kernel:
-    """The kernel itself, for others that are compiled around it: around an address they could not be kept."""
-    return kernel._kernel if isinstance(kernel, _Address) else kernel
-
-
 def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
     for value in values:
-        if isinstance(value, tuple):
+        if isinstance(value, np.ndarray):
+            if not value.flags.c_contiguous:
+                raise PluginError(
+                    f"kernel `{name}` got an array that is not C-contiguous: hand over np.ascontiguousarray(...)"
+                )
+        elif isinstance(value, tuple):
             _refuse_strided(value, name)
-        elif isinstance(value, np.ndarray) and not value.flags.c_contiguous:
-            raise PluginError(f"kernel `{name}` got an array that is not C-contiguous: hand over np.ascontiguousarray(...)")
 
 
 def _named(module: str, name: str) -> Kernel:
@@ -442,8 +444,8 @@ def jit(
         options["forceinline"] = True
     if releases:
         options["nogil"] = True
-    records = any(isinstance(kind, numba.types.BaseNamedTuple) for kind in signature.args)
-    return lambda function: (_KernelOfRecords if records else Kernel)(function, signature, options)
+    direct = any(isinstance(kind, (numba.types.BaseNamedTuple, Pointer)) for kind in signature.args)
+    return lambda function: (_DirectKernel if direct else Kernel)(function, signature, options)
 
 
 def signature_words(signature: Signature) -> str:

@@ -308,7 +308,7 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
 
     Parameters
     ----------
-    system : with ``ball_count``, ``ball_columns`` and ``law_state``;  who : whose arrays they are, for the message
+    system : with ``ball_count``, ``ball_columns``, ``load`` and ``law_state``;  who : whose arrays they are, for the message
     arrays : by name: ``q``, ``v``, ``a``, ``net_force`` (5,), ``memory`` as ``law_state``, and any other (Z, columns) of balls
 
     Raises
@@ -316,12 +316,13 @@ def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
     PluginError
         With the array, its shape, and the system's.
     """
-    coordinates = (5,), "x, y, z, tilts"
-    shapes: dict[str, tuple[tuple[int, ...], str]] = dict.fromkeys(("q", "v", "a", "net_force"), coordinates)
-    shapes["memory"] = system.law_state.shape, "a row for each contact"
-    balls = (system.ball_count, system.ball_columns), "a row for each ball"
     for name, values in arrays.items():
-        shape, rows = shapes.get(name, balls)
+        if name in ("q", "v", "a", "net_force"):
+            shape, rows = system.load.shape, "x, y, z, tilts"
+        elif name == "memory":
+            shape, rows = system.law_state.shape, "a row for each contact"
+        else:
+            shape, rows = (system.ball_count, system.ball_columns), "a row for each ball"
         if values is not None and np.shape(values) != shape:
             raise PluginError(f"{who}: `{name}` has the shape {np.shape(values)}; that of this system is {shape}: {rows}")
 

@@ -4,10 +4,63 @@ A kernel carries one explicit signature of C-contiguous float64 arrays, so that 
 plug-in of its kind.  A record is a named tuple: its fields are read by name, and cost nothing in machine code.
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numba import float64, int64, types, void
+from numba.core import cgutils
+from numba.core.datamodel.models import OpaqueModel
+from numba.core.typing.templates import Signature
+from numba.extending import NativeValue, lower_builtin, register_model, unbox
+
+
+class Pointer(types.Callable, types.Opaque):
+    """The type of a kernel of one signature among the arguments of another, which calls it where its machine code begins.
+
+    numba's own type of a function asks Python twice for each at every call of a kernel from Python, and writes two ways to call it into
+    the machine code, with all fields of all records.  An argument is any object with an ``address``, see ``raceway.core.jit.Kernel``.
+    """
+
+    def __init__(self, signature: Signature) -> None:
+        self.signature = signature
+        super().__init__(f"Pointer({signature})")
+
+    def get_call_type(self, context: Any, args: tuple[types.Type, ...], kws: Mapping[str, types.Type]) -> Signature | None:
+        kinds = self.signature.args
+        fits = not kws and len(args) == len(kinds) and all(map(context.can_convert, args, kinds))
+        return cast(Signature, self.signature.replace(recvr=self)) if fits else None
+
+    def get_call_signatures(self) -> tuple[list[Signature], bool]:
+        return [self.signature], False
+
+    def get_impl_key(self, sig: Signature) -> type[types.Type]:
+        return Pointer
+
+
+register_model(Pointer)(OpaqueModel)
+
+
+@unbox(Pointer)
+def _address(_kind: Pointer, kernel: Any, wrapper: Any) -> NativeValue:
+    builder, python = wrapper.builder, wrapper.pyapi
+    number = python.object_getattr_string(kernel, "address")
+    with builder.if_then(cgutils.is_null(builder, number), likely=False):
+        builder.ret(python.get_null_object())
+    address = python.long_as_voidptr(number)
+    python.decref(number)
+    return NativeValue(address)
+
+
+@lower_builtin(Pointer, Pointer, types.VarArg(types.Any))
+def _call(context: Any, builder: Any, sig: Signature, args: list[Any]) -> Any:
+    convention, kind = context.call_conv, sig.args[0].signature
+    function = builder.bitcast(args[0], convention.get_function_type(kind.return_type, kind.args).as_pointer())
+    status, answer = convention.call_function(builder, function, kind.return_type, kind.args, args[1:])
+    with cgutils.if_unlikely(builder, status.is_error):
+        convention.return_status_propagate(builder, status)
+    return answer
+
 
 VECTOR = float64[::1]
 MATRIX = float64[:, ::1]
@@ -15,11 +68,11 @@ CUBE = float64[:, :, ::1]
 
 #: law(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate)
 LAW = void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR)
-LAW_POINTER = types.FunctionType(LAW)
+LAW_POINTER = Pointer(LAW)
 
 #: force(t, params, out (5,))
 FORCE = void(float64, VECTOR, VECTOR)
-FORCE_POINTER = types.FunctionType(FORCE)
+FORCE_POINTER = Pointer(FORCE)
 
 
 def record(kind: type[tuple[Any, ...]], *fields: types.Type) -> types.BaseTuple:
@@ -68,7 +121,7 @@ RESPONSE = record(Response, VECTOR, MATRIX, MATRIX, MATRIX)
 
 #: system(t, q (5,), v (5,), balls, contacts, constants, response) -> status, see raceway.core.ring.kernels
 SYSTEM = int64(float64, VECTOR, VECTOR, BALLS, CONTACTS, CONSTANTS, RESPONSE)
-SYSTEM_POINTER = types.FunctionType(SYSTEM)
+SYSTEM_POINTER = Pointer(SYSTEM)
 
 
 class Forces(NamedTuple):

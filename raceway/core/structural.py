@@ -18,7 +18,6 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import Ellipse, normal_displacement
-from raceway.core.jit import plain
 from raceway.core.mesh.ring_mesh import RingShape
 from raceway.core.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.patches.pressure import BeyondPatch, Contact
@@ -453,8 +452,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
     """The system of rigid rings with elastic ones in their place; ``angles`` as in ``elastic_scalars``."""
     return attrs.evolve(
         rigid,
-        kernel=condensed(plain(rigid.kernel)),
-        base_kernel=condensed(plain(rigid.base_kernel)),
+        kernel=condensed(rigid.kernel),
+        base_kernel=condensed(rigid.base_kernel),
         scalars=elastic_scalars(rigid.scalars, bodies, angles),
         table=rigid.table.copy(),
     )

@@ -6,18 +6,18 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.core.jit import signature_words
+from raceway.core.jit import Kernel, signature_words
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
 
-    from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactLaw, Excitation
 
 
@@ -46,7 +46,13 @@ def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signatu
     except (Exception, SystemExit) as why:  # a third party's own code
         raise PluginError(f"{label}: kernel() raises {type(why).__name__}: {why}") from why
     _check_compiled(kernel, label, signature, name)
-    return kernel
+    return _kernel_of(kernel, signature)
+
+
+@lru_cache(maxsize=64)
+def _kernel_of(function: Kernel, signature: Signature) -> Kernel:
+    """A function that numba's own decorator compiled as a kernel; a kernel itself."""
+    return function if isinstance(function, Kernel) else Kernel(function.py_func, signature, dict(function.targetoptions))
 
 
 def _check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:

@@ -75,9 +75,9 @@ def _foresee_free_motion(model: Model) -> None:
 
 def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:
     system = model.system
-    free = np.flatnonzero(system.free > 0.0)
-    weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm])[free]
-    scaled = weight[:, None] * system.reduced(stiffness + system.stiffness) * weight
+    free, scale = np.flatnonzero(system.free), 1.0 / system.arm
+    weight = np.array([1.0, 1.0, 1.0, scale, scale])[free]
+    scaled = weight[:, None] * (stiffness + system.stiffness)[free[:, None], free] * weight
     values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
     loose = values <= 1e-12 * max(values[-1], 0.0)
     if not loose.any():
@@ -98,7 +98,7 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
     bearing, warnings = model.problem.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
-        least, free = np.nanmin(inner[model.basis.row == k], initial=np.inf), model.problem.running.free_angle(k)
+        least, free = np.fmin.reduce(inner, where=model.basis.row == k, initial=np.inf), model.problem.running.free_angle(k)
         if least == np.inf:
             warnings.append(f"{name} lifts off: none of its balls touches the inner race")
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:

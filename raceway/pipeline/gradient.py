@@ -40,7 +40,7 @@ from raceway.core.periodic.search import PeriodicMotion, find, problem_of
 from raceway.core.periodic.steady import growth_of_disturbances, orbit_tables, refuse, synchronous_response
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import by_address, surrogate
+from raceway.core.ring.system import surrogate
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.shown import Fact, race_words, tilt_words
@@ -165,7 +165,7 @@ class _SteadyOrbit:
             why = "a force whose speed changes has no steady orbit: take 'unidirectional' or 'bidirectional'"
             raise SceneError.at("excitation.kind", model.excitation.name, why)
         refuse(model.system, Schedule(period / _SAMPLES, _SAMPLES, 1))
-        system = by_address(surrogate(model.system))
+        system = surrogate(model.system)
         q = equilibrium.displacement
         problem = problem_of(system, 2.0 * np.pi / period, q)
         if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
@@ -190,7 +190,7 @@ class _SteadyOrbit:
     def near(self, model: Model, moved: np.ndarray) -> np.ndarray:
         """The same of a neighbouring model, whose equilibrium is moved by (5,)."""
         speed, path = 2.0 * np.pi / float(model.excitation.period_s), self.solved.path
-        problem = attrs.evolve(self.solved.problem, system=by_address(surrogate(model.system)), speed=speed, clock=speed)
+        problem = attrs.evolve(self.solved.problem, system=surrogate(model.system), speed=speed, clock=speed)
         return _line(solve(problem, attrs.evolve(path, q=path.q + moved), _SOLVED), model.mass_used)
 
 

@@ -31,7 +31,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
 from raceway.core.ring.orbit import Orbit, orbit_near
-from raceway.core.ring.system import by_address, compiled, surrogate
+from raceway.core.ring.system import compiled, surrogate
 from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
@@ -305,7 +305,6 @@ def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Eq
     basis, q = attrs.evolve(model.basis, growth=growth), near.displacement
     if renews(problem.contact.law) or (problem.bearing.preloaded and problem.bearing.preload_kind == "spring"):
         q = place_ring(problem, basis, system)
-    system = by_address(system)
     bearing = attrs.evolve(model.bearing, basis=basis, system=system, guess=q)
     variant = attrs.evolve(model, problem=problem, system=system, bearing=bearing)
     return variant, solve_equilibrium(variant)

@@ -19,7 +19,7 @@ from raceway.core.periodic.search import problem_of
 from raceway.core.periodic.steady import refuse
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
-from raceway.core.ring.system import System, by_address, compiled
+from raceway.core.ring.system import System, compiled
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.contracts import Excitation
 from raceway.framework.registry import Registry
@@ -155,7 +155,7 @@ class Parameter:
     def _built(self, p: float) -> System:
         ring = compiled(self.model(p).system)
         assert ring is not None, "refused before"
-        return by_address(ring)
+        return ring
 
     def _check(self) -> None:
         """Refuse ranges that leave what the key allows, and scenes without a steady orbit."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import asin, degrees, pi
 
 import attrs
@@ -189,7 +189,7 @@ class Bearing:
         ]
         return tuple((1.0 if sign == "+" else -1.0, position) for sign, position in zip(self.signs, places, strict=True))
 
-    @property
+    @cached_property
     def of_rows(self) -> tuple[Bearing, ...]:
         """The bearing of each row by itself."""
         if has_columns(self):  # has no tables of rows

@@ -15,7 +15,6 @@ from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
 from raceway.core.periodic.search import _force_continuation, directly, highest_order, mesh_of, problem_of
 from raceway.core.record import Motion, Schedule
-from raceway.core.ring.system import by_address
 from raceway.core.signals import stiffness
 from raceway.core.time.schemes import integrate
 from raceway.integrators.methods import Newmark, Periodic
@@ -179,7 +178,7 @@ def test_no_motion_grows_out_of_rest(claim):
         scene(600.0, "free", 13500.0, True, excitation=ONE_WAY), scene(400.0, "locked", 15000.0, True, excitation=ONE_WAY)
     ):  # fmt: skip
         model = model_of(tables)
-        equilibrium, system = solve_equilibrium(model), by_address(model.system)
+        equilibrium, system = solve_equilibrium(model), model.system
         speed, q = 2.0 * np.pi / model.excitation.period_s, equilibrium.displacement
         problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
         mesh = mesh_of(problem, highest_order(problem, equilibrium.stiffness))

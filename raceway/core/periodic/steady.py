@@ -25,7 +25,7 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.system import System, by_address, compiled, surrogate
+from raceway.core.ring.system import System, compiled, surrogate
 from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
@@ -123,7 +123,7 @@ def steady(
         No such motion found.
     """
     refuse(ring, schedule)
-    system = by_address(surrogate(ring))
+    system = surrogate(ring)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
     q, tangent = _equilibrium(system.without(CAGE), start)
     problem = problem_of(system, speed, q, symmetric)
@@ -234,7 +234,6 @@ def starting_orbit(
     of one motion. Where it finds nothing, Fourier collocation (``raceway.core.ring.orbit``) may: its damped iteration ends
     on any motion.
     """
-    system = by_address(system)
     tangent = system.evaluate(q).stiffness
     problem = problem_of(system, 2.0 * np.pi / period, q)
     if not can_continue(problem, q, tangent):

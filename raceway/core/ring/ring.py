@@ -429,11 +429,11 @@ class Ring(ABC):
         direction (Z, 2) as cosine and sine; ``ball`` (Z, k): with what elastic rings add there.  Of several states q (n, 5)
         at times t (n,) everything has a first axis n."""
         states, still = np.ascontiguousarray(q, dtype=float).reshape(-1, 5), np.zeros(5)
-        times = np.broadcast_to(np.asarray(t, dtype=float), len(states))
+        times = [t] if isinstance(t, float) else np.broadcast_to(t, len(states))
         work = np.zeros((3 * len(states), 2 * self.ball_count))
         constants = Constants(self.scalars, self.table)
-        for k, state in enumerate(states):
-            place(float(times[k]), state, still, constants, work, (3 * k, 3 * k + 1, 3 * k + 2))
+        for k, (time, state) in enumerate(zip(times, states, strict=True)):
+            place(time, state, still, constants, work, (3 * k, 3 * k + 1, 3 * k + 2))
         parts = work.reshape(*np.shape(q)[:-1], 3, 2, -1).swapaxes(-1, -2)
         moved = 0.0 if ball is None else self.groove_displacement(ball)
         return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()

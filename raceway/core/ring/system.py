@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.jit import Kernel, address_of
+from raceway.core.jit import Kernel
 from raceway.core.record import check_state
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
@@ -13,9 +13,6 @@ from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, wor
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
 from raceway.core.ring.viscous_stiffness import viscous_stiffness
 from raceway.core.signatures import (
-    FORCE_POINTER,
-    LAW_POINTER,
-    SYSTEM_POINTER,
     Balls,
     Constants,
     Contacts,
@@ -79,31 +76,27 @@ class System(Ring):
 
     @property
     def ball_columns(self) -> int:
-        return (2 if self.conservative else 4) + self._elastic_columns
-
-    @property
-    def _elastic_columns(self) -> int:
-        return int(elastic_columns(self.scalars))
+        return (2 if self.conservative else 4) + elastic_columns(self.scalars)
 
     @property
     def condensed(self) -> bool:
         """Whether rings and balls are elastic: ``ball`` then has columns for that behind positions and slips."""
-        return bool(are_condensed(self.scalars))
+        return are_condensed(self.scalars)
 
     @property
     def coupled(self) -> bool:
         """Whether balls act on each other through elastic rings, which move groove centres."""
-        return self._elastic_columns == 4
+        return elastic_columns(self.scalars) == 4
 
     @property
     def rated_columns(self) -> list[int]:
         """Columns of ``ball`` that have rates: positions and what elasticity adds, not slips."""
-        return [0, 1, *range(self.ball_columns - self._elastic_columns, self.ball_columns)]
+        return [0, 1, *range(2 if self.conservative else 4, self.ball_columns)]
 
     def structural_approach(self, ball: np.ndarray) -> np.ndarray:
         """(..., 2 Z) what the elasticity of the bodies adds to the approach of each contact [m], from ball (..., Z, k)."""
-        first = self.ball_columns - self._elastic_columns
-        return np.concatenate([ball[..., first], ball[..., first + 1]], axis=-1)
+        inner, outer = (2, 3) if self.conservative else (4, 5)
+        return np.concatenate([ball[..., inner], ball[..., outer]], axis=-1)
 
     def groove_displacement(self, ball: np.ndarray) -> np.ndarray:
         """(..., Z, 2) motion (axial, radial) of the inner groove centres against the outer ones by elastic rings [m]."""
@@ -168,18 +161,15 @@ class System(Ring):
         step: Increment = AT_ONCE,
     ) -> Evaluation:
         check_state(self, "System.evaluate()", q=q, v=v, ball=ball, ball_rate=ball_rate, memory=step.memory)
-        z = self.ball_count
-        scalars = self.scalars
-        rate = np.zeros((z, self.ball_columns))
+        scalars, shape = self.scalars, (self.ball_count, self.ball_columns)
+        rate = np.zeros(shape) if ball_rate is None else np.array(ball_rate, dtype=float)
+        if not self.conservative:  # slips have no rates: what was committed stands there
+            rate[:, 2:4] = 0.0 if ball is None else np.asarray(ball)[:, 2:4]
         if ball is None:
             # Without a history nothing sticks.
-            ball, scalars = np.zeros((z, self.ball_columns)), self.without(layout.FRICTION).scalars
+            ball, scalars = np.zeros(shape), self.without(layout.FRICTION).scalars
         else:
             ball = np.array(ball, dtype=float)
-            if not self.conservative:
-                rate[:, 2:4] = ball[:, 2:4]
-        if ball_rate is not None:
-            rate[:, self.rated_columns] = ball_rate[:, self.rated_columns]
         v = np.zeros(5) if v is None else np.ascontiguousarray(v, dtype=float)
         work = self._work()
         f, K, C = np.empty(5), np.empty((5, 5)), np.empty((5, 5))
@@ -302,20 +292,6 @@ class System(Ring):
             f"no static equilibrium found after {total} iterations: {cause}, {remainder}",
             {"q": q_now, "ball": ball_now},
         )
-
-
-def by_address(system: System) -> System:
-    """The same system with its kernels as addresses."""
-    kernel = address_of(system.kernel, SYSTEM_POINTER)
-    # Identity of the two kernels tells whether forces have a potential.
-    base = kernel if system.conservative else address_of(system.base_kernel, SYSTEM_POINTER)
-    return attrs.evolve(
-        system,
-        kernel=kernel,
-        base_kernel=base,
-        law=address_of(system.law, LAW_POINTER),
-        force=address_of(system.force, FORCE_POINTER),
-    )
 
 
 @attrs.define(eq=False, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 from raceway.core.jit import Kernel
 from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start, unbounded
-from raceway.core.ring.system import System, by_address
+from raceway.core.ring.system import System
 from raceway.core.signatures import Outer, Recording, State, Steps
 from raceway.core.time.compiled import (
     BALLS,
@@ -61,10 +61,10 @@ def advance(
     state, recording = State(motion, ball, before, memory), Recording(schedule.stride, rows, probes, counters)
     step, last = schedule.first, schedule.first + schedule.steps
     # A speed that changes is another one in every step, which ends at its time.
-    addressed, longest = by_address(system), _CHUNK if system.spin is None else 1
+    longest = _CHUNK if system.spin is None else 1
     while step < last:
         count = min(longest, last - step)
-        now = addressed.at_speed((step + count) * schedule.dt)
+        now = system.at_speed((step + count) * schedule.dt)
         outer, steps = Outer(now.force, now.force_params, schedule.ramp), Steps(schedule.dt, step, count)
         count_taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
         step += count_taken

@@ -12,7 +12,8 @@ differs has the difference in its own columns of ``table``.
 from typing import NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, types, void
+from numba import float64, int64, types, void
+from numba.extending import register_jitable
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
@@ -307,13 +308,13 @@ BLOCK = 5
 SLIPS = 2
 
 
-@jit(boolean(VECTOR))
+@register_jitable
 def are_condensed(scalars):
     """Whether these constants belong to condensed bodies."""
     return scalars.size > SCALARS
 
 
-@jit(int64(VECTOR))
+@register_jitable
 def elastic_columns(scalars):
     """Columns of ``ball`` for the elasticity of the bodies, the last ones.
 
@@ -328,7 +329,7 @@ def elastic_columns(scalars):
     return 4 if scalars[COUPLED] != 0.0 else 2
 
 
-@jit(int64(VECTOR, MATRIX))
+@register_jitable
 def work_rows(scalars, table):
     """Rows of ``work`` that a system needs."""
     if not are_condensed(scalars):
