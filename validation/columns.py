@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import time
+from collections import Counter
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +14,7 @@ import numpy as np
 
 import raceway as rw
 from raceway.bodies.columns import why_no_column
+from raceway.errors import ConvergenceError
 from raceway.framework.registry import registry_with
 from raceway.points.column_quantities import of_result
 from raceway.scene.changes import continuous_keys
@@ -119,21 +124,53 @@ def _has(scene: rw.Scene, key: str, ring_growth: bool) -> bool:
     return not key.startswith("contact.") or key in {known.path for known in continuous_keys(scene)}
 
 
-def difference(seed: int) -> tuple[float, float, list[str]]:
-    """Largest relative difference of a random case: of all numbers but the displacement, of that, and the status of its points."""
-    c, worst, moved = case(seed), 0.0, 0.0
-    f = rw.function(c.scene, c.columns, c.outputs, tolerance=3e-10, threads=1)
-    answer = f(**c.columns)
-    for row, status in enumerate(answer["status"]):
-        if status != rw.PointStatus.COMPUTED:
-            continue
-        result = rw.run(f.scene_at({key: column[row] for key, column in c.columns.items()}))
-        for name in c.outputs:
-            value = np.asarray(of_result(name, result))
-            # Without damping Im Z is what rounding leaves of Z.
-            size = abs(result.identification.dynamic_stiffness) if name in ("z_real", "z_imag") else np.abs(value).max()
-            if name == "largest_multiplier":
-                size *= 1e3  # a run's mesh gives it to 1e-6
-            off = float(np.abs(answer[name][row] - value).max() / size)
-            worst, moved = (worst, max(moved, off)) if name == "displacement" else (max(worst, off), moved)
-    return worst, moved, [rw.PointStatus(status).name for status in answer["status"]]
+@attrs.frozen
+class Comparison:
+    """Points of random cases beside runs.
+
+    Attributes
+    ----------
+    worst : largest relative difference of all numbers but the displacement;  moved : of that
+    status : how many points are computed, run, refused or failed, and which a run does not solve, "ONLY_COMPUTED"
+    seconds : processor time
+    """
+
+    worst: float
+    moved: float
+    status: Counter[str]
+    seconds: float
+
+    @classmethod
+    def of(cls, seed: int) -> Comparison:
+        """Of one random case."""
+        c, worst, moved, start = case(seed), 0.0, 0.0, time.process_time()
+        f = rw.function(c.scene, c.columns, c.outputs, tolerance=3e-10, threads=1)
+        answer = f(**c.columns)
+        status = [rw.PointStatus(number).name for number in answer["status"]]
+        for row in np.flatnonzero(answer["status"] == rw.PointStatus.COMPUTED):
+            try:
+                result = rw.run(f.scene_at({key: column[row] for key, column in c.columns.items()}))
+            except ConvergenceError:
+                status[row] = "ONLY_COMPUTED"
+                continue
+            for name in c.outputs:
+                value = np.asarray(of_result(name, result))
+                # Without damping Im Z is what rounding leaves of Z.
+                size = abs(result.identification.dynamic_stiffness) if name in ("z_real", "z_imag") else np.abs(value).max()
+                if name == "largest_multiplier":
+                    size *= 1e3  # a run's mesh gives it to 1e-6
+                off = float(np.abs(answer[name][row] - value).max() / size)
+                worst, moved = (worst, max(moved, off)) if name == "displacement" else (max(worst, off), moved)
+        return cls(worst, moved, Counter(status), time.process_time() - start)
+
+
+def compare(seeds: Iterable[int], processes: int = 1) -> Comparison:
+    """Random cases, shared among processes."""
+    if processes > 1:
+        with ProcessPoolExecutor(processes) as pool:
+            parts = list(pool.map(Comparison.of, seeds, chunksize=10))
+    else:
+        parts = list(map(Comparison.of, seeds))
+    status = sum((part.status for part in parts), Counter[str]())
+    worst, moved = max(part.worst for part in parts), max(part.moved for part in parts)
+    return Comparison(worst, moved, status, sum(part.seconds for part in parts))

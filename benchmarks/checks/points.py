@@ -11,7 +11,7 @@ import numpy as np
 
 import raceway as rw
 from benchmarks.checks import Row, below
-from validation.columns import difference
+from validation.columns import compare
 
 TITLE = "The bearing as a function: time of a point, and equality with runs"
 COMMAND = "python -m benchmarks.checks points"
@@ -134,14 +134,11 @@ def rows() -> list[Row]:
 
 
 def _equality() -> Row:
-    differences = [difference(seed) for seed in range(1000, 1000 + _CASES)]
-    worst = max(worst for worst, _, _ in differences)
-    status = [word for _, _, words in differences for word in words]
-    computed = status.count("COMPUTED")
-    note = f"{computed} of {len(status)} points in the loop; displacements {max(moved for _, moved, _ in differences):.1e}"
+    compared = compare(range(1000, 1000 + _CASES))
+    note = f"{compared.status['COMPUTED']} of {compared.status.total()} points in the loop; displacements {compared.moved:.1e}; {compared.seconds:.0f} CPU-s"
     return below(
         "largest difference from runs, bearings, sets, laws, tilts, growth, moments",
-        float(f"{worst:.1e}"),
+        float(f"{compared.worst:.1e}"),
         1e-9,
         COMMAND,
         note,
