@@ -12,11 +12,10 @@ from raceway.core.thermal import (
     NODES,
     STEEL_CONDUCTIVITY,
     STEEL_EFFUSIVITY,
-    flows,
+    Network,
     oil_convection,
     rolling_contact,
     seat_emission,
-    temperatures,
 )
 
 _INLET, _AMBIENT = 60.0, 20.0
@@ -30,7 +29,7 @@ def _network(n: int = 50) -> tuple[dict[str, np.ndarray], np.ndarray]:
 def test_the_network_balances_its_energy():
     """What arises leaves with the oil and to the ambient, to 1e-9, at each node, too."""
     conductances, heats = _network()
-    along = flows(conductances, temperatures(conductances, heats, _INLET, _AMBIENT), heats, _INLET, _AMBIENT)
+    along = Network(conductances, heats, _INLET, _AMBIENT).flows
     leaving = along["throughput"] + along["shaft_ambient"] + along["housing_ambient"]
     assert_allclose(leaving, heats.sum(axis=1), rtol=1e-12)
     for k, node in enumerate(NODES):
@@ -40,7 +39,7 @@ def test_the_network_balances_its_energy():
 
 def test_without_heat_at_one_temperature():
     conductances, heats = _network()
-    assert_allclose(temperatures(conductances, 0.0 * heats, 45.0, 45.0), 45.0, rtol=1e-12)
+    assert_allclose(Network(conductances, 0.0 * heats, 45.0, 45.0).temperatures, 45.0, rtol=1e-12)
 
 
 @pytest.mark.parametrize("last", ["throughput", "shaft_ambient"])
@@ -50,7 +49,7 @@ def test_two_resistances_in_series(last):
     conductances = dict.fromkeys(LINKS, 1e-12) | {way: 4.0, last: 5.0}
     heats = np.zeros((1, 6))
     heats[0, 0] = 100.0
-    level = temperatures(conductances, heats, 30.0, 30.0)[0]
+    level = Network(conductances, heats, 30.0, 30.0).temperatures[0]
     assert_allclose(level[0] - 30.0, 100.0 / 4.0 + 100.0 / 5.0, rtol=1e-9)
 
 
@@ -58,24 +57,24 @@ def test_infinite_conductances_are_the_limit_of_large_ones():
     """Of some links and of all: then every node is at the inlet's temperature, and the oil takes what the ambient does not."""
     conductances, heats = _network()
     for links in (["inner_oil", "inner_balls", "balls_oil"], ["throughput"], ["outer_housing", "inner_shaft", "outer_oil"]):
-        infinite = temperatures(conductances | dict.fromkeys(links, np.inf), heats, _INLET, _AMBIENT)
-        large = temperatures(conductances | dict.fromkeys(links, 1e9), heats, _INLET, _AMBIENT)
+        infinite = Network(conductances | dict.fromkeys(links, np.inf), heats, _INLET, _AMBIENT).temperatures
+        large = Network(conductances | dict.fromkeys(links, 1e9), heats, _INLET, _AMBIENT).temperatures
         assert_allclose(infinite, large, rtol=1e-5)
     every = {link: value if "ambient" in link else np.inf for link, value in conductances.items()}
-    level = temperatures(every, heats, _INLET, _AMBIENT)
+    level = Network(every, heats, _INLET, _AMBIENT).temperatures
     assert_allclose(level, _INLET, rtol=1e-15)
-    along = flows(every, level, heats, _INLET, _AMBIENT)
+    along = Network(every, heats, _INLET, _AMBIENT).flows
     assert_allclose(along["throughput"] + along["shaft_ambient"] + along["housing_ambient"], heats.sum(axis=1), rtol=1e-12)
 
 
 def test_more_heat_is_warmer_and_more_oil_is_colder():
     conductances, heats = _network()
-    level = temperatures(conductances, heats, _INLET, _AMBIENT)
-    warmer = temperatures(conductances, heats + np.eye(6)[2], _INLET, _AMBIENT)
+    level = Network(conductances, heats, _INLET, _AMBIENT).temperatures
+    warmer = Network(conductances, heats + np.eye(6)[2], _INLET, _AMBIENT).temperatures
     assert (warmer > level).all() and (np.argmax(warmer - level, axis=1) == 2).all()
     more_oil = conductances | {"throughput": 2.0 * conductances["throughput"]}
     hot = level[:, -1] > _INLET
-    assert (temperatures(more_oil, heats, _INLET, _AMBIENT)[hot] < level[hot]).all()
+    assert (Network(more_oil, heats, _INLET, _AMBIENT).temperatures[hot] < level[hot]).all()
 
 
 def test_a_fast_contact_takes_up_what_two_half_spaces_exchange():

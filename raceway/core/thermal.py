@@ -15,7 +15,9 @@ Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapter 7 (
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 
+import attrs
 import numpy as np
 from scipy.special import ellipkm1
 
@@ -45,61 +47,64 @@ JOINT = 5200.0
 _EMISSION, _LARGE_SEATS, _LARGE_POWER = 16_000.0, 0.05, -0.34
 
 
-def temperatures(conductances: Mapping[str, Number], heats: np.ndarray, inlet: Number, ambient: Number) -> np.ndarray:
-    """(n, 6) temperatures of ``NODES``, in the unit and from the origin of ``inlet`` and ``ambient``.
+@attrs.frozen(eq=False, slots=False)
+class Network:
+    """The network of a bearing at n operating points.
 
-    Parameters
+    Attributes
     ----------
     conductances : of all ``LINKS`` [W/K], numbers or columns (n,); ``inf`` gives both nodes one temperature
-    heats : (n, 6) heat that arises in the nodes [W]
+    heats : (n, 6) heat that arises in the ``NODES`` [W];  inlet, ambient : temperatures, numbers or columns (n,)
 
     Notes
     -----
     Nodes of one temperature are one unknown.  An infinite path from the inlet to the ambient would be a contradiction: the ambient's
     then counts.
     """
-    n, names = len(heats), (*NODES, *_KNOWN)
-    group = list(range(len(names)))
-    infinite = {link for link, value in conductances.items() if np.all(np.isinf(value))}
-    for link in infinite:
-        first, second = (group[names.index(node)] for node in LINKS[link])
-        group = [max(first, second) if member in (first, second) else member for member in group]
-    balance, arising = np.zeros((n, len(names), len(names))), np.zeros((n, len(names)))
-    for node in range(len(NODES)):
-        arising[:, group[node]] += heats[:, node]
-    for link in LINKS.keys() - infinite:
-        i, j = (group[names.index(node)] for node in LINKS[link])
-        for row, column in ((i, j), (j, i)):
-            balance[:, row, row] += conductances[link]
-            balance[:, row, column] -= conductances[link]
-    free, known = sorted({member for member in group if member < len(NODES)}), [len(NODES), len(NODES) + 1]
-    level = np.zeros((n, len(names)))
-    level[:, known] = np.stack([np.broadcast_to(inlet, n), np.broadcast_to(ambient, n)], axis=1)
-    if free:
-        loads = arising[:, free] - np.einsum("nij,nj->ni", balance[:, free][:, :, known], level[:, known])
-        level[:, free] = np.linalg.solve(balance[:, free][:, :, free], loads[..., None])[..., 0]
-    return level[:, group[: len(NODES)]]
 
+    conductances: Mapping[str, Number]
+    heats: np.ndarray
+    inlet: Number
+    ambient: Number
 
-def flows(
-    conductances: Mapping[str, Number], level: np.ndarray, heats: np.ndarray, inlet: Number, ambient: Number
-) -> dict[str, np.ndarray]:
-    """Heat (n,) [W] along each of ``LINKS``, from its first node to its second; nan where the link is infinite, but what the oil
-    carries off: all that does not go to the ambient.
+    @cached_property
+    def temperatures(self) -> np.ndarray:
+        """(n, 6) of ``NODES``, in the unit and from the origin of ``inlet`` and ``ambient``."""
+        n, names = len(self.heats), (*NODES, *_KNOWN)
+        group = list(range(len(names)))
+        infinite = {link for link, value in self.conductances.items() if np.all(np.isinf(value))}
+        for link in infinite:
+            first, second = (group[names.index(node)] for node in LINKS[link])
+            group = [max(first, second) if member in (first, second) else member for member in group]
+        balance, arising = np.zeros((n, len(names), len(names))), np.zeros((n, len(names)))
+        for node in range(len(NODES)):
+            arising[:, group[node]] += self.heats[:, node]
+        for link in LINKS.keys() - infinite:
+            i, j = (group[names.index(node)] for node in LINKS[link])
+            for row, column in ((i, j), (j, i)):
+                balance[:, row, row] += self.conductances[link]
+                balance[:, row, column] -= self.conductances[link]
+        free, known = sorted({member for member in group if member < len(NODES)}), [len(NODES), len(NODES) + 1]
+        level = np.zeros((n, len(names)))
+        level[:, known] = np.stack([np.broadcast_to(self.inlet, n), np.broadcast_to(self.ambient, n)], axis=1)
+        if free:
+            loads = arising[:, free] - np.einsum("nij,nj->ni", balance[:, free][:, :, known], level[:, known])
+            level[:, free] = np.linalg.solve(balance[:, free][:, :, free], loads[..., None])[..., 0]
+        return level[:, group[: len(NODES)]]
 
-    Parameters
-    ----------
-    level : (n, 6) ``temperatures``;  the others as there
-    """
-    at = dict(zip(NODES, level.T, strict=True)) | {"inlet": inlet, "ambient": ambient}
-    with np.errstate(invalid="ignore"):
-        along = {
-            link: np.where(np.isinf(conductances[link]), np.nan, conductances[link] * (at[first] - at[second]))
-            for link, (first, second) in LINKS.items()
-        }
-    others = heats.sum(axis=1) - along["shaft_ambient"] - along["housing_ambient"]
-    along["throughput"] = np.where(np.isnan(along["throughput"]), others, along["throughput"])
-    return along
+    @property
+    def flows(self) -> dict[str, np.ndarray]:
+        """Heat (n,) [W] along each of ``LINKS``, from its first node to its second; nan where the link is infinite, but what the
+        oil carries off: all that does not go to the ambient."""
+        at = dict(zip(NODES, self.temperatures.T, strict=True)) | {"inlet": self.inlet, "ambient": self.ambient}
+        along = {}
+        for link, (first, second) in LINKS.items():
+            infinite = np.all(np.isinf(self.conductances[link]))
+            difference = at[first] - at[second]
+            along[link] = np.full_like(difference, np.nan) if infinite else self.conductances[link] * difference
+        if np.isnan(along["throughput"]).any():
+            along["throughput"] = self.heats.sum(axis=1) - along["shaft_ambient"] - along["housing_ambient"]
+        return along
 
 
 def rolling_contact(
