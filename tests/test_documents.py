@@ -73,7 +73,7 @@ SLOW = {
     "precision",
     "rig",
 }
-SLOW |= {"film", "fit", "follow", "ross", "sensitivities", "stability", "sweep", "view"}
+SLOW |= {"film", "fit", "follow", "measurements", "ross", "sensitivities", "stability", "sweep", "view", "warm_spindle"}
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}
 #: Languages of listings that nothing runs: text, and what the site reads.

@@ -74,6 +74,7 @@ _ORDER = (
     ("mesh", "mesher"),
     ("contact", "contact_law"),
     ("lubricant", None),
+    ("heat", None),
     ("kinematics", None),
     ("mounting", None),
     ("integrator", "integrator"),
@@ -102,6 +103,8 @@ _NOTES = {
     "result.json say which and why. A comparison whose points would differ takes `newmark` at all of them.",
     "quantities": "Options of plug-ins that state numbers of a result, a table each: [life](life.md), [friction torque](friction.md).",
     "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
+    "heat": "Steady temperatures are computed ([a warm spindle](warm_spindle.md)): `mounting`'s temperatures and `lubricant.temperature_c` follow. Left out, they "
+    "are given numbers.",
     "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
 }
 

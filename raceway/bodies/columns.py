@@ -135,7 +135,7 @@ def why_no_column(scene: Scene, key: str) -> str:
     of_law = key in law_keys(scene)
     if of_law and not _same_kernel(scene.contact.law, key.partition(".")[2]):
         return f"the contact law's kernel is made from {key}"
-    known = of_law or key.startswith(("excitation.", "quantities.", "lubricant.")) or key in _KEYS and not apart
+    known = of_law or key.startswith(("excitation.", "quantities.", "lubricant.", "heat.")) or key in _KEYS and not apart
     return "" if known else f"{key} changes more than numbers"
 
 
@@ -280,6 +280,15 @@ class ColumnBearing:
         """Its numbers at some of the points, by their indices; problem and basis are those of all."""
         return attrs.evolve(self, points=_rows(self.points, points), faults=self.faults[points])
 
+    @np.errstate(all="ignore")
+    def warmed(self, points: np.ndarray, problem: Problem) -> ColumnBearing:
+        """Of a mounted bearing some points, by their indices, at other temperatures of rings, balls and oil: those of ``problem``."""
+        part, basis, before = self.at(points), make_basis(problem), self.basis.growth
+        scalars, table = part.points.scalars, part.points.table
+        scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common - before.common[points]
+        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball - before.by_ball[points]
+        return _running(attrs.evolve(part, problem=problem, basis=basis))
+
     def _system(self, row: int) -> System:
         """The bearing at one point, at rest."""
         scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
@@ -354,6 +363,16 @@ class ColumnBearing:
 @np.errstate(all="ignore")  # of points that contradict themselves
 def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     """The bearing of ``column_problem``; ``plan`` is that of a scene with the numbers of one point."""
+    return _running(mounted_columns(problem, plan))
+
+
+def _running(bearing: ColumnBearing) -> ColumnBearing:
+    return renewed(bearing) if renews(bearing.problem.contact.law) else bearing
+
+
+@np.errstate(all="ignore")
+def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
+    """The same with the contact law as at standstill."""
     n, basis = problem.points[0], make_basis(problem)
     parts = contact_parts(problem, plan, basis)
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
@@ -371,10 +390,9 @@ def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
     bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, faults)
     if some(problem.bearing.preload):
-        bearing = bearing._preloaded()
-    else:
-        points.guess[:] = first_guess(problem, basis)
-    return renewed(bearing) if renews(problem.contact.law) else bearing
+        return bearing._preloaded()
+    points.guess[:] = first_guess(problem, basis)
+    return bearing
 
 
 def _columns(n: int, *numbers: Number) -> np.ndarray:

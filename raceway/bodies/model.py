@@ -25,7 +25,7 @@ from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.orbit import Orbit, at_rest, from_orbit, static_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
-from raceway.errors import PluginError
+from raceway.errors import PluginError, SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door
 from raceway.planning.plan import ScenePlan, make_plan
@@ -246,6 +246,8 @@ def build_model(scene: Scene, plan: ScenePlan | None = None) -> Model:
     2.06
     """
     plan = make_plan(scene) if plan is None else plan
+    if scene.heat is not None and plan.problem.mounting is scene.mounting:
+        raise SceneError.at("heat", None, "is for runs, functions, sweeps and bands: give [mounting] its temperatures here")
     return model_of(plan.problem if plan.problem.scene is scene else resolve(scene), plan)
 
 

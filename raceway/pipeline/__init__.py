@@ -9,5 +9,6 @@ transient_error  relative errors of Z: what has not died out, and what the start
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults
 gradient         derivatives by the keys of the scene, and the band over tolerances to first order
 quantities       numbers of plug-ins at one solved point
+warm             steady temperatures of scenes with [heat]
 result           the result: result.json, formats of results;  run_screen, run_parts: its tables on a screen
 """

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 import attrs
 import numpy as np
 
+from raceway.bodies.columns import ColumnBearing
 from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
+from raceway.core.ring.equilibria import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
 from raceway.framework.registry import default_registry
@@ -74,6 +77,29 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
         stiffness=equilibrium.stiffness[np.newaxis],
         ellipse=ellipse,
         turn=partial(_turn, record, problem.period) if repeats and record is not None else None,
+    )
+
+
+def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:
+    """n points of a compiled loop as quantities see them; ``turn`` : of ``SolvedPoints``."""
+    problem, n, z = bearing.problem, len(states.status), states.force.shape[1] // 2
+
+    def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
+        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
+        return pressure, major, minor
+
+    return SolvedPoints(
+        problem=problem,
+        row=bearing.basis.row,
+        side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
+        speed=np.broadcast_to(problem.spin_speed, n),
+        load=states.force.reshape(n, 2, z),
+        contact_angles=lambda: np.stack(bearing.contact_angles(states), axis=1),
+        displacement=states.q,
+        stiffness=states.stiffness,
+        ellipse=ellipse,
+        turn=turn,
     )
 
 

@@ -130,6 +130,10 @@ def _run(
 ) -> Result:
     started, processor = working_clock(), working_process_time()
     plan = make_plan(scene)
+    if scene.heat is not None:
+        from raceway.pipeline.warm import warm_plan
+
+        plan = warm_plan(scene)
     allowance = _Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
@@ -163,6 +167,10 @@ def _run(
     }
     simulation = answer.motions[-1] if answer.motions else None
     stated = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
+    if scene.heat is not None:
+        from raceway.pipeline.warm import band_of_heat, friction_band
+
+        stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
     return Result(
         model=model,
         equilibrium=equilibrium,

@@ -125,6 +125,36 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
 )  # fmt: skip
 
 
+_HEAT: tuple[Rule[Problem], ...] = (
+    Rule(
+        "heat", lambda p: p.heat is not None and p.lubricant is None, "needs the oil's viscosity: give a table [lubricant]",
+    ),
+    *(
+        Rule(
+            f"mounting.{node}_temperature",
+            lambda p, node=node: p.heat is not None and getattr(p.scene.mounting, f"{node}_temperature"),  # type: ignore[misc]
+            "is computed where there is a table [heat]: delete one of them",
+        )
+        for node in ("inner", "outer", "ball")
+    ),
+    *(
+        Rule(
+            f"heat.{key}",
+            lambda p, key=key, sizes=sizes: p.heat is not None and getattr(p.heat, key) == "auto"  # type: ignore[misc]
+            and any(getattr(row, size) is None for row in p.bearing.of_rows for size in sizes),
+            f"is 'auto': give a number, or the bearing's {' and '.join(f'`{size}`' for size in sizes)}, from which it follows",
+        )
+        for keys, sizes in (
+            (("inner_oil", "outer_oil"), ("width",)),
+            (("inner_shaft",), ("bore", "width")),
+            (("outer_housing",), ("outer_diameter", "width")),
+            (("shaft_ambient", "housing_ambient"), ("bore", "outer_diameter", "width")),
+        )
+        for key in keys
+    ),
+)  # fmt: skip
+
+
 _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
         "kinematics.orbiting", lambda p: not p.bearing.equal_rows and p.kinematics.orbiting,
@@ -193,7 +223,7 @@ def refuse_what_cannot_run(problem: Problem) -> None:
     except SceneError as error:  # a body that lacks its thermal expansion
         growth = error.mistakes
     faults = [
-        *problem.body_kind.faults(), *mistakes(_CONTACTS, problem), *growth, *mistakes(_MOTION, problem),
+        *problem.body_kind.faults(), *mistakes(_CONTACTS, problem), *mistakes(_HEAT, problem), *growth, *mistakes(_MOTION, problem),
     ]  # fmt: skip
     if faults:
         raise SceneError(faults)

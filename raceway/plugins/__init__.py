@@ -5,6 +5,7 @@ identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
 ball_pass, friction, life        quantities: ball-pass frequencies; friction torque by source; reference and modified life
+heat                             quantities: temperatures, and the thermal network
 processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
 system_libraries                 system libraries that packages for meshes and pictures need
@@ -20,6 +21,7 @@ from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.friction import Friction
 from raceway.plugins.gmsh import Gmsh
+from raceway.plugins.heat import Temperatures
 from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
 from raceway.plugins.life import Life
 from raceway.plugins.measured_force import Measured
@@ -52,7 +54,7 @@ def raceway_formats() -> list[type]:
 
 @hookimpl
 def raceway_quantities() -> list[type]:
-    return [BallPass, Friction, Life]
+    return [BallPass, Friction, Life, Temperatures]
 
 
 @hookimpl

@@ -1,47 +1,40 @@
-"""Where the heat of friction goes: conductances and heats of a bearing's thermal network, and its temperatures.
+"""Where the heat of friction goes: the thermal network of a bearing at solved points, and its temperatures.
 
 Notes
 -----
 The heat of a contact goes to both of its bodies in halves, drag of the balls to the oil, that of seals to both rings in halves.  Conductances
-that the table [heat] leaves out follow from ``raceway.core.thermal``: contacts at the mean load and angle of the loaded balls of each
-row, with the film of Hamrock and Dowson between them where it is piezoviscous and elastic; convection at the temperature of the oil;
-joints and emission from the sizes of the rings.  A scene with [heat] is solved for where the temperatures it is computed with are
-those that follow (``raceway.pipeline.warm``).
+that are 'auto' in the table [heat] follow from ``raceway.core.thermal``: contacts at the mean load and angle of the loaded balls of each
+row, with the piezoviscous-elastic film of Hamrock and Dowson between them; convection at the temperature of the oil; joints and
+emission from the sizes of the rings.  A scene with [heat] is solved where the temperatures that it is computed with are those
+that follow from it (``raceway.pipeline.warm``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from collections.abc import Callable, Mapping, Sequence
+from math import isinf, isnan
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
-from raceway.core.columns import is_column
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.core.columns import Number
+    from raceway.core.thermal import Network
     from raceway.framework.contracts import SolvedPoints
+    from raceway.framework.shown import Fact
     from raceway.planning.resolve import Problem
-    from raceway.storage.tables import Tables
+    from raceway.scene.bearing import Bearing
+    from raceway.storage.tables import ReadTables, Tables
 
 #: 0 degrees Celsius [K].
 ZERO_C = 273.15
-_NAMES = ("inner", "balls", "outer", "shaft", "housing", "oil")
-_WORDS = {"inner": "the inner rings", "balls": "the balls", "outer": "the outer rings", "oil": "the oil in the bearing"}
-_NUMBERS = (
-    *(
-        Quantity(f"temperature_{node}", "K", f"steady temperature of {_WORDS.get(node, 'the ' + node)}",
-                 f"heat.temperatures_k.{node}", symbol=f"T_{node}", label=f"temperature, {node}")
-        for node in _NAMES
-    ),
-    Quantity("heat_w", "W", "heat of friction in contacts, oil and seals", "heat.heat_w", symbol="P", label="heat"),
-    Quantity("heat_to_oil", "W", "heat that the oil carries off", "heat.flows_w.oil", label="heat to the oil"),
-    Quantity("heat_to_shaft", "W", "heat that the shaft gives to the ambient", "heat.flows_w.shaft", label="heat to the shaft"),
-    Quantity("heat_to_housing", "W", "heat that the housing gives to the ambient", "heat.flows_w.housing",
-             label="heat to the housing"),
-)  # fmt: skip
+_NODES = {"inner": "the inner rings", "balls": "the balls", "outer": "the outer rings", "shaft": "the shaft",
+          "housing": "the housing", "oil": "the oil in the bearing"}  # fmt: skip
+_FLOWS = {"oil": "throughput", "shaft": "shaft_ambient", "housing": "housing_ambient"}
 
 
 @attrs.frozen
@@ -49,10 +42,177 @@ class Temperatures:
     """Steady temperatures of rings, balls, shaft, housing and oil, from the table [heat]."""
 
     name: ClassVar[str] = "heat"
-    numbers: ClassVar[tuple[Quantity, ...]] = _NUMBERS
+    numbers: ClassVar[tuple[Quantity, ...]] = (
+        *(
+            Quantity(f"temperature_{node}_k", "K", f"steady temperature of {words}", f"heat.temperatures_k.{node}", symbol=f"T_{node}")
+            for node, words in _NODES.items()
+        ),
+        *(
+            Quantity(f"heat_to_{way}_w", "W", f"heat of friction that leaves by the {way}", f"heat.flows_w.{way}")
+            for way in _FLOWS
+        ),
+        Quantity("heat_w", "W", "of friction in contacts, oil and seals", "heat.heat_w"),
+    )  # fmt: skip
 
     def why_not(self, problem: Problem) -> str:
         return "" if problem.heat is not None else "a table [heat] says what carries the heat off"
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        return numbers(points)
+        network = thermal_network(points)
+        level, flows = network.temperatures + ZERO_C, network.flows
+        return {
+            **{f"temperature_{node}_k": level[:, k] for k, node in enumerate(_NODES)},
+            **{f"heat_to_{way}_w": flows[link] for way, link in _FLOWS.items()},
+            "heat_w": network.heats.sum(axis=1),
+        }
+
+    def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
+        """``temperatures_k``, ``flows_w`` (also along each link of the network, null where it is infinite) and ``heat_w``."""
+        import numpy as np
+
+        network, numbers = thermal_network(points), {name: float(value[0]) for name, value in values.items()}
+        conductances = {name: float(np.reshape(value, -1)[0]) for name, value in network.conductances.items()}
+        return {
+            "temperatures_k": {node: numbers[f"temperature_{node}_k"] for node in _NODES},
+            "flows_w": {way: numbers[f"heat_to_{way}_w"] for way in _FLOWS},
+            "heat_w": numbers["heat_w"],
+            "links_w": {name: None if isnan(flow[0]) else float(flow[0]) for name, flow in network.flows.items()},
+            "conductances_w_per_k": {name: None if isinf(value) else value for name, value in conductances.items()},
+        }
+
+    def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
+        """Where the oil is beyond the temperatures of its viscosity."""
+        from raceway.scene.lubricant import COLDEST, HOTTEST
+
+        oil, celsius = points.problem.lubricant, float(values["temperature_oil_k"][0]) - ZERO_C
+        if oil is None or not oil.thins or COLDEST <= celsius <= HOTTEST:
+            return []
+        return [
+            f"the oil in the bearing is at {celsius:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
+            "along Walther's line. Give more oil (heat.oil_flow)"
+        ]
+
+    @staticmethod
+    def rows(table: ReadTables) -> list[Fact]:
+        """Temperatures, heat and running preload, with their bands."""
+        band = table.get("band", {})
+        rows: list[Fact] = [("Temperatures", "", "steady; within the bands of friction and conductances")]
+        for node, kelvin in table["temperatures_k"].items():
+            ends = band.get("temperatures_k", {}).get(node)
+            rows.append((node, f"{kelvin - ZERO_C:.4g} °C", _within(ends, ZERO_C, "°C")))
+        ways = ", ".join(f"{value:.3g} W by the {way}" for way, value in table["flows_w"].items())
+        rows.append(("heat", f"{table['heat_w']:.4g} W", ways))
+        if "running_preload_n" in band:
+            rows.append(("running preload", "", _within(band["running_preload_n"], 0.0, "N")))
+        return rows
+
+
+def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
+    """Ends of a band in words."""
+    if ends is None:
+        return ""
+    if None in ends:
+        return "no steady temperature at one end of the bands"
+    return f"{ends[0] - less:.4g} to {ends[1] - less:.4g} {unit}"
+
+
+def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: Number = 1.0) -> Network:
+    """The network of n points, temperatures in degrees Celsius.
+
+    Parameters
+    ----------
+    traction, conductance : factors of the heat of friction and of conductances by correlations, numbers or columns (n,)
+    """
+    import numpy as np
+
+    from raceway.core.thermal import Network
+
+    heat = points.problem.heat
+    assert heat is not None, "rules refuse scenes without it"
+    heats = _heats(points) * np.reshape(traction, (-1, 1))
+    return Network(_conductances(points, conductance), heats, heat.oil_inlet_c, heat.ambient_c)
+
+
+def _heats(points: SolvedPoints) -> np.ndarray:
+    """(n, 6) heat that arises in the nodes [W]."""
+    import numpy as np
+
+    lost = points.problem.quantities.friction.losses(points)
+    inner, outer = lost.contact_power.sum(axis=2).T
+    heats = np.zeros((len(points.load), len(_NODES)))
+    heats[:, 0] = 0.5 * (inner + lost.seal_power)
+    heats[:, 1] = 0.5 * (inner + outer)
+    heats[:, 2] = 0.5 * (outer + lost.seal_power)
+    heats[:, 5] = lost.drag_power
+    return heats
+
+
+def _conductances(points: SolvedPoints, factor: Number) -> dict[str, Number]:
+    """Of all links [W/K]: those of [heat], else by correlations times a factor, summed over rows."""
+    import numpy as np
+
+    from raceway.core.thermal import JOINT, oil_convection, seat_emission
+
+    heat, oil, rows = points.problem.heat, points.problem.lubricant, points.problem.bearing.of_rows
+    assert heat is not None and oil is not None, "rules refuse scenes without them"
+    capacity = oil.density * heat.oil_heat_capacity
+
+    def convection(b: Bearing, area: Number) -> Number:
+        ratio = b.ball_diameter * np.cos(b.contact_angle) / b.pitch_diameter
+        fluid = oil.kinematic_viscosity, oil.conductivity, capacity
+        return np.pi * area * oil_convection(points.speed, ratio, *fluid, b.ball_diameter)
+
+    by_row: dict[str, Callable[[int, Any], Number]] = {
+        "inner_balls": lambda k, b: _contact_conductance(points, k, 0),
+        "outer_balls": lambda k, b: _contact_conductance(points, k, 1),
+        "inner_oil": lambda k, b: convection(b, (b.pitch_diameter - b.ball_diameter) * b.width),
+        "outer_oil": lambda k, b: convection(b, (b.pitch_diameter + b.ball_diameter) * b.width),
+        "balls_oil": lambda k, b: convection(b, b.ball_diameter**2 * b.ball_count),
+        "inner_shaft": lambda k, b: JOINT * np.pi * b.bore * b.width,
+        "outer_housing": lambda k, b: JOINT * np.pi * b.outer_diameter * b.width,
+        "shaft_ambient": lambda k, b: seat_emission(b.bore, b.bore + b.outer_diameter, b.width),
+        "housing_ambient": lambda k, b: seat_emission(b.outer_diameter, b.bore + b.outer_diameter, b.width),
+    }
+    conductances: dict[str, Number] = {"throughput": capacity * _number(heat.oil_flow)}
+    for name, of_row in by_row.items():
+        value = getattr(heat, name)
+        auto = isinstance(value, str) and value == "auto"
+        conductances[name] = factor * sum(map(of_row, range(len(rows)), rows)) if auto else _number(value)
+    return conductances
+
+
+def _number(value: Number) -> Number:
+    """What a key of [heat] says; it has one word, 'infinite'."""
+    return float("inf") if isinstance(value, str) else value
+
+
+def _contact_conductance(points: SolvedPoints, row: int, race: int) -> np.ndarray:
+    """(n,) between the balls and a race of one row [W/K]: of as many equal contacts as are loaded."""
+    import numpy as np
+
+    from raceway.core.contact.film import film, thermal_reduction
+    from raceway.core.contact.hertz import contact_modulus
+    from raceway.core.thermal import rolling_contact
+
+    b, oil, of_row = points.problem.bearing.of_rows[row], points.problem.lubricant, points.row == row
+    assert oil is not None, "rules refuse scenes without it"
+    load = points.load[:, race, of_row]
+    loaded = load > 0.0
+    count = loaded.sum(axis=1)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        total: np.ndarray = np.where(loaded, values, 0.0).sum(axis=1)
+        return total / np.maximum(count, 1)
+
+    major, minor = (mean(axis[:, race, of_row]) for axis in points.semi_axes)
+    ratio = b.ball_diameter / b.pitch_diameter * mean(np.cos(points.contact_angle[:, race, of_row]))
+    speed = 0.25 * points.speed * b.pitch_diameter * (1.0 - ratio**2)
+    conformity, one = (b.conformity_inner, b.conformity_outer)[race], np.ones_like(ratio)
+    along = 0.5 * b.ball_diameter * (1.0 + (-1.0, 1.0)[race] * ratio)
+    across = conformity * b.ball_diameter / (2.0 * conformity - 1.0) * one
+    modulus = 2.0 * contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson) * one
+    ellipticity = np.where(count > 0, major, 1.0) / np.where(count > 0, minor, 1.0)
+    viscosity, carried = oil.dynamic_viscosity, np.maximum(mean(load), 1e-3)
+    apart = film(viscosity * speed, oil.alpha, modulus, along, across, carried, ellipticity).central
+    apart = apart * thermal_reduction(viscosity * oil.beta * speed**2 / oil.conductivity)
+    return np.asarray(count * rolling_contact(major, minor, speed, apart, oil.conductivity))

@@ -20,6 +20,7 @@ from raceway.framework.duties import fitting_quantities, quantities_at, turn_sam
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, Quantity, named
 from raceway.pipeline.plausible import column_bounds
+from raceway.pipeline.quantities import solved_columns
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import Problem, resolve
@@ -84,26 +85,7 @@ class Computed:
     @cached_property
     def points(self) -> SolvedPoints:
         """As plug-ins of quantities see them."""
-        bearing, states, n = self.bearing, self.states, len(self.states.status)
-        problem, z = bearing.problem, self.states.force.shape[1] // 2
-
-        def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-            halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
-            pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
-            return pressure, major, minor
-
-        return SolvedPoints(
-            problem=problem,
-            row=bearing.basis.row,
-            side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
-            speed=np.broadcast_to(problem.spin_speed, n),
-            load=states.force.reshape(n, 2, z),
-            contact_angles=lambda: np.stack(bearing.contact_angles(states), axis=1),
-            displacement=states.q,
-            stiffness=states.stiffness,
-            ellipse=ellipse,
-            turn=None if self.orbits is None else self._turn,
-        )
+        return solved_columns(self.bearing, self.states, None if self.orbits is None else self._turn)
 
     def _turn(self, count: int) -> np.ndarray:
         """(n, T, 2, Z) contact forces at times of a turn, whose number a plug-in has asked for."""
@@ -283,7 +265,7 @@ class SteadyLines:
 
     def line(self, scene: Scene, speed: float) -> np.ndarray | None:
         """(5,) complex line by the compiled loop, at the speed [rad/s] of the excitation; None where a run has to find it."""
-        if why_not(scene, True):
+        if scene.heat is not None or why_not(scene, True):
             return None
         if speed not in self._built:
             columns = column_problem(scene, {"load.axial": np.array([scene.load.axial])})

@@ -283,7 +283,7 @@ class Function:
         n = len(next(iter(columns.values())))
         status, refused = np.full(n, PointStatus.FAILED), self._refused(columns)
         fit = np.flatnonzero(~refused)
-        status[refused] = PointStatus.REFUSED
+        status[refused], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
         values: Columns = {}
         for turning, rows in self._alike(columns, fit):
             plan = self._plan(columns, rows, turning)
@@ -291,18 +291,28 @@ class Function:
                 continue
             chosen = {key: column[rows] for key, column in columns.items()}
             try:
+                if self.scene.heat is not None:
+                    chosen = self._warm(chosen, plan, rows, reason)
                 bearing = build_columns(column_problem(self.scene, chosen), plan)
             except RacewayError:  # of elastic bodies that no point has
                 continue
             example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
             excitations = Excitations.of(self.scene, chosen) if self.moving else None
             computed = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
-            fine = ~bearing.conspicuous & computed.fine
+            fine = ~bearing.conspicuous & computed.fine & (reason[rows] == "")
             status[rows[fine]] = PointStatus.COMPUTED
             for name in self.outputs:
                 part = QUANTITIES[name](computed) if name in QUANTITIES else computed.of_plugin(self._stated[name][0], name)
                 values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
-        return {**values, "status": status}
+        return {**values, "status": status, "reason": reason}
+
+    def _warm(self, columns: Columns, plan: ScenePlan, rows: np.ndarray, reason: np.ndarray) -> Columns:
+        """With steady temperatures; the reason of rows that have none."""
+        from raceway.pipeline.warm import RUNAWAY, warm
+
+        warmth = warm(self.scene, columns, plan)
+        reason[rows[warmth.runaway]] = RUNAWAY
+        return {**columns, **warmth.columns}
 
     def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""
@@ -347,6 +357,7 @@ class Function:
     def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """With runs of the points that the loop has left."""
         answer, left = self.with_reasons(flat, answer), np.flatnonzero(answer["status"] == PointStatus.FAILED)
+        left = left[answer["reason"][left] == ""]
         seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
         if seconds > _LIMIT_S:
             answer["reason"][left] = (
@@ -509,6 +520,8 @@ def function(
         raise SceneError.at(doubled[0], None, "is an input twice")
     for key in keys:
         key_of(read, key)
+        if read.heat is not None and key.endswith(("_temperature", ".temperature_c")):
+            raise SceneError.at(key, None, "is computed by [heat]: it is no input")
     _refuse_missing(read, names)
     result = Function(read, keys, names, tolerance, force, threads or usable_cores())
     if result.moving and read.excitation is None:

@@ -11,6 +11,7 @@ schema      JSON schema of a scene file
 catalogue   bearing presets and materials by name
 ratings     load ratings of the rows: by keys, as the catalogue prints them, or from geometry
 lubricant   oils, their viscosity, and the table [lubricant]
+heat        the table [heat]: what carries the heat of friction off
 tolerance   ranges of numbers: the table [tolerances], classes of ISO 492 and ISO 3290
 unused      keys without effect, and those that a change makes so
 ratings     load ratings, by keys, catalogue or geometry

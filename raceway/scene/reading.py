@@ -227,6 +227,7 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
+    _start_at_inlet(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
@@ -249,6 +250,13 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     if faults := check_tolerances(scene):
         raise SceneError(faults)
     return scene
+
+
+def _start_at_inlet(tables: Tables) -> None:
+    """Temperatures that [heat] computes begin with that of the oil's inlet."""
+    heat, oil = tables.get("heat", {}), tables.get("lubricant", {})
+    if "oil_inlet_c" in heat and ("oil" in oil or "viscosity_40" in oil):
+        tables["lubricant"] = {"temperature_c": heat["oil_inlet_c"], **oil}
 
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:

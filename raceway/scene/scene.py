@@ -10,6 +10,7 @@ import attrs
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.bearing import Bearing
 from raceway.scene.changes import told
+from raceway.scene.heat import Heat
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import Lubricant
 from raceway.scene.tables import (
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 @attrs.frozen(repr=False)
 class SceneTables:
-    """Tables of a scene file, and plug-ins with their options; excitation, mesh and lubricant may be None."""
+    """Tables of a scene file, and plug-ins with their options; excitation, mesh, lubricant and heat may be None."""
 
     bearing: Bearing
     supports: Supports
@@ -43,6 +44,7 @@ class SceneTables:
     mesh: Any
     contact: Contact
     lubricant: Lubricant | None
+    heat: Heat | None
     kinematics: Kinematics
     mounting: Mounting
     integrator: Integration
@@ -58,7 +60,7 @@ class Scene(SceneTables, Shown):
     ----------
     title : str, says in its second line what was changed since it was read
     bearing, supports, rotor, load, contact, kinematics, mounting, integrator, identifier : tables of the scene file
-    lubricant : its table, or None
+    lubricant, heat : their tables, or None
     excitation, bodies, mesh : plug-ins with their options; excitation and mesh may be None
     quantities : an attribute for each plug-in of quantities, with its options
     source : the tree of plain tables it was made from, presets resolved

@@ -25,6 +25,7 @@ from raceway.framework.options import (
 )
 from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
+from raceway.scene.heat import Heat
 from raceway.scene.lubricant import Lubricant
 
 
@@ -360,6 +361,7 @@ TABLES: dict[str, type] = {
     "load": Load,
     "contact": Contact,
     "lubricant": Lubricant,
+    "heat": Heat,
     "kinematics": Kinematics,
     "mounting": Mounting,
     "integrator": Integration,
@@ -379,7 +381,7 @@ PLUGIN_TABLES = {
 
 
 #: Tables that may be absent, which means something.
-OPTIONAL_TABLES = ("excitation", "mesh", "lubricant")
+OPTIONAL_TABLES = ("excitation", "mesh", "lubricant", "heat")
 
 
 #: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.scene.unused`` tells.

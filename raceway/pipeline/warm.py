@@ -1,0 +1,292 @@
+"""Steady temperatures of scenes with [heat]: heat, temperatures, expansion and viscosity, loads, and heat again.
+
+Notes
+-----
+The temperatures x of inner rings, balls, outer rings and oil are where those that follow from them are the same, G(x) = x: the bearing is
+solved for with x in [mounting] and in the lubricant, friction gives the heat, the network of ``raceway.core.thermal`` its temperatures.
+n points are solved for at once as columns: Broyden's method (good update) from cold, then, for points where it finds nothing, half steps
+of x <- G(x), which follow the warming up.  Where these run away there is no steady temperature: more heat is made the
+warmer the bearing is than can leave it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+
+import attrs
+import numpy as np
+
+from raceway.bodies.columns import ColumnBearing, column_problem, mounted_columns, why_not
+from raceway.bodies.model import model_of
+from raceway.bodies.mounting import preload_table
+from raceway.bodies.rigid import Rigid
+from raceway.contact_laws.hertz import Hertz
+from raceway.core.thermal import NODES
+from raceway.errors import ConvergenceError, RacewayError
+from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.pipeline.quantities import solved_columns, solved_point
+from raceway.planning.plan import ScenePlan, make_plan, plan_of
+from raceway.planning.resolve import Problem, resolve
+from raceway.plugins.heat import ZERO_C, thermal_network
+from raceway.scene.changes import with_columns
+from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+
+#: Nodes that a bearing feels, and the temperature of [mounting] [C] from which its keys count.
+_FELT, _MOUNTED_C = ("inner", "balls", "outer", "oil"), 20.0
+_FELT_NODES = [NODES.index(node) for node in _FELT]
+#: Change of temperatures [K] within which they are steady before the last step; steps at most of either method.
+_TOLERANCE, _QUICK, _SLOW = 1e-4, 25, 300
+#: Longest step of Broyden's method [K].
+_LONGEST = 50.0
+#: Temperature [C] beyond which no bearing runs: steel has lost its hardness, and oils burn.
+_HOTTEST = 400.0
+#: Speeds at once, and rounds, in which the first one without steady temperatures is looked for: to 1/4000 of the range.
+_SPEEDS, _ROUNDS = 17, 3
+
+
+#: Reason of points without steady temperatures.
+RUNAWAY = (
+    f"no steady temperature below {_HOTTEST:g} °C: the warmer the bearing, the more heat it makes, beyond what can leave it"
+)
+
+
+#: Temperatures (m, 6) that follow from columns of keys at points (m,), with factors of friction and conductances.
+Solve = Callable[[Mapping[str, np.ndarray], np.ndarray, list[np.ndarray]], np.ndarray]
+
+
+@attrs.frozen(eq=False)
+class Warmth:
+    """Steady temperatures of n points.
+
+    Attributes
+    ----------
+    columns : of the keys of temperatures (n,), those of the cold bearing where nothing is steady
+    temperatures : (n, 6) of all nodes [C]
+    runaway : (n,) whether there are none: heat outgrows what can leave
+    """
+
+    columns: Mapping[str, np.ndarray]
+    temperatures: np.ndarray
+    runaway: np.ndarray
+
+
+def warm(
+    scene: Scene,
+    columns: Mapping[str, np.ndarray],
+    plan: ScenePlan,
+    traction: np.ndarray | float = 1.0,
+    conductance: np.ndarray | float = 1.0,
+) -> Warmth:
+    """Steady temperatures of a scene with [heat] at points.
+
+    Parameters
+    ----------
+    columns : (n,) of continuous keys of the scene, at least one;  plan : of one of the points
+    traction, conductance : factors of heat of friction and of conductances by correlations
+    """
+    assert scene.heat is not None, "callers look"
+    n, keys = len(next(iter(columns.values()))), _keys(scene)
+    inlet, ambient = (
+        np.broadcast_to(columns.get(f"heat.{key}", getattr(scene.heat, key)), n) for key in ("oil_inlet_c", "ambient_c")
+    )
+    factors = [np.broadcast_to(factor, n) for factor in (traction, conductance)]
+    start, nodes = np.repeat(inlet[:, np.newaxis], len(_FELT), axis=1), np.full((n, len(NODES)), np.nan)
+    if why_not(scene, False):
+        solve: Solve = partial(_one_by_one, scene)
+    else:
+        solve = partial(_in_columns, scene, mounted_columns(column_problem(scene, {**columns, **_at(keys, start)}), plan))
+
+    def image(level: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        at = {key: column[rows] for key, column in columns.items()} | _at(keys, level)
+        nodes[rows] = solve(at, rows, [factor[rows] for factor in factors])
+        return nodes[rows][:, _FELT_NODES]
+
+    level, steady, lost = _fixed_points(image, start, np.minimum(inlet, ambient))
+    level[~steady] = start[~steady]
+    return Warmth(_at(keys, level), nodes, lost)
+
+
+def warm_plan(scene: Scene) -> ScenePlan:
+    """The plan of a scene with [heat] at its steady temperatures.
+
+    Raises
+    ------
+    ConvergenceError
+        There are none, with the speed above which there are none.
+    """
+    simple = _simple(scene)
+    warmth = warm(simple, _one(simple), make_plan(simple))
+    if warmth.runaway[0]:
+        raise ConvergenceError(_runaway_words(simple))
+    return plan_of(_at_row(scene, warmth.columns, 0))
+
+
+def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
+    """``heat.band`` of result.json: [low, high] of temperatures and running preload over the bands of friction and conductances.
+
+    Parameters
+    ----------
+    friction : ends of the band of its torque, over the torque
+
+    Notes
+    -----
+    Ends are those of the four combinations of both bands' ends; None where one of them has no steady temperature.
+    """
+    assert scene.heat is not None, "callers look"
+    simple, wide = _simple(scene), 1.0 + scene.heat.conductance_band
+    conductances = (1.0 / wide, wide)
+    factors = np.array([(heat, conductance) for heat in friction for conductance in conductances]).T
+    columns = {key: np.repeat(column, 4) for key, column in _one(simple).items()}
+    warmth = warm(simple, columns, make_plan(simple), *factors)
+    table: Tables = {"friction": list(friction), "conductances": list(conductances)}
+    steady = not warmth.runaway.any()
+    table["temperatures_k"] = {
+        node: _ends(column, steady) for node, column in zip(NODES, warmth.temperatures.T + ZERO_C, strict=True)
+    }
+    if scene.bearing.preloaded:
+        running = []
+        for corner in range(4) if steady else ():
+            problem = _at_row(simple, warmth.columns, corner)
+            model = model_of(problem, plan_of(problem))
+            running.append((preload_table(model, solve_equilibrium(model)) or {})["running_n"])
+        table["running_preload_n"] = _ends(np.array(running), steady)
+    return table
+
+
+def friction_band(numbers: Mapping[str, float | np.ndarray]) -> tuple[float, float]:
+    """Ends of the band of friction's torque over the torque, of the numbers of a result; (1, 1) at rest."""
+    low, torque, high = (float(numbers[f"torque_{end}nm"]) for end in ("low_", "", "high_"))
+    return (low / torque, high / torque) if torque > 0.0 else (1.0, 1.0)
+
+
+def _ends(values: np.ndarray, steady: bool) -> list[float | None]:
+    low, high = (float(values.min()), float(values.max())) if steady else (None, None)
+    return [low, high]
+
+
+def _at_row(scene: Scene, columns: Mapping[str, np.ndarray], row: int) -> Problem:
+    """The problem of a scene with the numbers of one point: what the user said is the scene."""
+    numbers = {key: float(column[row]) for key, column in columns.items()}
+    return attrs.evolve(resolve(with_columns(scene, numbers)), scene=scene)
+
+
+def speed_limit(scene: Scene) -> float:
+    """Least speed [r/min], up to that of a scene with [heat], at which it has no steady temperatures."""
+    key = "kinematics.spin_speed_rpm" if scene.kinematics.spin_speed_rpm is not None else "excitation.speed_rpm"
+    low, high = 0.0, resolve(scene).spin_speed * 30.0 / np.pi
+    for _ in range(_ROUNDS):
+        speeds = np.linspace(low, high, _SPEEDS + 1)[1:]
+        first = int(np.argmax(warm(scene, {key: speeds}, make_plan(scene)).runaway))
+        low, high = (speeds[first - 1] if first else low), speeds[first]
+    return float(high)
+
+
+def _runaway_words(scene: Scene) -> str:
+    return (
+        f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: the warmer the bearing, the more it is preloaded and the more heat it "
+        "makes, and beyond this speed more than can leave it. Preload it less or by a spring, cool the inner ring or warm the housing "
+        "(heat.inner_oil, heat.oil_flow), or take a thinner oil"
+    )
+
+
+def _keys(scene: Scene) -> tuple[str, ...]:
+    """Keys of the temperatures of ``_FELT``."""
+    oil = "lubricant.temperature_c" if scene.lubricant is not None else "contact.temperature_c"
+    return ("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)
+
+
+def _at(keys: tuple[str, ...], level: np.ndarray) -> dict[str, np.ndarray]:
+    """Columns of the keys at temperatures (n, 4) [C]."""
+    return {
+        key: column - (_MOUNTED_C if key.startswith("mounting") else 0.0) for key, column in zip(keys, level.T, strict=True)
+    }
+
+
+def _one(scene: Scene) -> dict[str, np.ndarray]:
+    """A scene as one point."""
+    return {"load.axial": np.array([scene.load.axial])}
+
+
+def _simple(scene: Scene) -> Scene:
+    """The scene whose loads decide its temperatures: with rigid bodies where its own are not computed as columns."""
+    if scene.bodies.name == "rigid" or not why_not(scene, False):
+        return scene
+    law = scene.contact.law if "resultant" in scene.contact.law.discretisations else Hertz()
+    contact = attrs.evolve(scene.contact, kind=law.name, law=law, discretisation="resultant", friction=0.0)
+    supports = attrs.evolve(scene.supports, outer_seat="rigid", inner_seat="rigid")
+    return attrs.evolve(scene, bodies=Rigid(), mesh=None, contact=contact, supports=supports)
+
+
+def _in_columns(
+    scene: Scene, mounted: ColumnBearing, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
+) -> np.ndarray:
+    """(m, 6) temperatures [C] that follow from those at which points (m,) are solved for; nan of what is no bearing in equilibrium."""
+    bearing = mounted.warmed(rows, column_problem(scene, at))
+    states = bearing.equilibria()
+    fine = (states.status == 0) & ~bearing.impossible(states.force)
+    mounted.points.guess[rows[fine]] = states.q[fine]
+    with np.errstate(all="ignore"):
+        level = thermal_network(solved_columns(bearing, states), *factors).temperatures
+    return np.where(fine[:, np.newaxis], level, np.nan)
+
+
+def _one_by_one(scene: Scene, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]) -> np.ndarray:
+    """The same of scenes that the compiled loops do not take."""
+    level = np.full((len(rows), len(NODES)), np.nan)
+    for row in range(len(rows)):
+        with suppress(RacewayError):
+            problem = _at_row(scene, at, row)
+            model = model_of(problem, plan_of(problem))
+            point = solved_point(model, solve_equilibrium(model), None)
+            level[row] = thermal_network(point, *(factor[row] for factor in factors)).temperatures[0]
+    return level
+
+
+def _fixed_points(
+    image: Callable[[np.ndarray, np.ndarray], np.ndarray], start: np.ndarray, least: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where x = G(x): x (n, k), (n,) whether it was found, and whether it ran away instead.
+
+    Parameters
+    ----------
+    image : of x (m, k) and the rows (m,) that they belong to, G(x), nan where it is not defined;  least : (n,) of all x
+    """
+    found = start.copy()
+    steady, lost = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
+    for steps, quick in ((_QUICK, True), (_SLOW, False)):
+        rows = np.flatnonzero(~steady & ~lost)
+        x, step, before = start[rows], np.zeros((len(rows), start.shape[1])), np.zeros((len(rows), start.shape[1]))
+        inverse = np.repeat(np.eye(start.shape[1])[np.newaxis], len(rows), axis=0)
+        for count in range(steps):
+            if not len(rows):
+                break
+            excess = image(x, rows) - x
+            if quick:
+                inverse = _updated(inverse, step, excess - before) if count else inverse
+                step = np.einsum("nij,nj->ni", inverse, excess)
+                step *= np.minimum(1.0, _LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, np.newaxis]
+            else:
+                step = 0.5 * excess
+            nearer = np.maximum(x + step, least[rows, np.newaxis])
+            step, defined = nearer - x, np.isfinite(excess).all(axis=1)
+            done = defined & (np.abs(excess).max(axis=1) <= _TOLERANCE)
+            found[rows[done]], steady[rows[done]] = nearer[done], True
+            gone = ~defined | (nearer.max(axis=1) > _HOTTEST)
+            if not quick:  # a cold bearing that is none is no runaway
+                lost[rows[gone & (defined | (count > 0))]] = True
+            left = ~done & ~gone
+            rows, x, inverse, step, before = rows[left], nearer[left], inverse[left], step[left], excess[left]
+        lost[rows] |= not quick
+    return found, steady, lost
+
+
+def _updated(inverse: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Broyden's good update of H, which makes steps H f of f = G(x) - x, after a step and the change of f by it."""
+    back = np.einsum("nij,nj->ni", inverse, change)
+    row = np.einsum("ni,nij->nj", step, inverse)
+    scale = (row * change).sum(axis=1)
+    scale = np.where(np.abs(scale) > 1e-12 * (step**2).sum(axis=1), scale, np.inf)
+    return inverse - (step + back)[:, :, None] * row[:, None, :] / scale[:, None, None]

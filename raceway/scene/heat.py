@@ -1,0 +1,52 @@
+"""The table ``[heat]``: what carries a bearing's heat off, from which its steady temperatures are computed."""
+
+from __future__ import annotations
+
+import attrs
+
+from raceway.framework.options import at_least, between, option, positive, word_or
+
+
+def _conductance(between_words: str) -> float | str:
+    help_text = f"conductance between {between_words}; 'auto': by a correlation; 'infinite': one temperature"
+    return option("auto", unit="W/K", help=help_text, rule=word_or(positive(), "auto", "infinite"))
+
+
+def _to_ambient(node: str) -> float | str:
+    return option(
+        "auto",
+        unit="W/K",
+        help=f"conductance between {node} and ambient; 'auto': by ISO 15312",
+        rule=word_or(positive(), "auto"),
+    )
+
+
+@attrs.frozen
+class Heat:
+    """Temperatures of rings, balls and oil are computed from the heat of friction; conductances are those of all rows together.
+
+    Notes
+    -----
+    Conductances that are 'auto' follow from correlations (``raceway.core.thermal``), those to the ambient from ISO 15312.
+    """
+
+    oil_inlet_c: float = option(unit="°C", help="of the oil that is supplied", rule=between(-273.15, 1e3))
+    oil_flow: float | str = option(
+        unit="m3/s",
+        help="oil through all rows; 'infinite': it stays at its inlet's temperature",
+        rule=word_or(positive(), "infinite"),
+    )
+    ambient_c: float = option(20.0, unit="°C", help="around shaft and housing", rule=between(-273.15, 1e3))
+    oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; most have 1900 to 2300", rule=positive())
+    inner_balls: float | str = _conductance("inner rings and balls")
+    outer_balls: float | str = _conductance("outer rings and balls")
+    inner_oil: float | str = _conductance("inner rings and oil")
+    balls_oil: float | str = _conductance("balls and oil")
+    outer_oil: float | str = _conductance("outer rings and oil")
+    inner_shaft: float | str = _conductance("inner rings and shaft")
+    outer_housing: float | str = _conductance("outer rings and housing")
+    shaft_ambient: float | str = _to_ambient("shaft")
+    housing_ambient: float | str = _to_ambient("housing")
+    conductance_band: float = option(
+        0.5, help="r: conductances by correlations are known within 1/(1 + r) to 1 + r times", rule=at_least(0.0)
+    )
