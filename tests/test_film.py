@@ -289,3 +289,25 @@ def test_a_film_that_leaves_no_equilibrium_is_told_by_its_law():
     """A film of 0.01 N on twelve balls, h ~ 1/Q^2, is thicker than there is room in the grooves."""
     with pytest.raises(rw.RacewayError, match="contact law 'film' at the running speed: .*more load or a lower speed"):
         run(scene(OIL, load={"axial": 0.01}, excitation={"force": 1e-3}))
+
+
+def test_film_parameters_are_quantities_of_any_scene_with_an_oil():
+    """Of the film law those that its report has of each contact; of Hertz contacts, which no film stands off, nearly the same."""
+    oil = {"oil": "VG 32", "temperature_c": 50.0}
+    tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]}}
+    tables |= {"kinematics": {"spin_speed_rpm": 6000.0}, "contact": {"kind": "film", **oil, "roughness": 1e-7}}
+    result = rw.run(tables)
+    balls = result.to_dict()["equilibrium"]["balls"]
+    least = {
+        k: min(ball[f"{race}_film_{k}_m"] for ball in balls for race in ("inner", "outer")) for k in ("central", "minimum")
+    }
+    assert result.quantities["film_central"] == least["central"] and result.quantities["film_minimum"] == least["minimum"]
+    assert result.quantities["film_parameter"] == pytest.approx(least["minimum"] / 1e-7, rel=1e-14)
+    dry = rw.run({**tables, "contact": {"kind": "hertz"}, "lubricant": oil})
+    assert dry.quantities["film_minimum"] == pytest.approx(least["minimum"], rel=0.01)
+    assert "film_parameter" not in dry.quantities
+    names = ["film_minimum", "film_parameter"]
+    answer = rw.function(tables, ["load.axial", "contact.temperature_c"], names)([500.0, 1000.0], [70.0, 50.0])
+    for name in names:
+        assert answer[name][1] == pytest.approx(result.quantities[name], rel=1e-9)
+        assert answer[name][0] < answer[name][1]

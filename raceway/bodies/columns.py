@@ -17,7 +17,7 @@ from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
 from raceway.bodies.condensed_bearing import elastic_parts
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
-from raceway.bodies.running import renewed
+from raceway.bodies.running import renewed, running_pairs
 from raceway.core.columns import Number, distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
@@ -28,7 +28,7 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
-from raceway.framework.contracts import ContactLaw, Excitation
+from raceway.framework.contracts import ContactLaw, Excitation, SolvedPoints
 from raceway.framework.duties import force_params, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
@@ -393,6 +393,30 @@ def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
         return bearing._preloaded()
     points.guess[:] = first_guess(problem, basis)
     return bearing
+
+
+def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:
+    """n points of a compiled loop as quantities see them; ``turn`` : of ``SolvedPoints``."""
+    problem, n, z = bearing.problem, len(states.status), states.force.shape[1] // 2
+
+    def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
+        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
+        return pressure, major, minor
+
+    return SolvedPoints(
+        problem=problem,
+        row=bearing.basis.row,
+        side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
+        speed=np.broadcast_to(problem.spin_speed, n),
+        load=states.force.reshape(n, 2, z),
+        contact_angles=lambda: np.stack(bearing.contact_angles(states), axis=1),
+        displacement=states.q,
+        stiffness=states.stiffness,
+        running_contacts=lambda: running_pairs(problem, bearing.basis, states.force, bearing.contact_angles(states)),
+        ellipse=ellipse,
+        turn=turn,
+    )
 
 
 def _columns(n: int, *numbers: Number) -> np.ndarray:

@@ -61,30 +61,13 @@ class Film(Oil):
             cls(viscosity=0.3, pressure_viscosity=1e-8, temperature_viscosity=0.05, starvation=0.5),
         ]
 
-    def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
-        """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""
-        from raceway.core.contact.film import thermal_reduction
-
-        assert pairs.entraining_speed is not None, "bodies that renew laws give it"
-        loading = self.dynamic_viscosity * self.beta * pairs.entraining_speed**2 / self.conductivity
-        return loading, thermal_reduction(loading)
+    def film_share(self, pairs: ContactPairs) -> np.ndarray:
+        """What heat and supply leave of a flooded, isothermal film (n,)."""
+        return self.starvation * self._reduction(pairs)
 
     def _reduction(self, pairs: ContactPairs) -> np.ndarray:
         reduction = self.inlet(pairs)[1]
         return reduction**0 if self.inlet_heating == "none" else reduction
-
-    def thickness(self, pairs: ContactPairs) -> Thickness:
-        """Films of the contacts at their entraining speeds and loads."""
-        from raceway.core.contact.film import film
-
-        speed, load = pairs.entraining_speed, pairs.load
-        assert speed is not None and load is not None, "bodies that renew laws give them"
-        computed = film(
-            self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
-            load, pairs.ellipticity,
-        )  # fmt: skip
-        part = self.starvation * self._reduction(pairs)
-        return attrs.evolve(computed, central=part * computed.central, minimum=part * computed.minimum)
 
     def _slope(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """h0 (n,) [m] and m (n,), by which the film thins as the elastic approach grows."""

@@ -290,6 +290,7 @@ class SolvedPoints:
     load : (n, 2, Z) contact forces under the constant loads [N], 0 where a contact is open
     contact_angles : (n, 2, Z) under them [rad], nan where a contact is open
     displacement, stiffness : (n, 5), (n, 5, 5) of the inner ring [m, rad; N/m, N/rad, N m/m, N m/rad]
+    running_contacts : all contacts (n 2 Z,) one after the other as a contact law sees them at the running speed
     ellipse : of contact forces (n, 2, Z) peak pressure [Pa], major and minor semi-axis [m], each (n, 2, Z)
     turn : of a number T contact forces (n, T, 2, Z) at T equidistant times of a turn of the motion, from phase 0 of the force on [N];
         None without a motion
@@ -303,6 +304,7 @@ class SolvedPoints:
     contact_angles: Callable[[], np.ndarray]
     displacement: np.ndarray
     stiffness: np.ndarray
+    running_contacts: Callable[[], ContactPairs]
     ellipse: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]]
     turn: Callable[[int], np.ndarray] | None = None
 

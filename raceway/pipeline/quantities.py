@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing
 from raceway.bodies.model import Equilibrium, Model
+from raceway.bodies.running import running_pairs
 from raceway.core.record import Record
-from raceway.core.ring.equilibria import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
 from raceway.framework.registry import default_registry
@@ -59,6 +57,7 @@ def quantity_of(symbol: str) -> Quantity:
 def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) -> SolvedPoints:
     """One point as quantities see it; ``record`` : of the motion, in the turns that are used."""
     problem, z = model.problem, model.system.ball_count
+    angles = equilibrium.angle_inner, equilibrium.angle_outer
 
     def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         races = (model.bearing.contact_ellipse(model, race, load[0, race]) for race in (0, 1))
@@ -72,34 +71,12 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
         side=np.array([side for side, _ in problem.bearing.rows])[model.basis.row],
         speed=np.array([problem.spin_speed]),
         load=equilibrium.contact_force.reshape(1, 2, z),
-        contact_angles=lambda: np.stack([equilibrium.angle_inner, equilibrium.angle_outer])[np.newaxis],
+        contact_angles=lambda: np.stack(angles)[np.newaxis],
         displacement=equilibrium.displacement[np.newaxis],
         stiffness=equilibrium.stiffness[np.newaxis],
+        running_contacts=partial(running_pairs, problem, model.basis, equilibrium.contact_force, angles),
         ellipse=ellipse,
         turn=partial(_turn, record, problem.period) if repeats and record is not None else None,
-    )
-
-
-def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:
-    """n points of a compiled loop as quantities see them; ``turn`` : of ``SolvedPoints``."""
-    problem, n, z = bearing.problem, len(states.status), states.force.shape[1] // 2
-
-    def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
-        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
-        return pressure, major, minor
-
-    return SolvedPoints(
-        problem=problem,
-        row=bearing.basis.row,
-        side=np.array([side for side, _ in problem.bearing.rows])[bearing.basis.row],
-        speed=np.broadcast_to(problem.spin_speed, n),
-        load=states.force.reshape(n, 2, z),
-        contact_angles=lambda: np.stack(bearing.contact_angles(states), axis=1),
-        displacement=states.q,
-        stiffness=states.stiffness,
-        ellipse=ellipse,
-        turn=turn,
     )
 
 

@@ -124,28 +124,6 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     return rows + (tangent_rows(result) if dynamic else [])
 
 
-def film_rows(result: ReadTables) -> list[Row]:
-    """The thinnest film of both races, where the law has one: the ball, its regime, and Lambda."""
-    found = result["equilibrium"]
-    if "inner_film_minimum_m" not in found["balls"][0]:
-        return []
-    law, rows = found["law"], list[Row]()
-    told = f"{number(1e3 * law['viscosity_pa_s'], 'mPa s')}, {number(1e9 * law['pressure_viscosity_per_pa'], '1/GPa')}"
-    reduced = min(ball[f"{race}_film_thermal_reduction"] for ball in found["balls"] for race in ("inner", "outer"))
-    heat = "isothermal" if law["inlet_heating"] == "none" else f"thermal reduction {reduced:.2g}"
-    rows.append(("Oil film", "", f"Hamrock and Dowson: smooth, {heat}; it stands the surfaces off"))
-    rows.append(("viscosity, alpha", told, "at the running temperature; pressure-viscosity coefficient"))
-    for race in ("inner", "outer"):
-        index, ball = min(enumerate(found["balls"]), key=lambda item: item[1][f"{race}_film_minimum_m"])
-        central, least = (1e6 * ball[f"{race}_film_{name}_m"] for name in ("central", "minimum"))
-        parameter = ball[f"{race}_film_parameter"]
-        smooth = "no contact.roughness: no Lambda" if parameter is None else f"Lambda {parameter:.3g}"
-        value = f"{central:.4g}, {least:.4g} µm"
-        speed = number(ball[f"{race}_entraining_speed_m_per_s"], "m/s")
-        rows.append((f"{race} h_c, h_min", value, f"ball {index}, {speed}, {ball[f'{race}_film_regime']}; {smooth}"))
-    return rows
-
-
 def _mounted(found: ReadTables) -> list[Row]:
     """Preload and held axial force: running, mounted and before mounting."""
     rows, preload, held = [], found["preload"], found["held_axial"]

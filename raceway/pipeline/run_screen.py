@@ -29,7 +29,6 @@ from raceway.pipeline.run_parts import (
     cost_rows,
     equilibrium_rows,
     error_rows,
-    film_rows,
     loaded_balls,
     orbit_rows,
     quantity_rows,
@@ -123,7 +122,6 @@ def report(result: ReadTables) -> list[Part]:
     rows = [
         *_answer_rows(result),
         *equilibrium_rows(result),
-        *film_rows(result),
         *quantity_rows(result),
         *stiffness_rows(result),
         *_tolerances(result),

@@ -18,7 +18,7 @@ from functools import partial
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing, column_problem, mounted_columns, why_not
+from raceway.bodies.columns import ColumnBearing, column_problem, mounted_columns, solved_columns, why_not
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
 from raceway.bodies.rigid import Rigid
@@ -26,7 +26,7 @@ from raceway.contact_laws.hertz import Hertz
 from raceway.core.thermal import NODES
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.quantities import solved_columns, solved_point
+from raceway.pipeline.quantities import solved_point
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.heat import ZERO_C, thermal_network

@@ -4,7 +4,7 @@ excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
 structured_mesh, gmsh, mesh_files  hexahedra of the bodies
 formats, abaqus                  mesh files
-ball_pass, friction, life        quantities: ball-pass frequencies; friction torque by source; reference and modified life
+ball_pass, film, friction, life  quantities: ball-pass frequencies; film parameters; friction torque by source; reference and modified life
 heat                             quantities: temperatures, and the thermal network
 processes, dask                  executors
 pictures, labelled               pictures and labelled arrays of one run
@@ -18,6 +18,7 @@ from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.ball_pass import BallPass
 from raceway.plugins.dask import Dask
 from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
+from raceway.plugins.film import FilmParameter, FilmThickness
 from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.friction import Friction
 from raceway.plugins.gmsh import Gmsh
@@ -54,7 +55,7 @@ def raceway_formats() -> list[type]:
 
 @hookimpl
 def raceway_quantities() -> list[type]:
-    return [BallPass, Friction, Life, Temperatures]
+    return [BallPass, FilmThickness, FilmParameter, Friction, Life, Temperatures]
 
 
 @hookimpl

@@ -54,6 +54,12 @@ class Temperatures:
         Quantity("heat_w", "W", "of friction in contacts, oil and seals", "heat.heat_w"),
     )  # fmt: skip
 
+    @staticmethod
+    def example_scene() -> Tables:
+        heat = {"oil_inlet_c": 40.0, "oil_flow": 1e-5}
+        oil = {"oil": "VG 32", "temperature_c": 40.0}
+        return {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "lubricant": oil, "heat": heat}
+
     def why_not(self, problem: Problem) -> str:
         return "" if problem.heat is not None else "a table [heat] says what carries the heat off"
 

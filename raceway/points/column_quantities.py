@@ -9,7 +9,15 @@ from functools import cached_property
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing, Excitations, build_columns, column_problem, impedance, why_not
+from raceway.bodies.columns import (
+    ColumnBearing,
+    Excitations,
+    build_columns,
+    column_problem,
+    impedance,
+    solved_columns,
+    why_not,
+)
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
@@ -20,7 +28,6 @@ from raceway.framework.duties import fitting_quantities, quantities_at, turn_sam
 from raceway.framework.registry import Registry, default_registry
 from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, Quantity, named
 from raceway.pipeline.plausible import column_bounds
-from raceway.pipeline.quantities import solved_columns
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import Problem, resolve

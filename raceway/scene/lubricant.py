@@ -14,6 +14,12 @@ from raceway.framework.options import at_least, between, nearest, option, option
 if TYPE_CHECKING:
     from raceway.core.rolling_friction import Lubrication
 
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.contact.film import Film
+    from raceway.framework.contracts import ContactPairs
+
 T = TypeVar("T", bound=Any)
 
 #: Mineral oils by their ISO viscosity grade: kinematic viscosity at 40 and at 100 C [mm2/s].  At 40 C it is the grade's
@@ -183,6 +189,31 @@ class Oil:
         if self.viscosity is None:
             return self._walther.thinning(at)
         return _mineral_thinning(1e6 * self.viscosity / self.density, at)
+
+    def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
+        """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""
+        from raceway.core.contact.film import thermal_reduction
+
+        assert pairs.entraining_speed is not None, "contacts at the running speed have it"
+        loading = self.dynamic_viscosity * self.beta * pairs.entraining_speed**2 / self.conductivity
+        return loading, thermal_reduction(loading)
+
+    def film_share(self, pairs: ContactPairs) -> np.ndarray:
+        """What the heat of the inlets leaves of a flooded, isothermal film (n,)."""
+        return self.inlet(pairs)[1]
+
+    def thickness(self, pairs: ContactPairs) -> Film:
+        """Films of the contacts at their entraining speeds and loads."""
+        from raceway.core.contact.film import film
+
+        speed, load = pairs.entraining_speed, pairs.load
+        assert speed is not None and load is not None, "contacts at the running speed have them"
+        computed = film(
+            self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
+            load, pairs.ellipticity,
+        )  # fmt: skip
+        share = self.film_share(pairs)
+        return attrs.evolve(computed, central=share * computed.central, minimum=share * computed.minimum)
 
 
 @attrs.frozen

@@ -240,6 +240,7 @@ class QuantitySuite(Suite):
     @duty("numbers of columns are those of each point alone; points are not changed")
     def test_columns(self, plugin: Quantities) -> None:
         tables = self._tables(plugin)
+        plugin = _of_scene(plugin, tables)
         loads = [0.8 * tables["load"]["axial"], tables["load"]["axial"]]
         points = _column_points(tables, loads)
         before = {
@@ -257,9 +258,9 @@ class QuantitySuite(Suite):
     @duty("a run states the numbers of columns, tables of plain values, and warnings that are sentences")
     def test_run(self, plugin: Quantities) -> None:
         tables = self._tables(plugin)
-        result = run(scene_from_dict(tables))
+        plugin, result = _of_scene(plugin, tables), run(scene_from_dict(tables))
         point, columns = (
-            solved_point(result.model, result.equilibrium, None), _column_points(tables, [tables["load"]["axial"]])
+            solved_point(result.model, result.equilibrium, None), _column_points(tables, [tables["load"]["axial"]], result)
         )  # fmt: skip
         require(not (why := why_no_quantities(plugin, point.problem)), f"the scene lacks {why}: give `example_scene()`")
         values = quantities_at(plugin, point)
@@ -276,9 +277,24 @@ class QuantitySuite(Suite):
         return {"kinematics": {"spin_speed_rpm": 6000.0}, **tables}
 
 
-def _column_points(tables: Tables, loads: list[float]) -> SolvedPoints:
-    """The scene at axial loads, as columns."""
+def _of_scene(plugin: Quantities, tables: Tables) -> Quantities:
+    """The plug-in with the options that the scene gives it."""
+    options = tables.get("quantities", {}).get(plugin.name, {})
+    return attrs.evolve(plugin, **options)  # type: ignore[misc]
+
+
+def _column_points(tables: Tables, loads: list[float], result: Result | None = None) -> SolvedPoints:
+    """The scene at axial loads, as columns; at the temperatures of a result."""
     scene, columns = scene_from_dict(tables), {"load.axial": np.array(loads)}
+    if scene.heat is not None:
+        problem = run(scene).model.problem if result is None else result.model.problem
+        warm = {
+            f"mounting.{node}_temperature": getattr(problem.mounting, f"{node}_temperature")
+            for node in ("inner", "outer", "ball")
+        }
+        assert problem.lubricant is not None, "rules of [heat] ask for it"
+        warm["lubricant.temperature_c"] = problem.lubricant.temperature_c
+        columns |= {key: np.full(len(loads), value) for key, value in warm.items()}
     bearing = build_columns(column_problem(scene, columns), make_plan(scene))
     return Computed.of(resolve(scene), bearing, None, 1e-10, ()).points
 
