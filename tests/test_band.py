@@ -46,7 +46,7 @@ def test_a_result_has_the_band_of_its_tolerances_to_first_order():
     }
     own = LOADED | moving | {"tolerances": {"load.axial": "±1 %", "bearing.contact_angle_deg": "+0.1 deg -0.05 deg"}}
     found, samples = rw.run(own).tolerances["quantities"], rw.band(own, count=256)
-    assert set(found) == set(samples.nominal) and "K" in found
+    assert set(found) <= set(samples.nominal) and "K" in found
     for name, one in found.items():
         width = samples.high[name] - samples.low[name]
         assert one["value"] == pytest.approx(samples.nominal[name], rel=1e-6)
@@ -150,8 +150,8 @@ def test_compiled_loops_give_what_samples_one_by_one_give(tables, tolerances, mo
     assert (looped.samples, looped.lost, looped.why) == (single.samples, single.lost, single.why)
     for name in ("nominal", "low", "high", "first", "total"):
         a, b = (getattr(one, name) for one in (looped, single))
-        assert list(a) == list(b)
-        for key, number in a.items():
+        assert set(b) <= set(a)
+        for key, number in ((key, a[key]) for key in b):
             assert number == pytest.approx(b[key], rel=1e-6, abs=1e-6 if name in ("first", "total") else 0.0), (name, key)
 
 

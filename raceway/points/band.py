@@ -282,7 +282,7 @@ def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Ma
     if C.symbol in nominal:
         columns[C.name][~resolved(columns[Z_REAL.name], columns[Z_IMAG.name])] = np.nan
     table = np.stack([columns[name] for name in names.values()], axis=1)
-    return [{symbol: x for symbol, x in zip(names, row, strict=True) if not np.isnan(x)} for row in table.tolist()]
+    return [{symbol: x for symbol, x in zip(names, row, strict=True) if np.isfinite(x)} for row in table.tolist()]
 
 
 def sampled(task: tuple[Tables, Sequence[str], list[list[float]]], registry: Registry) -> Tables:

@@ -165,7 +165,7 @@ class Points:
                 "point": self.design.point(number),
                 "status": status,
                 "reason": self.reasons.get(number, ""),
-                "values": {name: value.tolist() for name, value in values.items() if not np.isnan(value).all()},
+                "values": {name: value.tolist() for name, value in values.items() if np.isfinite(value).any()},
                 "warnings": self.warnings.get(number, []),
             }
 

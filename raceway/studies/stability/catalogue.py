@@ -243,8 +243,10 @@ def _with_law(name: str, registry: Registry) -> Tables:
     """The changes that give a scene a law: a law that needs options has those of its first example."""
     plugin = registry.find("contact_law", name).plugin
     try:
-        plugin()
+        complete = getattr(plugin(), "known", True)  # films need an oil
     except (TypeError, ValueError):
+        complete = False
+    if not complete:
         first = plugin.examples()[0]
         fields = [field for field in attrs.fields(plugin) if getattr(first, field.name) != field.default]
         return {"contact.kind": name, **{f"contact.{field.name}": getattr(first, field.name) for field in fields}}
