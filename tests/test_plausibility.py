@@ -180,7 +180,8 @@ def test_the_body_that_lags_most_is_named_where_the_stated_error_is_less():
 
 def test_a_contact_pressure_beyond_static_ratings_is_told():
     text = of_one_kind(
-        [w for w in static(load={"axial": 1e6}) if "contact pressure" in w], "10657 MPa on the inner race, ball 0"
+        [w for w in static(load={"axial": 1e6}) if "groove's edge" not in w and "dynamic rating" not in w],
+        "10657 MPa on the inner race, ball 0",
     )
     assert "4200 MPa" in text
     # Of 12 equal balls at the angle of this load the limit is met near 39 kN.

@@ -18,13 +18,13 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import DIFFERENTIABLE, Z_IMAG, Z_REAL, C, read_in
+from raceway.out.quantities import Z_IMAG, Z_REAL, C, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
-from raceway.pipeline.quantities import quantity_of
+from raceway.pipeline.quantities import quantity_of, stated_quantities
+from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import resolve
 from raceway.points.column_quantities import stated_columns
 from raceway.points.engine import Item, local, work_through
 from raceway.points.function import function
@@ -267,14 +267,12 @@ class Band(Answer):
 
 
 def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
-    """Answers at points (n, d) as ``sampled`` gives them, from compiled loops, with numbers of plug-ins; empty at points that these leave."""
-    names = {symbol: DIFFERENTIABLE[symbol].name for symbol in nominal}
-    names |= {name: name for name in stated_columns(resolve(scene), default_registry())}
+    """Answers at points (n, d) as ``sampled`` gives them, from compiled loops; empty at points that these leave."""
+    names = {symbol: quantity_of(symbol).name for symbol in nominal}
     outputs = list(names.values())
-    if scene.excitation is not None:  # whatever the scene's own integrator is, samples are steady orbits
+    if scene.excitation is not None:
         outputs += [Z_REAL.name, Z_IMAG.name]
-        tables = {**without(scene.source, "identifier"), "integrator": {"kind": "periodic"}}
-        scene = scene_from_dict(tables, default_registry())
+        scene = _steady(scene)
     loop = function(scene, paths, outputs)
     if loop.why_slow:
         return [{}] * len(numbers)
@@ -305,11 +303,21 @@ def _row(scene: Scene, paths: Sequence[str], point: list[float]) -> Tables:
 
 
 def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
-    """Numbers, and what they are."""
+    """Numbers, and what they are; of plug-ins of quantities those with one number a point."""
     model = build_model(scene, make_plan(scene))
     equilibrium = solve_equilibrium(model)
-    words = {name: quantity.words for name, quantity in stated_columns(model.problem, default_registry()).items()}
-    return values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium) | words
+    numbers, words = values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
+    columns = stated_columns(model.problem, default_registry())
+    moving = scene.excitation is not None
+    stated = run(_steady(scene)).quantities if moving else stated_quantities(model, equilibrium, None).values
+    numbers |= {name: float(stated[name]) for name in columns if name in stated and np.isfinite(stated[name])}
+    return numbers, words | {name: quantity.words for name, quantity in columns.items()}
+
+
+def _steady(scene: Scene) -> Scene:
+    """The scene on its steady orbit: whatever its own integrator is, samples are such."""
+    tables = {**without(scene.to_dict(), "identifier"), "integrator": {"kind": "periodic"}}
+    return scene_from_dict(tables, default_registry())
 
 
 def _summary(
@@ -348,12 +356,6 @@ def _summary(
 def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
     counts, edges = np.histogram(values[np.isfinite(values)], _BINS)
     return edges.tolist(), counts.tolist()
-
-
-def _points(varied: Sequence[Tolerance], count: int, seed: int) -> np.ndarray:
-    """(1 + (d + 2) n, d) the nominal numbers and the samples."""
-    middle, low, high = np.array([(tolerance.key.value, tolerance.low, tolerance.high) for tolerance in varied]).T
-    return np.vstack([middle, low + design(count, len(varied), seed) * (high - low)])
 
 
 @door
@@ -406,10 +408,10 @@ def band(
         )
     varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _answer(read)
-    paths, numbers = [tolerance.key.path for tolerance in varied], _points(varied, count, seed)
-    at_middle, *rows = _looped(read, paths, numbers, nominal)
-    nominal |= {name: number for name, number in at_middle.items() if name not in nominal}
-    left = numbers[1:][[not row for row in rows]]
+    paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in varied), strict=True)
+    numbers = np.array(low) + design(count, len(varied), seed) * np.subtract(high, low)
+    rows = _looped(read, paths, numbers, nominal)
+    left = numbers[[not row for row in rows]]
     tasks = [(read.source, paths, left[k : k + _CHUNK].tolist()) for k in range(0, len(left), _CHUNK)]
     items = [Item(row_key(read, registry, f"band {task[1:]}"), "samples", task) for task in tasks]
     files = [Path(file) for file in plugins]
