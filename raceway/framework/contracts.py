@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, cast
 
 import attrs
 
@@ -278,6 +278,9 @@ class Format(attrs.AttrsInstance, Protocol):
     def write(self, path: Path, content: Any) -> list[Path] | None: ...
 
 
+_T = TypeVar("_T")
+
+
 @attrs.frozen(eq=False, slots=False)
 class SolvedPoints:
     """n solved operating points as quantities see them; Z balls of all rows; race 0 is the inner, 1 the outer one.
@@ -322,6 +325,16 @@ class SolvedPoints:
     def peak_pressure(self) -> np.ndarray:
         """(n, 2, Z) under ``load`` [Pa]."""
         return self._ellipses[0]
+
+    def once(self, name: str, compute: Callable[[], _T]) -> _T:
+        """What several duties of plug-ins need of these points, computed when it is first asked for by its name."""
+        if name not in self._computed:
+            self._computed[name] = compute()
+        return cast("_T", self._computed[name])
+
+    @cached_property
+    def _computed(self) -> dict[str, object]:
+        return {}
 
     @cached_property
     def _ellipses(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

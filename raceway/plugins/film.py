@@ -51,14 +51,14 @@ class FilmThickness:
         return "" if problem.points or problem.spin_speed > 0.0 else "a film needs a speed: kinematics.spin_speed_rpm"
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        films = _films(points)
+        films = points.once("films", lambda: _films(points))
         return {"film_central": films.central.min(axis=(1, 2)), "film_minimum": films.minimum.min(axis=(1, 2))}
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
         """Least thicknesses, of each race its thinnest film with its ball, and what the oil is taken with."""
         from raceway.core.contact.film import REGIMES
 
-        films, contacts, oil = _films(points), points.running_contacts(), _oil(points)
+        films, contacts, oil = points.once("films", lambda: _films(points)), points.running_contacts(), _oil(points)
         assert contacts.entraining_speed is not None, "contacts at the running speed have it"
         speeds = contacts.entraining_speed.reshape(films.minimum.shape)[0]
         share = oil.film_share(contacts).reshape(films.minimum.shape)[0]

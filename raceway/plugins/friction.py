@@ -99,8 +99,9 @@ class Friction:
         oil = points.problem.lubricant
         assert oil is not None, "why_not says so"
         controlled = points.problem.kinematics.gyroscopic == "outer_race"
-        return losses(
-            ball_contacts(points), oil.around_balls(), points.speed, self.seal_torque + self.cage_torque, controlled
+        seals = self.seal_torque + self.cage_torque
+        return points.once(
+            "losses", lambda: losses(ball_contacts(points), oil.around_balls(), points.speed, seals, controlled)
         )
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:

@@ -64,7 +64,7 @@ class Temperatures:
         return "" if problem.heat is not None else "a table [heat] says what carries the heat off"
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        network = thermal_network(points)
+        network = points.once("network", lambda: thermal_network(points))
         level, flows = network.temperatures + ZERO_C, network.flows
         return {
             **{f"temperature_{node}_k": level[:, k] for k, node in enumerate(_NODES)},
@@ -76,7 +76,8 @@ class Temperatures:
         """``temperatures_k``, ``flows_w`` (also along each link of the network, null where it is infinite) and ``heat_w``."""
         import numpy as np
 
-        network, numbers = thermal_network(points), {name: float(value[0]) for name, value in values.items()}
+        network = points.once("network", lambda: thermal_network(points))
+        numbers = {name: float(value[0]) for name, value in values.items()}
         conductances = {name: float(np.reshape(value, -1)[0]) for name, value in network.conductances.items()}
         return {
             "temperatures_k": {node: numbers[f"temperature_{node}_k"] for node in _NODES},

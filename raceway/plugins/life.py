@@ -92,7 +92,7 @@ class Life:
         return balls * -(-_MOMENTS // balls)
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        rows = self._rows(points)
+        rows = points.once("lives", lambda: self._rows(points))
         life = system_life(np.concatenate([row.ring_lives for row in rows], axis=-1))
         modified = reliability_factor(self.reliability) * system_life(np.stack([row.modified for row in rows], axis=-1))
         rating = set_rating(np.stack([np.broadcast_to(row.ratings.dynamic, life.shape) for row in rows]))
@@ -110,7 +110,7 @@ class Life:
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
         """The numbers, None where they have no limit or are not known; origin of the ratings; the same of each row and its rings."""
-        rows = self._rows(points)
+        rows = points.once("lives", lambda: self._rows(points))
         why = self._why_not_modified(points, rows)
         numbers = {name: _stated(value) for name, value in values.items()}
         origin = ", ".join(dict.fromkeys(row.ratings.dynamic_from for row in rows))
@@ -142,7 +142,7 @@ class Life:
             sentences.append(
                 f"life: the equivalent load is {share:.2g} of the dynamic rating; ISO 281 holds up to {_LARGEST_LOAD:g}"
             )
-        rows = self._rows(points)
+        rows = points.once("lives", lambda: self._rows(points))
         if any(row.viscosity_ratio[0] < VISCOSITY_RATIOS[0] for row in rows):
             sentences.append(f"life: not modified: {self._why_not_modified(points, rows)}")
         return sentences
