@@ -52,59 +52,8 @@ Examples
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any
+from lazy_loader import attach_stub
 
 __version__ = "0.1.0"
 
-_MODULES = {
-    "raceway.pipeline.front": "run",
-    "raceway.points.compare": "compare Comparison",
-    "raceway.points.sweep": "sweep",
-    "raceway.points.follow": "follow",
-    "raceway.points.function": "function Function PointStatus",
-    "raceway.points.precision": "precision Precision",
-    "raceway.points.band": "band Band",
-    "raceway.points.sensitivities": "sensitivities Sensitivities",
-    "raceway.studies.fit.identify": "identify Identified",
-    "raceway.studies.fit.fit": "fit",
-    "raceway.studies.fit.fitted": "Fitted",
-    "raceway.studies.rotor.export": "export_ross export_coefficients RossTable CoefficientFile",
-    "raceway.studies.view.view": "view View",
-    "raceway.studies.catalogue.infer": "infer",
-    "raceway.studies.catalogue.catalogue": "catalogue",
-    "raceway.points.law": "law LawCurves",
-    "raceway.studies.catalogue.inferred": "Inferred",
-    "raceway.points.branch": "Followed",
-    "raceway.scene.catalogue": "Preset",
-    "raceway.scene.scene": "Scene",
-    "raceway.scene.inputs": "load_scene evolve",
-    "raceway.scene.reading": "scene_from_dict",
-    "raceway.planning.plan": "plan ScenePlan check Check make_plan",
-    "raceway.bodies.model": "build_model",
-    "raceway.pipeline.result": "Result",
-    "raceway.framework.hookspecs": "hookimpl",
-    "raceway.out.answer": "Answer",
-    "raceway.out.quantities": "Quantity",
-    "raceway.cli.command": "Command Option",
-    "raceway.core.jit": "jit",
-    "raceway.core.signatures": "LAW FORCE",
-    "raceway.framework.options": (
-        "option positive at_least above between inside length finite one_of word_or optional worded"
-    ),
-    "raceway.errors": (
-        "RacewayError SceneError Mistake PluginError MeshError ConvergenceError StabilityError BeyondPlanError"
-    ),
-}
-_PUBLIC = {name: module for module, names in _MODULES.items() for name in names.split()}
-__all__ = sorted(_PUBLIC)
-
-
-def __getattr__(name: str) -> Any:
-    if name in _PUBLIC:
-        return getattr(import_module(_PUBLIC[name]), name)
-    raise AttributeError(f"module 'raceway' has no attribute '{name}'")
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_PUBLIC])
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

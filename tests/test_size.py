@@ -37,7 +37,7 @@ def missing(name: str) -> bool:
     for count in range(len(parts), -1, -1):
         for path in ("/".join(parts[:count]) + ".py", "/".join([*parts[:count], "__init__.py"])):
             if path in WORDS:
-                return not set(parts[count:]) <= WORDS[path]
+                return not set(parts[count:]) <= {*WORDS[path], *(raceway.__all__ if count == 0 else ())}
     return True
 
 

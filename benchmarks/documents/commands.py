@@ -26,11 +26,11 @@ Made by `python -m benchmarks.documents` from the commands themselves; do not ed
 
 ## Completion
 
-The shell completes commands and options after one line in its start file:
+The shell completes commands, options, keys of a scene after `--set` and their values after one line in its start file:
 
 | shell | line | file |
 |---|---|---|
-| bash 4.4 or later | `eval "$(_RACEWAY_COMPLETE=bash_source raceway)"` | `~/.bashrc` |
+| bash 4.4 or later | `COMP_WORDBREAKS=${COMP_WORDBREAKS//=/}; eval "$(_RACEWAY_COMPLETE=bash_source raceway)"` | `~/.bashrc` |
 | zsh | `eval "$(_RACEWAY_COMPLETE=zsh_source raceway)"` | `~/.zshrc` |
 | fish | `_RACEWAY_COMPLETE=fish_source raceway \\| source` | `~/.config/fish/completions/raceway.fish` |
 """

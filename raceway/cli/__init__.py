@@ -1,7 +1,7 @@
 """The command line, the only place that prints or exits.
 
 main       the group of all commands;  console: messages and exit codes;  frame: what commands share
-commands   their table;  command: one made from a public function
+commands   their table;  command: one made from a public function;  completion: of keys of a scene, by the shell
 interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only;  verbose: what -v reports
 plan       raceway plan;  failure: files of a failed run
 sweep, study, cache, plugins, new_scene   commands that are more than a front: sweeps, studies, caches, plug-ins, a first scene

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
+from raceway.cli.completion import OF_KEYS, scene_keys
 from raceway.cli.frame import (
     PATH,
     RESULTS,
@@ -166,7 +167,16 @@ class Command(NamedTuple):
             required = parameter.default is inspect.Parameter.empty
             several = f"{text.removesuffix('.')}; repeat for more."
             of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
-            return click.option(*flags, type=of, multiple=True, required=required, metavar=about.metavar, help=several)
+            complete = scene_keys if parameter.name in OF_KEYS else None
+            return click.option(
+                *flags,
+                type=of,
+                multiple=True,
+                required=required,
+                metavar=about.metavar,
+                help=several,
+                shell_complete=complete,
+            )
         empty = default is inspect.Parameter.empty
         # None too is a value to click, also of what is required.
         start: dict[str, Any] = {} if empty else {"default": default}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from raceway.cli.completion import scene_keys
 from raceway.cli.console import described, print_json, warn
 from raceway.cli.verbose import listen
 from raceway.errors import Mistake, RacewayError, SceneError, extra
@@ -29,8 +30,9 @@ RESULTS = Path("raceway-out")
 #: A file or folder that need not be there yet: what reads it says what is wrong with it.
 PATH = click.Path(path_type=Path, readable=False)
 set_keys = click.option(
-    "--set", "changes", multiple=True, metavar="A.B=C", help="Change a key of the scene; repeat for more."
-)
+    "--set", "changes", multiple=True, metavar="A.B=C", shell_complete=scene_keys,
+    help="Change a key of the scene; repeat for more.",
+)  # fmt: skip
 
 
 def out_option(default: str) -> Callable[[F], F]:

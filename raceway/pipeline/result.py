@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar, cast, overload
 
 import attrs
 import numpy as np
@@ -37,6 +37,7 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
 
     from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry, Registry
@@ -134,6 +135,8 @@ class Result(Answer):
         """K = Re Z + m w^2 [N/m]; None in a static scene."""
         return None if self.identification is None else self.identification.equivalent_stiffness
 
+    Z, K = dynamic_stiffness, equivalent_stiffness
+
     @property
     def equivalent_stiffness_error(self) -> float | None:
         """Estimated absolute error of K [N/m]; None where it is not estimated."""
@@ -144,6 +147,8 @@ class Result(Answer):
     def equivalent_damping(self) -> float | None:
         """C = Im Z / w [N s/m]; None in a static scene."""
         return None if self.identification is None else self.identification.equivalent_damping
+
+    C = equivalent_damping
 
     @property
     def dynamic_stiffness_imag_error(self) -> float | None:
@@ -269,7 +274,13 @@ class Result(Answer):
         """
         return labelled(self)
 
-    def plot(self, what: str | None = None, ax: Any = None) -> Any:
+    @overload
+    def plot(self, what: str, ax: Axes | None = None) -> Axes: ...
+
+    @overload
+    def plot(self, what: None = None, ax: None = None) -> tuple[Axes, ...]: ...
+
+    def plot(self, what: str | None = None, ax: Axes | None = None) -> Axes | tuple[Axes, ...]:
         """Draw the orbit, the spectrum of the displacement, or the ball loads.
 
         Parameters
