@@ -5,6 +5,7 @@ damage                stores and caches that were damaged
 signals               commands that are asked to end, or killed
 dask                  workers that are killed, unfit or silent
 types                 what editors and type checkers see of the package
+words                 length of the documents, terms that the field does not know
 pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
 points                time of a point of ``raceway.function``, and equality with runs
