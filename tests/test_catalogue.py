@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import sin
 
 import attrs
@@ -12,6 +13,7 @@ from raceway import SceneError, run, scene_from_dict
 from raceway.planning.resolve import resolve
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import _single_presets, catalogue, found_by, preset
+from raceway.scene.clearance import CLASSES, clearance_range
 from raceway.scene.sets import RATINGS
 from raceway.studies.catalogue.printed import printed_by
 
@@ -88,6 +90,48 @@ def test_the_inferred_free_angle_of_harris_and_mindel_gives_what_they_print():
     assert np.degrees(state.angle_inner) == pytest.approx(29.762, abs=0.01)
     assert state.contact_force[:21] / POUND == pytest.approx(287.76, rel=3e-4)
     assert 21 * state.contact_force[0] * sin(state.angle_inner[0]) == pytest.approx(3000.0 * POUND, rel=1e-9)
+
+
+def test_deep_groove_series_have_clearance_ratings_and_sources():
+    presets = [
+        entry
+        for entry in catalogue().values()
+        if entry.title.partition(": ")[2].startswith("deep-groove ball bearing of series")
+    ]
+    assert len(presets) == 254
+    for entry in presets:
+        numbers = {fact.key: fact.value for fact in entry.facts}
+        assert (numbers["contact_angle_deg"], len(entry.ratings)) == (0, 2)
+        least, largest = clearance_range("ball", numbers["bore"])
+        assert least < numbers["radial_clearance"] < largest
+        assert all(abs(error) <= 0.01 for error in entry.printed.values())
+    assert {"6205", "618/5", "61805", "619/500", "60/22", "6356", "608"} <= set(catalogue())
+
+
+def test_classes_of_clearance_overlap_in_order():
+    for bore in (5e-3, 10e-3, 30e-3, 30.1e-3, 120e-3, 500e-3):
+        for kind in ("ball", "roller")[: 1 if bore < 10.1e-3 else 2]:
+            ranges = [clearance_range(kind, bore, name) for name in CLASSES]
+            assert all(low[0] < high[0] <= low[1] < high[1] for low, high in pairwise(ranges)), (kind, bore)
+    # ISO 5753-1: 30 mm belongs to over 24 up to 30, 5 to 20 um.
+    assert clearance_range("ball", 0.03) == pytest.approx((5e-6, 20e-6))
+    assert clearance_range("ball", 2.0) is None
+
+
+@pytest.mark.parametrize("bodies", ["rigid", "condensed"])
+def test_a_deep_groove_bearing_counts_from_the_middle_of_its_clearance(bodies):
+    def answer(axial, radial=0.0, **bearing):
+        load = {"axial": axial, "radial": [radial, 0.0]}
+        return run({"bearing": {"preset": "6206", **bearing}, "bodies": {"kind": bodies}, "load": load}).equilibrium
+
+    # Meshes of condensed bodies are not quite symmetric: 2e-4.
+    to, fro = answer(300.0, 200.0), answer(-300.0, 200.0)
+    assert to.displacement[0] == pytest.approx(-fro.displacement[0], rel=1e-9 if bodies == "rigid" else 1e-3)
+    assert abs(answer(0.0, 800.0).displacement[0]) < 1e-8
+    # Under a light load it stands at half the end play, B sin(alpha_0) with cos(alpha_0) = 1 - P_d / (2 B).
+    distance = 0.05 * 9.525e-3
+    play = distance * np.sqrt(1.0 - (1.0 - 12.5e-6 / (2.0 * distance)) ** 2)
+    assert answer(1e-3).displacement[0] == pytest.approx(play, rel=1e-3)
 
 
 def test_a_typo_offers_the_nearest_preset():

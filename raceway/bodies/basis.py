@@ -58,10 +58,10 @@ class Basis:
         return self.geometries[self.row[ball]].ellipses(self.modulus)
 
 
-def make_basis(problem: Problem) -> Basis:
-    """Geometry and contacts of a scene."""
+def make_basis(problem: Problem, meshed: bool = False) -> Basis:
+    """Geometry and contacts of a scene; bodies that are ``meshed`` where they touch count axial displacements from there."""
     b = problem.bearing
-    geometries = tuple(BallBearing.of(bearing) for bearing in b.of_rows)
+    geometries = tuple(BallBearing.of(bearing, b.centred and not meshed) for bearing in b.of_rows)
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     azimuth = [
         per_ball(radians(bearing.first_ball_azimuth_deg)) + 2.0 * pi * np.arange(bearing.ball_count) / bearing.ball_count
@@ -186,9 +186,10 @@ def first_guess(problem: Problem, basis: Basis) -> np.ndarray:
     """(..., 5) displacement to look for the equilibrium from [m, rad]."""
     geometry, x, axial, radial = basis.geometry, basis.axial, problem.load.axial, problem.load.radial
     rest_axial, rest_radial = geometry.rest
+    touch, opposite = geometry.seat - rest_axial, -geometry.seat - rest_axial  # first touch either way
     size, guess = np.hypot(*radial), np.zeros((*problem.points, 5))
     across = (axial == 0.0) & (size > 0.0)
-    guess[..., 0] = where(axial > 0.0, x, where(axial < 0.0, -2.0 * rest_axial - x, where(across, -rest_axial, 0.0)))
+    guess[..., 0] = where(axial > 0.0, touch + x, where(axial < 0.0, opposite - x, where(across, -rest_axial, touch)))
     reach = geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance
     for i, force in enumerate(radial):
         guess[..., 1 + i] = where(across, force / where(across, size, 1.0) * reach, 0.0)

@@ -38,7 +38,7 @@ def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
     MeshError
         Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
     """
-    basis, resultants = make_basis(problem), problem.contact.discretisation == "resultant"
+    basis, resultants = make_basis(problem, meshed=True), problem.contact.discretisation == "resultant"
     as_rigid = problem if resultants else with_hertz(problem)
     rigid = rigid_system(as_rigid, plan, basis).without(FRICTION)
     probe(as_rigid, basis, rigid)

@@ -124,7 +124,10 @@ _READERS: dict[str, Reader] = {
             lambda v: {_TEXT[1](one): _TEXT[1](name) for one, name in v.items()},
         ),
         "tables": _reader("a mapping, such as a dict", _is(Mapping)),
-        "ratings": ("a mapping of angles to (C, C0)", lambda v: {float(angle): (c, c0) for angle, (c, c0) in v.items()}),
+        "ratings": (
+            "a mapping of angles to (C, C0)",
+            lambda v: {float(angle): (c, c0, *f) for angle, (c, c0, *f) in v.items()},
+        ),
         "pairs": ("triples (angle, preload, stiffness)", lambda v: [(float(angle), load, k) for angle, load, k in v]),
         "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),
         "row": _reader("a finished row of `judged`", lambda v: v["physics"] and float(v["error"]) >= 0.0),

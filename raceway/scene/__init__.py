@@ -9,6 +9,7 @@ structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file
 catalogue   bearing presets and materials by name
+clearance   radial internal clearances of ISO 5753-1 by class and bore
 ratings     load ratings of the rows: by keys, as the catalogue prints them, or from geometry
 lubricant   oils, their viscosity, and the table [lubricant]
 heat        the table [heat]: what carries the heat of friction off

@@ -198,6 +198,12 @@ class Bearing:
         return _of_rows(self)
 
     @property
+    def centred(self) -> bool:
+        """Whether axial displacements count from the middle of the axial clearance: one row of deep grooves with a clearance."""
+        angle = self.contact_angle_deg
+        return (angle is None or not some(angle)) and self.radial_clearance is not None and len(self.rows) == 1
+
+    @property
     def equal_rows(self) -> bool:
         """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
         if not self.row:

@@ -101,10 +101,21 @@ class Preset:
 def catalogue() -> dict[str, Preset]:
     """All presets by name: those with a file of their own, then the series."""
     presets = dict(_single_presets())
-    for file in _tomls(files("raceway").joinpath("data/series")):
-        for entry in _series(tomllib.loads(file.read_text(encoding="utf-8"))):
-            presets.setdefault(entry.name, entry)
+    for stem in _series_files():
+        for name, entry in _series_presets(stem).items():
+            presets.setdefault(name, entry)
     return presets
+
+
+@cache
+def _series_files() -> dict[str, Traversable]:
+    """By the beginning of the designations in it."""
+    return {file.name.removesuffix(".toml"): file for file in _tomls(files("raceway").joinpath("data/series"))}
+
+
+@cache
+def _series_presets(stem: str) -> dict[str, Preset]:
+    return {entry.name: entry for entry in _series(tomllib.loads(_series_files()[stem].read_text(encoding="utf-8")))}
 
 
 @cache
@@ -114,10 +125,11 @@ def _single_presets() -> dict[str, Preset]:
 
 
 def preset_of(name: object) -> Preset | None:
-    """One preset; a series is read only where it has to be."""
+    """One preset; only the series that its designation begins with is read."""
     if not isinstance(name, str):
         return None
-    return _single_presets().get(name) or catalogue().get(name)
+    stem = max((stem for stem in _series_files() if name.startswith(stem)), key=len, default=None)
+    return _single_presets().get(name) or (None if stem is None else _series_presets(stem).get(name))
 
 
 def _tomls(folder: Traversable) -> list[Traversable]:
@@ -151,10 +163,8 @@ def _series(content: ReadTables) -> Iterator[Preset]:
             Fact(key, row[key], column["source"], bool(column.get("inferred", False)), row.get(column.get("scatter")))
             for key, column in columns.items()
         ]
-        title = (
-            f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm, "
-            f"{row['contact_angle_deg']:g} deg"
-        )
+        title = f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm"
+        title += f", {row['contact_angle_deg']:g} deg" if row["contact_angle_deg"] else ""
         printed = {key: row[key] for key in content["printed"]}
         yield Preset(name, title, (*measured, *same), **{key: content[key] for key in _INFERRED}, printed=printed)
 
@@ -232,6 +242,7 @@ def _inferred(name: object, tables: ReadTables) -> Tables | None:
     return {
         "preset": entry.name,
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
+        "printed": {fact.key: {"value": fact.value, "source": fact.source} for fact in entry.facts if not fact.inferred},
         **{key: getattr(entry, key) for key in _INFERRED},
     }
 

@@ -23,7 +23,10 @@ from raceway.core.contact.hertz import Ellipse, ellipse
 
 @attrs.frozen
 class BallBearing:
-    """Geometry of one row, all in metres and radians; numbers may be columns."""
+    """Geometry of one row, all in metres and radians; numbers may be columns.
+
+    ``centred``: the axial displacement counts from the middle of the axial clearance, not from the first touch.
+    """
 
     ball_diameter: float
     pitch_diameter: float
@@ -31,11 +34,13 @@ class BallBearing:
     contact_angle: float
     conformity_inner: float
     conformity_outer: float
+    centred: bool = False
 
     @classmethod
-    def of(cls, bearing: object) -> BallBearing:
+    def of(cls, bearing: object, centred: bool = False) -> BallBearing:
         """The lengths of the same names of a scene's bearing, or of one of its rows."""
-        return cls(*(getattr(bearing, field.name) for field in attrs.fields(cls)))
+        lengths = {field.name: getattr(bearing, field.name) for field in attrs.fields(cls)[:-1]}
+        return cls(**lengths, centred=centred)
 
     @property
     def centre_distance(self) -> float:
@@ -64,9 +69,13 @@ class BallBearing:
 
     @property
     def rest(self) -> tuple[float, float]:
-        """Axial and radial part of the vector from the outer to the inner groove centre at rest."""
-        distance = self.centre_distance
-        return distance * sin(self.contact_angle), distance * cos(self.contact_angle)
+        """Axial and radial part of the vector from the outer to the inner groove centre at zero displacement."""
+        return 0.0 * self.seat if self.centred else self.seat, self.centre_distance * cos(self.contact_angle)
+
+    @property
+    def seat(self) -> float:
+        """Axial displacement from the middle of the axial clearance to the first touch."""
+        return self.centre_distance * sin(self.contact_angle)
 
     def ellipses(self, modulus: float) -> tuple[Ellipse, Ellipse]:
         """Hertz contact of the inner and of the outer race, for a contact modulus E* [Pa]."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -28,7 +28,7 @@ Quantity = float | str
 def infer(
     bore: Quantity,
     outer_diameter: Quantity,
-    ratings: Mapping[float, tuple[Quantity, Quantity]],
+    ratings: Mapping[float, Sequence[Quantity]],
     *,
     width: Quantity | None = None,
     pairs: Iterable[tuple[float, Quantity, Quantity]] = (),
@@ -36,15 +36,16 @@ def infer(
     maker: str | None = None,
     conformity: float | None = None,
 ) -> Inferred:
-    """Ball count, ball diameter, pitch diameter and conformity of an angular-contact ball bearing from what its maker prints.
+    """Ball count, ball diameter, pitch diameter and conformity of an angular-contact or deep-groove bearing from what its maker prints.
 
     Parameters
     ----------
     bore, outer_diameter, width : [m], or text such as "70 mm"
-    ratings : by contact angle [deg], basic load ratings (dynamic C, static C0) [N]; all angles of a size that are printed
+    ratings : by contact angle [deg], basic load ratings (dynamic C, static C0) [N]; all angles of a size that are printed.  0 deg is a
+        deep-groove bearing, whose factor f_0 may follow: {0: ("14 kN", "7.85 kN", 13.9)}
     pairs : (contact angle [deg], preload [N], axial stiffness [N/m]) of pairs back to back or face to face
     name : designation
-    maker : "NSK" rates by the tables of ISO 281 and ISO 76, "GMN" by its own grooves; None: what explains the ratings better
+    maker : "NSK" and "NMB" rate by the tables of ISO 281 and ISO 76, "GMN" by its own grooves; None: what explains the ratings better
     conformity : of both grooves, where it is known; None: from ``pairs``, else 0.522
 
     Returns
@@ -72,8 +73,8 @@ def infer(
         outer_diameter=_number("outer diameter", "m", outer_diameter),
         width=None if width is None else _number("width", "m", width),
         ratings=tuple(
-            Rating(angle, _number("dynamic rating", "N", c), _number("static rating", "N", c0))
-            for angle, (c, c0) in ratings.items()
+            Rating(angle, _number("dynamic rating", "N", c), _number("static rating", "N", c0), *map(float, factor))
+            for angle, (c, c0, *factor) in ratings.items()
         ),
         pairs=tuple(
             PairStiffness(angle, _number("preload", "N", load), _number("stiffness", "N/m", stiffness))
@@ -102,7 +103,7 @@ def _number(name: str, unit: str, value: Quantity) -> float:
 
 
 #: Tables that come with the package, and whose they are.
-_TABLES = {"nsk": "NSK", "gmn": "GMN"}
+_TABLES = {"nsk": "NSK", "gmn": "GMN", "nsk_deep_groove": "NSK", "nmb_deep_groove": "NMB"}
 
 
 @attrs.frozen(eq=False, repr=False)
@@ -136,8 +137,9 @@ class _InferredTable(Answer):
         printed = [(a.printed.internals, a.numbers) for a in self.inferred if a.printed.internals is not None]
 
         def share(key: str, within: float) -> float | None:
-            met = [abs(numbers[key].value / getattr(balls, key) - 1.0) <= within for balls, numbers in printed]
-            return sum(met) / self.internals if self.internals else None
+            known = [(getattr(balls, key), numbers[key].value) for balls, numbers in printed]
+            met = [abs(value / right - 1.0) <= within for right, value in known if right is not None]
+            return sum(met) / self.internals if met else None
 
         return {
             "sizes": self.sizes,
@@ -176,8 +178,10 @@ class _InferredTable(Answer):
         if summary["internals_printed"]:
             sentences.append(
                 "{internals_printed} with printed balls, each inferred from the others: Z right in {ball_count_right:.1f} %, "
-                "D within 1 % in {ball_diameter_within_1_percent:.1f} %, d_m in {pitch_diameter_within_1_percent:.1f} %"
+                "D within 1 % in {ball_diameter_within_1_percent:.1f} %"
             )
+        if summary["pitch_diameter_within_1_percent"] is not None:
+            sentences[-1] += f", d_m in {summary['pitch_diameter_within_1_percent']:.1f} %"
         return [sentence.format(**summary) for sentence in sentences]
 
     def _shown(self) -> tuple[str, list[Fact]]:
@@ -235,7 +239,7 @@ def _sizes_of(lines: Iterable[Printed]) -> list[Printed]:
 def _infer_table(table: str, maker: str | None = None, conformity: float | None = None) -> _InferredTable:
     """All sizes of a table.
 
-    table : a CSV file, or "nsk" or "gmn" for those of the package
+    table : a CSV file, or the name of a table of the package
     maker, conformity : as in ``infer_printed``; a table of the package names its maker
     SceneError: a table that cannot be read, or of which no size can be inferred.
     """
@@ -271,18 +275,18 @@ def infer_texts(
     ISO 281 and ISO 76 say how ratings follow from balls; all angles of a size are met together, with a whole number of balls of a
     usual size. TABLE is a CSV file of many bearings with the columns name, bore_mm, outer_diameter_mm, width_mm,
     contact_angle_deg, dynamic_rating_n, static_rating_n, and if they are printed preload_1_n, stiffness_1_n_per_um,
-    preload_2_n ... and ball_count, ball_diameter_mm, pitch_diameter_mm, which are not used but compared. "nsk" and "gmn" are
-    tables that come with the package.
+    preload_2_n ... and ball_count, ball_diameter_mm, pitch_diameter_mm, which are not used but compared; of deep-groove bearings
+    static_factor, f_0. "nsk", "gmn", "nsk_deep_groove" and "nmb_deep_groove" are tables that come with the package.
 
     Parameters
     ----------
-    table : CSV file, "nsk" or "gmn"
+    table : CSV file, or the name of a table of the package
     bore : with a unit: "70 mm"
     outer_diameter : with a unit: "110 mm"
     width : with a unit: "20 mm"
     ratings : contact angle [deg], dynamic and static rating: "15:47 kN:43 kN"
     pairs : axial stiffness of a preloaded pair: "15:145 N:51 N/µm"
-    maker : whose practice of rating it is: NSK, GMN; None: what explains the numbers better
+    maker : whose practice of rating it is: NSK, NMB, GMN; None: what explains the numbers better
     conformity : of both grooves, above 0.5 and at most 0.6; None: from --pair, else 0.522
     """
     if conformity is not None and not 0.5 < conformity <= 0.6:

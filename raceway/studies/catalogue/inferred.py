@@ -14,7 +14,9 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.table import sections
 from raceway.out.wrapping import Words
+from raceway.scene.clearance import clearance_range
 from raceway.storage.tables import Tables
+from raceway.studies.catalogue.deep_groove import GROOVES, STIFFNESS_ERROR, deep_groove_candidates
 from raceway.studies.catalogue.printed import Printed
 from raceway.studies.catalogue.rating_conventions import (
     CONFORMITY,
@@ -101,7 +103,7 @@ class Inferred(Answer):
         return max((abs(check.error) for check in self.checks if check.quantity == quantity), default=None)
 
     def bearing(self, contact_angle_deg: float | None = None) -> Tables:
-        """The table [bearing] of a scene.
+        """The table [bearing] of a scene; a deep-groove bearing with the middle of clearance class CN.
 
         Parameters
         ----------
@@ -112,6 +114,8 @@ class Inferred(Answer):
         table |= {} if size.width is None else {"width": size.width}
         table |= {key: number.value for key, number in self.numbers.items()}
         table["contact_angle_deg"] = contact_angle_deg or size.ratings[0].contact_angle_deg
+        if size.deep_groove and (limits := clearance_range("ball", size.bore)):
+            table["radial_clearance"] = 0.5 * sum(limits)
         return {**table, "rings": dict(steel), "balls": dict(steel)}
 
     def to_dict(self) -> Tables:
@@ -161,13 +165,15 @@ class Inferred(Answer):
 
 
 #: Practices of rating by maker, in small letters.
-_PRACTICES = {"nsk": "tables", "gmn": "grooves"}
+_PRACTICES = {"nsk": "tables", "nmb": "tables", "gmn": "grooves"}
 #: 90 % of the printed axial stiffnesses of pairs lie within this of those of the inferred bearings, by practice (report catalogue).
 STIFFNESS_90 = {"tables": 0.036, "grooves": 0.062}
 #: Scatter of the pitch diameter: of 103 bearings whose maker prints it, 101 have the mean of bore and outer diameter.
 _PITCH = 0.01
 #: Scatter of the conformity where no stiffness is printed: of the series 70, fitted one by one, (f - 0.5) scatters by 5 %.
 _CONFORMITY = 0.002
+#: The same of deep grooves, of which none is printed: 0.515 to 0.525.
+_DEEP_CONFORMITY = 0.01
 #: Error of one printed stiffness: the median over 384 pairs of the series 70 in grooves of one conformity (report catalogue).
 _STIFFNESS = 0.008
 #: Share of known bearings like it below which an answer by grooves is called doubtful.
@@ -213,13 +219,13 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
             max(map(abs, best.dynamic_errors)) / 1.8,
             f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter",
         ),
-        pitch_diameter=_Number(size.mean_diameter, _PITCH, "the mean of bore and outer diameter"),
+        pitch_diameter=_Number(best.pitch_factor * size.mean_diameter, _PITCH, _why_pitch(best.pitch_factor)),
         conformity_inner=inner,
         conformity_outer=outer,
         share=share,
         other=next(next_likely, None),
         checks=_checks(size, best, inner.value, outer.value),
-        stiffness_error=STIFFNESS_90[best.practice],
+        stiffness_error=STIFFNESS_ERROR if size.deep_groove else STIFFNESS_90[best.practice],
     )
 
 
@@ -229,6 +235,13 @@ def _candidates(size: Printed, maker: str | None) -> list[Candidate]:
         makers = ", ".join(name.upper() for name in _PRACTICES)
         raise SceneError.at("maker", maker, f"must be one of {makers}, whose practice of rating is known, or left out")
     practice = None if maker is None else _PRACTICES[maker.lower()]
+    if size.deep_groove:
+        if practice == "grooves":
+            rule = (
+                "rates deep-groove bearings by its own grooves, which leave the ball count open: give conformity and balls"
+            )
+            raise SceneError.at("maker", maker, rule)
+        return sorted(deep_groove_candidates(size), key=lambda x: (not x.explains, -x.weight))
     candidates = [] if practice == "grooves" else by_tables(size)
     # A known bearing is inferred from the others.  Ratings at several angles are one bearing by the tables, or none of both practices.
     if practice == "grooves" or (practice is None and len(size.ratings) == 1):
@@ -282,10 +295,18 @@ def _why_count(best: Candidate, share: float) -> str:
     return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
 
 
+def _why_pitch(factor: float) -> str:
+    mean = "the mean of bore and outer diameter"
+    return mean if abs(factor - 1.0) < 1e-9 else f"{factor:.3g} of {mean}, which C and C0 ask for"
+
+
 def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[_Number, _Number]:
     if conformity is not None:
         both = _Number(conformity, _CONFORMITY, "given")
         return both, both
+    if size.deep_groove:
+        why = "a default, the largest that ISO 76 rates deep grooves with: makers print none"
+        return _Number(GROOVES[0], _DEEP_CONFORMITY, why), _Number(GROOVES[1], _DEEP_CONFORMITY, why)
     if best.practice == "grooves":
         why = "gives C0 as Hertz contact at 4200 MPa"
         outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"

@@ -27,7 +27,7 @@ _NEEDED = {
     "dynamic_rating_n": 1.0,
     "static_rating_n": 1.0,
 }
-_OPTIONAL = {"ball_count": 1.0, "ball_diameter_mm": 1e-3, "pitch_diameter_mm": 1e-3}
+_OPTIONAL = {"static_factor": 1.0, "ball_count": 1.0, "ball_diameter_mm": 1e-3, "pitch_diameter_mm": 1e-3}
 _PAIR = {"preload": "preload_{}_n", "stiffness": "stiffness_{}_n_per_um"}
 #: Static over dynamic rating of ball bearings, generously: outside, one of the two is no rating.
 _RATIO = 0.15, 3.0
@@ -35,11 +35,12 @@ _RATIO = 0.15, 3.0
 
 @attrs.frozen
 class Rating:
-    """Basic load ratings [N] at a contact angle [deg]."""
+    """Basic load ratings [N] at a contact angle [deg]; f_0 [N/mm2] of ISO 76 where it is printed."""
 
     contact_angle_deg: float
     dynamic: float
     static: float
+    static_factor: float | None = None
 
 
 @attrs.frozen
@@ -53,11 +54,11 @@ class PairStiffness:
 
 @attrs.frozen
 class _Internals:
-    """Balls as a maker prints them: count, diameter and pitch diameter [m]."""
+    """Balls as a maker prints them: count, diameter and, where it is printed, pitch diameter [m]."""
 
     ball_count: int
     ball_diameter: float
-    pitch_diameter: float
+    pitch_diameter: float | None
 
 
 @attrs.frozen
@@ -82,7 +83,6 @@ class Printed:
         numbers = [("bore", self.bore), ("outer diameter", self.outer_diameter), ("width", self.width or 1.0)]
         for rating in self.ratings:
             at = f"{rating.contact_angle_deg:g} deg"
-            numbers += [("contact angle", rating.contact_angle_deg)]
             numbers += [(f"dynamic rating, {at}", rating.dynamic), (f"static rating, {at}", rating.static)]
         for pair in self.pairs:
             numbers += [("angle of a pair", pair.contact_angle_deg), ("preload of a pair", pair.preload)]
@@ -97,8 +97,8 @@ class Printed:
         if not self.ratings:
             mistakes.append(Mistake(self.title, None, "needs the load ratings at one contact angle or more"))
         for rating in self.ratings:
-            if not 0.0 < rating.contact_angle_deg <= 45.0:
-                rule = "must be above 0 and at most 45 deg"
+            if not 0.0 <= rating.contact_angle_deg <= 45.0:
+                rule = "must be from 0 to 45 deg"
                 mistakes.append(Mistake(f"{self.title}: contact angle", rating.contact_angle_deg, rule))
             if not _RATIO[0] < rating.static / rating.dynamic < _RATIO[1]:
                 rule = f"contradicts the dynamic rating {rating.dynamic:g} N: C0 is {_RATIO[0]:g} to {_RATIO[1]:g} of C in ball bearings"
@@ -110,6 +110,11 @@ class Printed:
     def title(self) -> str:
         """Designations, or the dimensions where there are none."""
         return ", ".join(self.names) or f"{1e3 * self.bore:g} x {1e3 * self.outer_diameter:g} mm"
+
+    @property
+    def deep_groove(self) -> bool:
+        """Whether it is a deep-groove bearing: no contact angle."""
+        return all(rating.contact_angle_deg == 0.0 for rating in self.ratings)
 
     @property
     def mean_diameter(self) -> float:
@@ -139,7 +144,7 @@ class Printed:
 
 @cache
 def printed_by(maker: str) -> tuple[Printed, ...]:
-    """One entry a designation of a table that comes with the package: "nsk" or "gmn"."""
+    """One entry a designation of a table that comes with the package: the name of its file in raceway/data/printed."""
     text = files("raceway").joinpath(f"data/printed/{maker}.csv").read_text(encoding="utf-8")
     return _parse_table(text, f"{maker}.csv").lines
 
@@ -201,15 +206,17 @@ def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
     def number(key: str) -> float:
         return float(cells[key]) * {**_NEEDED, **_OPTIONAL}.get(key, 1.0)
 
-    angle = number("contact_angle_deg")
-    internals = None
-    if all(cells.get(key) for key in _OPTIONAL):
-        internals = _Internals(int(cells["ball_count"]), number("ball_diameter_mm"), number("pitch_diameter_mm"))
+    def optional(key: str) -> float | None:
+        return number(key) if cells.get(key) else None
+
+    angle, internals = number("contact_angle_deg"), None
+    if cells.get("ball_count") and (diameter := optional("ball_diameter_mm")):
+        internals = _Internals(int(cells["ball_count"]), diameter, optional("pitch_diameter_mm"))
     return Printed(
         bore=number("bore_mm"),
         outer_diameter=number("outer_diameter_mm"),
         width=number("width_mm") if cells["width_mm"] else None,
-        ratings=(Rating(angle, number("dynamic_rating_n"), number("static_rating_n")),),
+        ratings=(Rating(angle, number("dynamic_rating_n"), number("static_rating_n"), optional("static_factor")),),
         pairs=tuple(
             PairStiffness(angle, number(pair["preload"]), 1e6 * number(pair["stiffness"]))
             for pair in pairs

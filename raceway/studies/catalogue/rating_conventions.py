@@ -50,13 +50,13 @@ def _stretch(load: np.ndarray, cosine: np.ndarray) -> np.ndarray:
 
 _INCH = 25.4e-3
 #: First and last size, and the step: in inches, and in m.
-_BY_INCH = ((1 / 16, 31 / 64, 1 / 64), (1 / 2, 47 / 32, 1 / 32), (3 / 2, 4.0, 1 / 16))
+_BY_INCH = ((1 / 32, 31 / 64, 1 / 64), (1 / 2, 47 / 32, 1 / 32), (3 / 2, 4.0, 1 / 16))
 _BY_MILLIMETRE = ((1e-3, 12.5e-3, 0.5e-3), (13e-3, 100e-3, 1e-3))
 #: Relative distance up to which two sizes are one.
 _SAME = 1e-6
 
 
-def _ball_sizes(smallest: float, largest: float, metric: bool = False) -> np.ndarray:
+def ball_sizes(smallest: float, largest: float, metric: bool = False) -> np.ndarray:
     """Sizes (n,) [m] from ``smallest`` to ``largest`` [m], by inches or by mm."""
     unit, steps = (1.0, _BY_MILLIMETRE) if metric else (_INCH, _BY_INCH)
     sizes = np.concatenate([np.arange(first, last + 0.5 * step, step) for first, last, step in steps]) * unit
@@ -102,7 +102,8 @@ class Candidate:
     """A ball count and diameter [m] with the conformities and misfits (relative, signed, computed less printed) that belong to it.
 
     ``weight``: log-density of what is printed; ``practice``: "tables" or "grooves"; ``alike``: share, from 0 to 1, of known
-    bearings of the maker that resemble it, None by the tables.
+    bearings of the maker that resemble it, None by the tables; ``pitch_factor``: pitch diameter over the mean of bore and outer
+    diameter.
     """
 
     practice: str
@@ -114,6 +115,7 @@ class Candidate:
     static_errors: tuple[float, ...]
     weight: float
     alike: float | None = None
+    pitch_factor: float = 1.0
 
     @property
     def explains(self) -> bool:
@@ -141,7 +143,7 @@ def _misfits(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLike,
 
 def _trials(size: Printed, metric: bool = False) -> Iterator[tuple[float, np.ndarray]]:
     """Ball diameters [m] with the counts that fill the pitch circle as bearings do."""
-    for d in _ball_sizes(_BALL[0] * size.section, _BALL[1] * size.section, metric):
+    for d in ball_sizes(_BALL[0] * size.section, _BALL[1] * size.section, metric):
         most = np.pi / np.arcsin(d / size.mean_diameter)
         counts = np.arange(max(int(_FILL[0] * most), 4), int(_FILL[1] * most) + 2)
         yield float(d), counts[counts <= most]

@@ -63,8 +63,7 @@ def _masta(case: Case, registry: Registry) -> Rows:
     """Displacements and reference life of a deep-groove bearing with tilts free.
 
     Frame: the source's radial x is our y, its axial z our x.  Both arms of a tilt are d_m / 2: ``tilt_arm = "pitch"``.
-    The source counts the axial displacement from the middle of the axial clearance, we from the first touch: add
-    B sin(alpha0).  The source takes the curvatures at a contact angle of zero, we at the free one: worth 4e-5.
+    Both count the axial displacement from the middle of the axial clearance.  The source takes the curvatures at a contact angle of zero, we at the free one: worth 4e-5.
     """
     inputs = case.inputs
     clearance, azimuth = float(inputs["Gr_mm"]) * 1e-3, inputs["first_ball_angle_deg"]
@@ -78,7 +77,7 @@ def _masta(case: Case, registry: Registry) -> Rows:
     q = result.equilibrium.displacement
     yield from _numbers(case, {
         "dr_um": ("radial displacement [um]", 1e6 * float(np.hypot(q[1], q[2]))),
-        "da_um": ("axial displacement from mid-clearance [um]", 1e6 * float(q[0] + result.model.geometry.rest[0])),
+        "da_um": ("axial displacement from mid-clearance [um]", 1e6 * float(q[0])),
         "psi_mrad": ("tilt [mrad]", 1e3 * float(np.hypot(q[3], q[4]))),
         "l10r_million_revolutions": ("reference life [million turns]", float(result.quantities["l10r_million_revolutions"])),
     })  # fmt: skip
