@@ -13,6 +13,7 @@ from raceway.core.thermal import (
     STEEL_CONDUCTIVITY,
     STEEL_EFFUSIVITY,
     Network,
+    jet_oil_fraction,
     oil_convection,
     rolling_contact,
     seat_emission,
@@ -51,6 +52,25 @@ def test_two_resistances_in_series(last):
     heats[0, 0] = 100.0
     level = Network(conductances, heats, 30.0, 30.0).temperatures[0]
     assert_allclose(level[0] - 30.0, 100.0 / 4.0 + 100.0 / 5.0, rtol=1e-9)
+
+
+def test_the_outer_ring_heats_a_film_that_passes_it():
+    """Plug flow along a wall: what leaves is at T_in + (T_wall - T_in) (1 - exp(-N)), for a short, a usual and a long way."""
+    for film, throughput in ((1e-3, 10.0), (12.0, 20.0), (300.0, 5.0)):
+        conductances = dict.fromkeys(LINKS, 1e-12) | {"outer_oil": film, "throughput": throughput}
+        heats = np.zeros((1, 6))
+        heats[0, 2] = 100.0
+        level = Network(conductances, heats, 30.0, 30.0).temperatures[0]
+        assert_allclose(level[NODES.index("oil")] - 30.0, 100.0 / throughput, rtol=1e-6)
+        assert_allclose(level[2] - 30.0, 100.0 / (-throughput * np.expm1(-film / throughput)), rtol=1e-4)
+
+
+def test_oil_around_the_balls_by_hand():
+    """760 cm3/min at 28 000 r/min on 46.5 mm: 1e5 760^0.37 / (28 000 46.5^1.7) = 0.0609; 1 at most; what 40 turns let through."""
+    flow, speed = 760e-6 / 60.0, 28_000.0 * np.pi / 30.0
+    assert_allclose(jet_oil_fraction(flow, speed, 46.5e-3), 1e5 * 11.639 / (28_000.0 * 683.2), rtol=1e-3)
+    assert jet_oil_fraction(flow, 0.0, 46.5e-3) == 1.0
+    assert_allclose(jet_oil_fraction(flow, 2.0 * speed, 46.5e-3), 0.5 * jet_oil_fraction(flow, speed, 46.5e-3))
 
 
 def test_infinite_conductances_are_the_limit_of_large_ones():

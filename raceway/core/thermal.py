@@ -4,8 +4,13 @@ Notes
 -----
 Nodes are the inner ring, the balls, the outer ring, shaft, housing and the oil in the bearing, each of one temperature; beside them stand
 the oil's inlet and the ambient, whose temperatures are known.  With the conductances G [W/K] between nodes and the heats Q [W] that
-arise in them, sum_j G_ij (T_i - T_j) = Q_i.  The oil is well stirred: it leaves at the temperature of its node, and its throughput
-m c_p is a conductance to the inlet.  A raceway's track is hotter than the mean of its ring, which alone is a node.
+arise in them, sum_j G_ij (T_i - T_j) = Q_i.  A raceway's track is hotter than the mean of its ring, which alone is a node.
+
+Oil comes in cold, is thrown to the outer ring and leaves over its shoulders.  The mist between the rings, stirred by the balls for tens
+of turns (``jet_oil_fraction``), has the temperature T at which the oil leaves: that of its node, whose throughput m c_p is a conductance to the
+inlet.  Inner ring and balls give their heat to the mist.  The outer ring's film warms up from the inlet's T_0 to T on its way: of
+plug flow along a wall of one temperature, with N = G / (m c_p), the mean is T + (T_0 - T) (1/N - 1/(exp N - 1)), between
+(T_0 + T) / 2 of a short and T of a long way.
 
 References
 ----------
@@ -81,9 +86,10 @@ class Network:
             arising[:, group[node]] += self.heats[:, node]
         for link in LINKS.keys() - infinite:
             i, j = (group[names.index(node)] for node in LINKS[link])
-            for row, column in ((i, j), (j, i)):
-                balance[:, row, row] += self.conductances[link]
-                balance[:, row, column] -= self.conductances[link]
+            for end, part in self._away[link]:
+                k, conductance = group[names.index(end)], part * self.conductances[link]
+                balance[:, i, k] -= conductance
+                balance[:, j, k] += conductance
         free, known = sorted({member for member in group if member < len(NODES)}), [len(NODES), len(NODES) + 1]
         level = np.zeros((n, len(names)))
         level[:, known] = np.stack([np.broadcast_to(self.inlet, n), np.broadcast_to(self.ambient, n)], axis=1)
@@ -92,15 +98,27 @@ class Network:
             level[:, free] = np.linalg.solve(balance[:, free][:, :, free], loads[..., None])[..., 0]
         return level[:, group[: len(NODES)]]
 
+    @cached_property
+    def _away(self) -> dict[str, list[tuple[str, Number]]]:
+        """Of each link the nodes, and their parts of the temperature difference that drives heat back to its first node."""
+        film, throughput = (np.asarray(self.conductances[link], dtype=float) for link in ("outer_oil", "throughput"))
+        with np.errstate(all="ignore"):
+            units = np.where(np.isfinite(throughput), film / throughput, 0.0)
+            cold = np.where(units > 1e-4, 1.0 / units - 1.0 / np.expm1(units), 0.5)
+        ends: dict[str, list[tuple[str, Number]]] = {
+            link: [(first, -1.0), (second, 1.0)] for link, (first, second) in LINKS.items()
+        }
+        return ends | {"outer_oil": [("outer", -1.0), ("oil", 1.0 - cold), ("inlet", cold)]}
+
     @property
     def flows(self) -> dict[str, np.ndarray]:
         """Heat (n,) [W] along each of ``LINKS``, from its first node to its second; nan where the link is infinite, but what the
         oil carries off: all that does not go to the ambient."""
         at = dict(zip(NODES, self.temperatures.T, strict=True)) | {"inlet": self.inlet, "ambient": self.ambient}
         along = {}
-        for link, (first, second) in LINKS.items():
+        for link in LINKS:
             infinite = np.all(np.isinf(self.conductances[link]))
-            difference = at[first] - at[second]
+            difference = np.asarray(-sum(part * at[node] for node, part in self._away[link]))
             along[link] = np.full_like(difference, np.nan) if infinite else self.conductances[link] * difference
         if np.isnan(along["throughput"]).any():
             along["throughput"] = self.heats.sum(axis=1) - along["shaft_ambient"] - along["housing_ambient"]
@@ -165,6 +183,27 @@ def oil_convection(
     prandtl = viscosity * capacity / conductivity
     rate = 30.0 / np.pi * shaft_speed * (1.0 - ratio) / viscosity
     return 0.0986 * np.sqrt(rate) * conductivity * np.cbrt(prandtl) + 2.0 * conductivity / ball_diameter
+
+
+def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Number:
+    """Volume of oil over that of the space around the balls of one row, 1 at most.
+
+    Parameters
+    ----------
+    flow : through the row [m3/s];  speed : of the shaft [rad/s];  pitch_diameter : [m]
+
+    Notes
+    -----
+    XCAV = 1e5 W^0.37 / (n d_m^1.7), in cm3/min, r/min and mm, an empirical one of jet lubricated ball bearings: with it the program
+    SHABERTH has their measured heat, with a law of drag as that of ``Lubricant.drag_coefficient``.  The heat of the 35 mm bearing in
+    docs/measurements.md is no independent check: it is among Parker's.  That it goes with 1/n means that oil stays for a number of turns, some 40.
+
+    References
+    ----------
+    Parker, NASA TP-2275 (1984), as others print it.
+    """
+    turns = 30.0 / np.pi * np.maximum(speed, 1e-9)
+    return np.minimum(1e5 * (6e7 * flow) ** 0.37 / (turns * (1e3 * pitch_diameter) ** 1.7), 1.0)
 
 
 def seat_emission(diameter: Number, seats: Number, width: Number) -> Number:

@@ -2,8 +2,9 @@
 
 Notes
 -----
-The temperatures x of inner rings, balls, outer rings and oil are where those that follow from them are the same, G(x) = x: the bearing is
-solved for with x in [mounting] and in the lubricant, friction gives the heat, the network of ``raceway.core.thermal`` its temperatures.
+The temperatures x of inner rings, balls and outer rings are where those that follow from them are the same, G(x) = x: the bearing is
+solved for with x in [mounting] and, as the oil in a contact's inlet is as warm as its surfaces, the mean over all contacts in the lubricant;
+friction gives the heat, the network of ``raceway.core.thermal`` its temperatures.
 n points are solved for at once as columns: Broyden's method (good update) from cold, then, for points where it finds nothing, half steps
 of x <- G(x), which follow the warming up.  Where these run away there is no steady temperature: more heat is made the
 warmer the bearing is than can leave it.
@@ -11,9 +12,10 @@ warmer the bearing is than can leave it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from itertools import product
 
 import attrs
 import numpy as np
@@ -24,7 +26,7 @@ from raceway.bodies.mounting import preload_table
 from raceway.bodies.rigid import Rigid
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.thermal import NODES
-from raceway.errors import ConvergenceError, RacewayError
+from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import solved_point
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
@@ -35,10 +37,12 @@ from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 #: Nodes that a bearing feels, and the temperature of [mounting] [C] from which its keys count.
-_FELT, _MOUNTED_C = ("inner", "balls", "outer", "oil"), 20.0
+_FELT, _MOUNTED_C = ("inner", "balls", "outer"), 20.0
 _FELT_NODES = [NODES.index(node) for node in _FELT]
+#: Of their surfaces in the contacts.
+_IN_CONTACTS = (0.25, 0.5, 0.25)
 #: Change of temperatures [K] within which they are steady before the last step; steps at most of either method.
-_TOLERANCE, _QUICK, _SLOW = 1e-4, 25, 300
+_TOLERANCE, _QUICK, _SLOW = 1e-3, 25, 300
 #: Longest step of Broyden's method [K].
 _LONGEST = 50.0
 #: Temperature [C] beyond which no bearing runs: steel has lost its hardness, and oils burn.
@@ -77,22 +81,20 @@ def warm(
     scene: Scene,
     columns: Mapping[str, np.ndarray],
     plan: ScenePlan,
-    traction: np.ndarray | float = 1.0,
-    conductance: np.ndarray | float = 1.0,
+    factors: Sequence[np.ndarray] = (),
 ) -> Warmth:
     """Steady temperatures of a scene with [heat] at points.
 
     Parameters
     ----------
     columns : (n,) of continuous keys of the scene, at least one;  plan : of one of the points
-    traction, conductance : factors of heat of friction and of conductances by correlations
+    factors : (n,) of ``thermal_network``
     """
     assert scene.heat is not None, "callers look"
     n, keys = len(next(iter(columns.values()))), _keys(scene)
     inlet, ambient = (
         np.broadcast_to(columns.get(f"heat.{key}", getattr(scene.heat, key)), n) for key in ("oil_inlet_c", "ambient_c")
     )
-    factors = [np.broadcast_to(factor, n) for factor in (traction, conductance)]
     start, nodes = np.repeat(inlet[:, np.newaxis], len(_FELT), axis=1), np.full((n, len(NODES)), np.nan)
     if why_not(scene, False):
         solve: Solve = partial(_one_by_one, scene)
@@ -115,13 +117,17 @@ def warm_plan(scene: Scene) -> ScenePlan:
     Raises
     ------
     ConvergenceError
-        There are none, with the speed above which there are none.
+        There are none, with the speed above which there are none, or at them it can not run: its grooves leave the balls no room.
     """
     simple = _simple(scene)
     warmth = warm(simple, _one(simple), make_plan(simple))
     if warmth.runaway[0]:
         raise ConvergenceError(_runaway_words(simple))
-    return plan_of(_at_row(scene, warmth.columns, 0))
+    try:
+        return plan_of(_at_row(scene, warmth.columns, 0))
+    except SceneError as fault:
+        level = ", ".join(f"{node} at {warmth.temperatures[0, NODES.index(node)]:.4g} °C" for node in _FELT)
+        raise ConvergenceError(f"steady temperatures are no way to run, {level}: {fault}") from fault
 
 
 def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
@@ -133,26 +139,34 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
 
     Notes
     -----
-    Ends are those of the four combinations of both bands' ends; None where one of them has no steady temperature.
+    Ends are those of the eight combinations of friction, the inner rings' conductance to the oil and the other conductances at the ends of
+    their bands.  Where some of them have no steady temperature, or close the bearing, the upper ends are None; both ends where all do.
     """
     assert scene.heat is not None, "callers look"
     simple, wide = _simple(scene), 1.0 + scene.heat.conductance_band
     conductances = (1.0 / wide, wide)
-    factors = np.array([(heat, conductance) for heat in friction for conductance in conductances]).T
-    columns = {key: np.repeat(column, 4) for key, column in _one(simple).items()}
-    warmth = warm(simple, columns, make_plan(simple), *factors)
-    table: Tables = {"friction": list(friction), "conductances": list(conductances)}
-    steady = not warmth.runaway.any()
-    table["temperatures_k"] = {
-        node: _ends(column, steady) for node, column in zip(NODES, warmth.temperatures.T + ZERO_C, strict=True)
-    }
-    if scene.bearing.preloaded:
-        running = []
-        for corner in range(4) if steady else ():
+    factors = np.array(list(product(friction, conductances, conductances))).T
+    columns = {key: np.repeat(column, factors.shape[1]) for key, column in _one(simple).items()}
+    warmth = warm(simple, columns, make_plan(simple), list(factors))
+    running = {}
+    for corner in np.flatnonzero(~warmth.runaway):
+        with suppress(SceneError):
             problem = _at_row(simple, warmth.columns, corner)
             model = model_of(problem, plan_of(problem))
-            running.append((preload_table(model, solve_equilibrium(model)) or {})["running_n"])
-        table["running_preload_n"] = _ends(np.array(running), steady)
+            preloaded = scene.bearing.preloaded and preload_table(model, solve_equilibrium(model))
+            running[corner] = preloaded["running_n"] if preloaded else 0.0
+    level = warmth.temperatures[list(running)] + ZERO_C
+    inner, _, outer = level[:, _FELT_NODES].T
+
+    def ends(values: np.ndarray) -> list[float | None]:
+        low = float(values.min()) if len(values) else None
+        return [low, float(values.max()) if len(values) == factors.shape[1] else None]
+
+    table: Tables = {"friction": list(friction), "conductances": list(conductances)}
+    table["temperatures_k"] = {node: ends(column) for node, column in zip(NODES, level.T, strict=True)}
+    table["inner_less_outer_k"] = ends(inner - outer)
+    if scene.bearing.preloaded:
+        table["running_preload_n"] = ends(np.array(list(running.values())))
     return table
 
 
@@ -162,12 +176,7 @@ def friction_band(numbers: Mapping[str, float | np.ndarray]) -> tuple[float, flo
     return (low / torque, high / torque) if torque > 0.0 else (1.0, 1.0)
 
 
-def _ends(values: np.ndarray, steady: bool) -> list[float | None]:
-    low, high = (float(values.min()), float(values.max())) if steady else (None, None)
-    return [low, high]
-
-
-def _at_row(scene: Scene, columns: Mapping[str, np.ndarray], row: int) -> Problem:
+def _at_row(scene: Scene, columns: Mapping[str, np.ndarray], row: int | np.intp) -> Problem:
     """The problem of a scene with the numbers of one point: what the user said is the scene."""
     numbers = {key: float(column[row]) for key, column in columns.items()}
     return attrs.evolve(resolve(with_columns(scene, numbers)), scene=scene)
@@ -193,16 +202,15 @@ def _runaway_words(scene: Scene) -> str:
 
 
 def _keys(scene: Scene) -> tuple[str, ...]:
-    """Keys of the temperatures of ``_FELT``."""
+    """Keys of the temperatures of ``_FELT``, and of the oil in the contacts."""
     oil = "lubricant.temperature_c" if scene.lubricant is not None else "contact.temperature_c"
     return ("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)
 
 
 def _at(keys: tuple[str, ...], level: np.ndarray) -> dict[str, np.ndarray]:
-    """Columns of the keys at temperatures (n, 4) [C]."""
-    return {
-        key: column - (_MOUNTED_C if key.startswith("mounting") else 0.0) for key, column in zip(keys, level.T, strict=True)
-    }
+    """Columns of the keys at temperatures (n, 3) [C] of ``_FELT``."""
+    rings = dict(zip(keys[:-1], level.T - _MOUNTED_C, strict=True))
+    return rings | {keys[-1]: level @ _IN_CONTACTS}
 
 
 def _one(scene: Scene) -> dict[str, np.ndarray]:

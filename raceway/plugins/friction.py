@@ -35,6 +35,8 @@ PARTS = {
     "drag": "balls in the mixture of oil and air",
     "seals": "seals and cage, as given",
 }
+#: Volume of oil over that of the space around the balls where nothing says how much there is.
+_LITTLE_OIL = 0.01
 #: Palmgren's f0 of an oil bath: deep groove and angular contact; half of it for oil and air, twice for jets.
 _BATH = (2.0, 3.3)
 #: Palmgren's f1 at a tenth of the static rating: 0.0005 0.1^0.55 and 0.001 0.1^0.33.
@@ -101,7 +103,8 @@ class Friction:
         controlled = points.problem.kinematics.gyroscopic == "outer_race"
         seals = self.seal_torque + self.cage_torque
         return points.once(
-            "losses", lambda: losses(ball_contacts(points), oil.around_balls(), points.speed, seals, controlled)
+            "losses",
+            lambda: losses(ball_contacts(points), oil.around_balls(_oil_fraction(points)), points.speed, seals, controlled),
         )
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
@@ -169,6 +172,19 @@ def _by_source(lost: Losses, balls: np.ndarray | slice = slice(None)) -> dict[st
         name: getattr(lost, name)[:, :, balls].sum(axis=(1, 2)) for name in ("rolling", "elastic_rolling", "sliding")
     }
     return {**contacts, "drag": lost.drag[:, balls].sum(axis=1), "seals": lost.seals}
+
+
+def _oil_fraction(points: SolvedPoints) -> Number:
+    """Of the space around each ball: by the flow where [heat] has one, else that of little oil."""
+    import numpy as np
+
+    from raceway.core.thermal import jet_oil_fraction
+
+    heat, rows = points.problem.heat, points.problem.bearing.of_rows
+    if heat is None or isinstance(heat.oil_flow, str):
+        return _LITTLE_OIL
+    by_row = [jet_oil_fraction(heat.oil_flow / len(rows), points.speed, b.pitch_diameter) for b in rows]
+    return np.stack(by_row, axis=-1)[:, None, points.row]
 
 
 def ball_contacts(points: SolvedPoints) -> BallContacts:

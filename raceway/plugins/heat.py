@@ -4,9 +4,10 @@ Notes
 -----
 The heat of a contact goes to both of its bodies in halves, drag of the balls to the oil, that of seals to both rings in halves.  Conductances
 that are 'auto' in the table [heat] follow from ``raceway.core.thermal``: contacts at the mean load and angle of the loaded balls of each
-row, with the piezoviscous-elastic film of Hamrock and Dowson between them; convection at the temperature of the oil; joints and
-emission from the sizes of the rings.  A scene with [heat] is solved where the temperatures that it is computed with are those
-that follow from it (``raceway.pipeline.warm``).
+row, with the piezoviscous-elastic film of Hamrock and Dowson between them; convection with the viscosity of the contacts' inlets; joints and
+emission from the sizes of the rings.  Oil reaches the inner ring against the centrifugal field only where it passes between the balls: of
+its surface the share of the gaps, 1 - Z D / (pi d_m), is wetted, an estimate from geometry.  A scene with [heat] is solved where the
+temperatures that it is computed with are those that follow from it (``raceway.pipeline.warm``).
 """
 
 from __future__ import annotations
@@ -91,11 +92,11 @@ class Temperatures:
         """Where the oil is beyond the temperatures of its viscosity."""
         from raceway.scene.lubricant import COLDEST, HOTTEST
 
-        oil, celsius = points.problem.lubricant, float(values["temperature_oil_k"][0]) - ZERO_C
-        if oil is None or not oil.thins or COLDEST <= celsius <= HOTTEST:
+        oil = points.problem.lubricant
+        if oil is None or not oil.thins or oil.temperature_c is None or COLDEST <= oil.temperature_c <= HOTTEST:
             return []
         return [
-            f"the oil in the bearing is at {celsius:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
+            f"the oil in the contacts is at {oil.temperature_c:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
             "along Walther's line. Give more oil (heat.oil_flow)"
         ]
 
@@ -119,16 +120,18 @@ def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
     if ends is None:
         return ""
     if None in ends:
-        return "no steady temperature at one end of the bands"
+        above = "" if ends[0] is None else f"{ends[0] - less:.4g} {unit} or more: "
+        return f"{above}no steady temperature at one end of the bands"
     return f"{ends[0] - less:.4g} to {ends[1] - less:.4g} {unit}"
 
 
-def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: Number = 1.0) -> Network:
+def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: Number = 1.0, inner: Number = 1.0) -> Network:
     """The network of n points, temperatures in degrees Celsius.
 
     Parameters
     ----------
     traction, conductance : factors of the heat of friction and of conductances by correlations, numbers or columns (n,)
+    inner : of the conductance by correlation from the inner rings to the oil, instead of ``conductance``
     """
     import numpy as np
 
@@ -137,7 +140,7 @@ def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: N
     heat = points.problem.heat
     assert heat is not None, "rules refuse scenes without it"
     heats = _heats(points) * np.reshape(traction, (-1, 1))
-    return Network(_conductances(points, conductance), heats, heat.oil_inlet_c, heat.ambient_c)
+    return Network(_conductances(points, conductance, inner), heats, heat.oil_inlet_c, heat.ambient_c)
 
 
 def _heats(points: SolvedPoints) -> np.ndarray:
@@ -154,7 +157,7 @@ def _heats(points: SolvedPoints) -> np.ndarray:
     return heats
 
 
-def _conductances(points: SolvedPoints, factor: Number) -> dict[str, Number]:
+def _conductances(points: SolvedPoints, factor: Number, inner: Number) -> dict[str, Number]:
     """Of all links [W/K]: those of [heat], else by correlations times a factor, summed over rows."""
     import numpy as np
 
@@ -169,10 +172,14 @@ def _conductances(points: SolvedPoints, factor: Number) -> dict[str, Number]:
         fluid = oil.kinematic_viscosity, oil.conductivity, capacity
         return np.pi * area * oil_convection(points.speed, ratio, *fluid, b.ball_diameter)
 
+    def wetted(b: Bearing) -> Number:
+        gaps = 1.0 - b.ball_count * b.ball_diameter / (np.pi * b.pitch_diameter)
+        return gaps if isinstance(heat.inner_wetting, str) else heat.inner_wetting
+
     by_row: dict[str, Callable[[int, Any], Number]] = {
         "inner_balls": lambda k, b: _contact_conductance(points, k, 0),
         "outer_balls": lambda k, b: _contact_conductance(points, k, 1),
-        "inner_oil": lambda k, b: convection(b, (b.pitch_diameter - b.ball_diameter) * b.width),
+        "inner_oil": lambda k, b: wetted(b) * convection(b, (b.pitch_diameter - b.ball_diameter) * b.width),
         "outer_oil": lambda k, b: convection(b, (b.pitch_diameter + b.ball_diameter) * b.width),
         "balls_oil": lambda k, b: convection(b, b.ball_diameter**2 * b.ball_count),
         "inner_shaft": lambda k, b: JOINT * np.pi * b.bore * b.width,
@@ -184,7 +191,8 @@ def _conductances(points: SolvedPoints, factor: Number) -> dict[str, Number]:
     for name, of_row in by_row.items():
         value = getattr(heat, name)
         auto = isinstance(value, str) and value == "auto"
-        conductances[name] = factor * sum(map(of_row, range(len(rows)), rows)) if auto else _number(value)
+        share = inner if name == "inner_oil" else factor
+        conductances[name] = share * sum(map(of_row, range(len(rows)), rows)) if auto else _number(value)
     return conductances
 
 

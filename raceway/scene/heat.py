@@ -38,6 +38,12 @@ class Heat:
     )
     ambient_c: float = option(20.0, unit="°C", help="around shaft and housing", rule=between(-273.15, 1e3))
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; most have 1900 to 2300", rule=positive())
+    inner_wetting: float | str = option(
+        "auto",
+        help="share of the inner rings that oil wets, a factor of inner_oil 'auto'; 'auto': the gaps between the balls, 1 - Z D / (pi d_m); "
+        "under-race lubrication has 1",
+        rule=word_or(between(1e-3, 1.0), "auto"),
+    )
     inner_balls: float | str = _conductance("inner rings and balls")
     outer_balls: float | str = _conductance("outer rings and balls")
     inner_oil: float | str = _conductance("inner rings and oil")

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 
-from raceway.core.columns import Number, is_column, largest, least, log, log10, where, with_values
+from raceway.core.columns import Number, largest, least, log, log10, where, with_values
 from raceway.errors import Mistake
-from raceway.framework.options import at_least, between, nearest, option, optional, positive
+from raceway.framework.options import at_least, between, nearest, option, optional, positive, word_or
 
 if TYPE_CHECKING:
     from raceway.core.rolling_friction import Lubrication
@@ -226,11 +226,15 @@ class Lubricant(Oil):
         rule=between(0.0, 0.3),
     )
     eyring_stress: float = option(5e6, unit="Pa", help="shear stress from which its films thin by shear", rule=positive())
-    oil_fraction: float = option(
-        0.01, help="volume of oil over that of the space around the balls; 0: dry air, 1: flooded", rule=between(0.0, 1.0)
+    oil_fraction: float | str = option(
+        "auto",
+        help="volume of oil over that of the space around the balls, 0: dry air, 1: flooded; 'auto': by the flow in [heat], else 0.01",
+        rule=word_or(between(0.0, 1.0), "auto"),
     )
     drag_coefficient: float = option(
-        0.44, help="of a ball in the mixture of oil and air; 0.44: of a sphere alone", rule=at_least(0.0)
+        0.25,
+        help="of a ball in the mixture of oil and air; 0.44: of a sphere alone; 0.25: that with Harris's power 1.95 of the speed",
+        rule=at_least(0.0),
     )
 
     @classmethod
@@ -238,15 +242,21 @@ class Lubricant(Oil):
         """The lubricant of an oil; its other keys have their defaults."""
         return with_values(cls(), **_oil_of(oil))
 
-    def around_balls(self) -> Lubrication:
-        """As friction sees it; columns are spread over contacts."""
+    def around_balls(self, oil_fraction: Number) -> Lubrication:
+        """As friction sees it; columns are spread over contacts.
+
+        Parameters
+        ----------
+        oil_fraction : where the key says 'auto', broadcast to (n, 1, Z)
+        """
         from raceway.core.rolling_friction import Lubrication
 
         def spread(number: Number) -> Number:
-            return number[:, None, None] if is_column(number) else number
+            return number[:, None, None] if getattr(number, "ndim", 0) == 1 else number
 
         coefficients = self.dynamic_viscosity, self.alpha, self.beta, self.conductivity, self.density
-        keys = self.traction_limit, self.eyring_stress, self.oil_fraction, self.drag_coefficient
+        fraction = oil_fraction if isinstance(self.oil_fraction, str) else self.oil_fraction
+        keys = self.traction_limit, self.eyring_stress, fraction, self.drag_coefficient
         return Lubrication(*map(spread, (*coefficients, *keys)))
 
 
