@@ -33,7 +33,6 @@ NOT_RUN = {
     "python3 -m venv .venv": _ENVIRONMENT,
     ".venv/bin/pip install .": _ENVIRONMENT,
     ".venv/bin/pip install '.[pictures]'": _ENVIRONMENT,
-    ".venv/bin/pip install '.[view]'": _ENVIRONMENT,
     "pip install '.[sweep]'": _ENVIRONMENT,
     ".venv/bin/pip install '.[sweep]'": _ENVIRONMENT,
     ".venv/bin/pip install '.[all]'": _ENVIRONMENT,

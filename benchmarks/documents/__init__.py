@@ -173,8 +173,8 @@ def screen() -> str:
 
 
 def answer(shown: str) -> str:
-    """What a reader of two minutes wants of a screen: title to damping, the total error, the wall time; ... for the rest."""
-    head = shown.partition("Equilibrium under")[0]
+    """What a reader of two minutes wants of a screen: the quantities, the total error, the wall time; ... for the rest."""
+    head = re.split(r"^(?:Equilibrium under|  C is not resolved)", shown, flags=re.MULTILINE)[0]
     lines = [line for line in shown.splitlines(keepends=True) if re.match(r"Relative error|  total|Cost|  wall time", line)]
     error, total, cost, wall = lines
     return f"{head}...\n{error}{total}...\n{cost}{wall}...\n"
