@@ -1,4 +1,4 @@
-"""The code on the pages is run: files are written out, plug-ins in them checked, and the rest executed in order."""
+"""The code on the pages is run: files are written out, plug-ins in them and in examples checked, other code executed in order."""
 
 import re
 import subprocess
@@ -14,15 +14,18 @@ from raceway.pipeline.run import run
 from raceway.scene.inputs import read_toml
 from raceway.testing import check
 
-PAGE = Path(__file__).parents[1] / "docs" / "plugins.md"
+ROOT = Path(__file__).parents[1]
+PAGE = ROOT / "docs" / "plugins.md"
+EXAMPLES = ROOT / "examples" / "plugins"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 FILES = {match.group(1): text for _, text in BLOCKS if (match := re.match(r"# (\S+\.(?:py|toml))\n", text))}
+FILES |= {path.name: path.read_text(encoding="utf-8") for path in EXAMPLES.glob("*.py")}
 PLUGINS = [name for name, text in FILES.items() if re.search(r"@(rw\.)?hookimpl", text)]
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """Every file of the page, written out."""
+    """Every file of the page and the examples, written out."""
     for name, text in FILES.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -61,6 +64,11 @@ def test_every_plugin_on_the_page_conforms(folder, name):
     for entry in registry.load_file(folder / name):
         conformity = check(entry)
         assert conformity.conforms, [row for row in conformity.rows if not row.good]
+
+
+def test_every_example_is_on_a_page():
+    pages = PAGE.read_text(encoding="utf-8") + (ROOT / "docs" / "plugin_kinds.md").read_text(encoding="utf-8")
+    assert all(f"examples/plugins/{path.name}" in pages for path in EXAMPLES.glob("*.py"))
 
 
 def test_every_kind_is_shown():

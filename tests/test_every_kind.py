@@ -13,7 +13,7 @@ from tests.test_docs import FILES
 from validation.command_line import MINIMAL, install, invoke, raceway
 
 ROOT = Path(__file__).parents[1]
-#: The plug-ins of docs/plugins.md by kind.
+#: The plug-ins of docs/plugins.md and examples/plugins by kind.
 OWN = {
     "contact_law": "power_law.py",
     "excitation": "pulse.py",

@@ -256,9 +256,7 @@ def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
 
 
 def test_the_documents_mesher_runs(tmp_path):
-    text = (EXAMPLES.parent / "docs" / "plugins.md").read_text(encoding="utf-8")
-    (tmp_path / "one_cell.py").write_text(text.split("# one_cell.py\n")[1].split("```")[0])
-    words = ("view", "--mesh", MINIMAL, "--plugin", tmp_path / "one_cell.py", "--set", "mesh.kind=one_cell")
+    words = ("view", "--mesh", MINIMAL, "--plugin", EXAMPLES / "plugins" / "one_cell.py", "--set", "mesh.kind=one_cell")
     found = invoke(*words, "--out", tmp_path / "out", "--json")
     assert found.exit_code == 0
     assert json.loads(found.stdout)["elements"] == 1
