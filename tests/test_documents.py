@@ -147,7 +147,9 @@ def test_what_is_not_run_is_listed_and_the_list_holds_nothing_else():
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_indented_blocks_are_commands_and_fenced_ones_say_their_language(page):
     for listing in LISTINGS[page]:
-        assert listing.language in {"", "console", "python", "toml", *SHOWN} or listing.language.startswith(("{include}", "{literalinclude}"))
+        assert listing.language in {"", "console", "python", "toml", *SHOWN} or listing.language.startswith(
+            ("{include}", "{literalinclude}")
+        )
         for command in listing.commands():
             first = command.split()[0].rpartition("=")[0] and command.split()[1] or command.split()[0]
             assert Path(first).name in {"raceway", "python", "python3", "pip", "make", "dask", "cd", "other_pythons"}, (
