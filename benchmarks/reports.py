@@ -7,6 +7,7 @@ README.md and docs is a report's table; nothing in a table is typed by hand.
 from __future__ import annotations
 
 import datetime
+import itertools
 import json
 import os
 import platform
@@ -126,8 +127,24 @@ def _origin(data: dict[str, Any]) -> str:
 
 
 def table(data: dict[str, Any]) -> str:
-    """Rows of claims as a Markdown table."""
-    return _markdown(("quantity", "value", "limit", "holds", "basis"), map(_cells, data["rows"]))
+    """Rows of claims as a Markdown table: consecutive rows of one subject under it, sources by number, with their list below."""
+    rows = data["rows"]
+    sources = sorted({(row["basis"], row["source"]): None for row in rows}, key=lambda source: source[0])
+    numbers = {source: k for k, source in enumerate(sources, 1)}
+    cells: list[tuple[str, ...]] = []
+    for subject, group in itertools.groupby(rows, lambda row: row["quantity"].partition(": ")[0]):
+        claims = list(group)
+        shared = len(claims) > 1
+        if shared:
+            cells.append((f"**{subject}**",))
+        cells += [_cells(row, f"{subject}: " if shared else "", numbers) for row in claims]
+    text = _markdown(("quantity", "value, limit", "basis"), cells)
+    if not all(map(holds, rows)):
+        text += "\n\nBold values are outside their limits, for [these reasons](../evidence.md#misses)."
+    for basis, group in itertools.groupby(sources, lambda source: source[0]):
+        lines = [f"{numbers[basis, source]}. {source or '-'}" for _, source in group]
+        text += "\n\n" + "\n".join([f"Basis {basis}:", "", *lines])
+    return text
 
 
 def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -136,21 +153,21 @@ def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(lines)
 
 
-def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+def _cells(row: dict[str, Any], subject: str, numbers: dict[tuple[str, str], int]) -> tuple[str, ...]:
     unit = f" [{row['unit']}]" if row["unit"] else ""
-    why = (
-        row["basis"]
-        + (f": {row['source']}" if row["source"] else "")
-        + (f"; misses: {row['misses']}" if row["misses"] else "")
+    value = shown(row["value"])
+    return (
+        row["quantity"].removeprefix(subject) + unit,
+        f"{value if holds(row) else f'**{value}**'}, {limits(row['low'], row['high'])}",
+        str(numbers[row["basis"], row["source"]]),
     )
-    return row["quantity"] + unit, shown(row["value"]), limits(row["low"], row["high"]), _yes(holds(row)), why
 
 
 def limits(low: float | None, high: float | None) -> str:
-    """Both ends of a claim in words."""
+    """Both ends of a claim."""
     if low is None or high is None:
-        return f"at most {shown(high)}" if low is None else f"at least {shown(low)}"
-    return f"{low:.6g} to {high:.6g}"
+        return f"≤ {shown(high)}" if low is None else f"≥ {shown(low)}"
+    return f"{low:.6g}…{high:.6g}"
 
 
 def holds(row: dict[str, Any]) -> bool:
@@ -266,14 +283,8 @@ def links_from(document: Path) -> str:
 
 
 def refresh() -> list[Path]:
-    """Rewrite the index and the pages of reports and every block; returns the documents that changed."""
+    """Rewrite the pages of reports and every block; returns the documents that changed."""
     reports = read()
-    index = (
-        "# Reports\n\nMade by `make evidence`; the tests that hold these numbers are in `tests/evidence`.\n\n"
-        + summary(reports)
-        + "\n"
-    )
-    (FOLDER / "README.md").write_text(index, encoding="utf-8")
     for name, data in reports.items():
         (FOLDER / f"{name}.md").write_text(page(data), encoding="utf-8")
     changed = []

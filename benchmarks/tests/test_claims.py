@@ -41,9 +41,7 @@ def test_what_does_not_hold_fails_and_leaves_no_row(rows, value, limits, words):
 
 def test_a_stated_miss_stays_visible(rows):
     claims_into(rows)("x", 2.0, at_most=1.0, basis="own other method", misses="the mesh is coarse")
-    assert files.misses({"one": {"rows": [rows[0][1]]}}).endswith(
-        "| [one](one.md) | x | 2 | at most 1 | the mesh is coarse |"
-    )
+    assert files.misses({"one": {"rows": [rows[0][1]]}}).endswith("| [one](one.md) | x | 2 | ≤ 1 | the mesh is coarse |")
 
 
 @pytest.mark.parametrize(("value", "misses"), [(2.0, "Python and its libraries"), (0.5, "")])

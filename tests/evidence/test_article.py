@@ -1,4 +1,4 @@
-"""The article's claims, computed again: the study from cold, its cost, its page, the trends of an independent solver.
+"""The article's study: claims, cost and trends.
 
 Verdicts and tables are the study's own output, in its page and its JSON; docs/article.md tells them.
 """

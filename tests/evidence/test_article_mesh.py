@@ -1,4 +1,4 @@
-"""The article's mesh, a million hexahedra in contact, at rest and in motion: beside condensed bodies, other solvers and the plan."""
+"""The article's mesh of a million hexahedra."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The article's study where no ring stays on a steady motion: points found by following, or with what a ring does instead."""
+"""The article's study on unstable orbits."""
 
 from __future__ import annotations
 

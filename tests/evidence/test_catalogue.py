@@ -1,4 +1,4 @@
-"""The catalogue: balls and grooves inferred from printed numbers, presets made of them, ball-pass frequencies."""
+"""Inferred geometry, presets and ball-pass frequencies."""
 
 from __future__ import annotations
 

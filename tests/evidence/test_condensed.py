@@ -1,4 +1,4 @@
-"""Condensed bodies with contact resultants: against other programs, surface points, springs in series; meshes, seats, walls, cost.
+"""Condensed bodies: other programs, surface points, cost.
 
 The bodies themselves equal full three-dimensional solves to rounding in tests/revolution.  1 % is the error that a result states
 for the calibration of B7206C.

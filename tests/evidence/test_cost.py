@@ -1,4 +1,4 @@
-"""Cost: error against time, the composed loop against a hand-fused one, processes and caches, predicted time, parts left out.
+"""Cost of runs, sweeps and caches.
 
 Times are least processor times of repeats by turns, ratios inside one process: other programs on the machine meet both.
 """

@@ -1,4 +1,4 @@
-"""Derivatives by the keys of a scene against differences of complete runs, bands over tolerances, and what both cost."""
+"""Derivatives by scene keys and tolerance bands."""
 
 from __future__ import annotations
 

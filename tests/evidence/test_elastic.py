@@ -1,4 +1,4 @@
-"""Elastic bodies at rest: contacts against Hertz and CalculiX, stresses below them, coarse meshes with resultants, kernels.
+"""Elastic bodies at rest.
 
 What each formulation of the hexahedron fulfils is in tests/hexahedron, the growth of a turning ring in tests/depth/test_growth.py,
 the stiffness of a sticking contact in tests/test_stick_stiffness.py.

@@ -1,4 +1,4 @@
-"""Elastic bodies in motion: a ball that falls on a block, a block that slides, a bearing by two integrators, the explicit step."""
+"""Elastic bodies in motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stated over true error of Z and K: fine and coarse steps, lift-off, sudden and ramped starts, series of equilibria.
+"""Stated over true error of Z and K.
 
 True values come from Fourier collocation in time, finer steps where the steady orbit is not the question, 4999 equilibria, the
 periodic solver, or shooting on independent equations (``validation``).  A factor of 3 is less than the 4 by which twice as many

@@ -1,4 +1,4 @@
-"""Comparisons and the map: both excitations, amplitude laws, speed, tilt, axial load, contact angle, rigid and elastic bodies."""
+"""Comparisons and the map of excitations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Oil films and damping: formulas and numbers by hand, their effect on a bearing, and what they cost."""
+"""Oil films and damping."""
 
 from __future__ import annotations
 

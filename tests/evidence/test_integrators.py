@@ -1,4 +1,4 @@
-"""Time integrators: observed order, identified stiffness against an independent periodic solver, and the error stated for Z.
+"""Time integrators: order and stated error.
 
 Integrators start suddenly (orders) or on their orbit (stiffness); of the error stated there are single scenes here, all in
 the report ``error``.

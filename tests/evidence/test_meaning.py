@@ -1,4 +1,4 @@
-"""What answers state: hypotheses left at their defaults, warnings, sentences of comparisons, small forces, memory."""
+"""Hypotheses, warnings and small forces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stiffness read back from signals: a test rig by the inverted beam, `raceway identify`, `raceway fit`.
+"""Stiffness identified from signals.
 
 A stated half-width of 95 % is 1.96 standard errors: the root mean square of errors over it is 0.51, and an interval is right
 within a factor of 2 of that.  A bound of what is not random may hold all.

@@ -1,4 +1,4 @@
-"""Meshes, static solver and natural frequencies: the article's size, iterations over mesh sizes, closed forms over refinements.
+"""Meshes, static solver and natural frequencies.
 
 Orders of volume and area, numbering and files that CalculiX solves are in tests/mesh.
 """

@@ -1,4 +1,4 @@
-"""Contacts at surface points of condensed bodies: pressures against Hertz, friction against Mindlin, bearings, moments and inertia.
+"""Pressures at surface points.
 
 Resultants and points of the same bodies are two methods: what they share are the compliances.
 """

@@ -1,4 +1,4 @@
-"""Steady orbits solved for directly: against transients and independent programs, several motions under one force, branches."""
+"""Periodic orbits and branches."""
 
 from __future__ import annotations
 

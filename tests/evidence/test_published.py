@@ -1,4 +1,4 @@
-"""Published numbers and closed forms: what `raceway verify` computes, and how far it lies off.
+"""Published numbers and closed forms.
 
 Frames and normalisations stand with each case in raceway/data/cases.json, how each is computed in raceway/studies/verify.
 """

@@ -1,4 +1,4 @@
-"""Sentences of README: what its numbers say of time and lines.
+"""Numbers of the README.
 
 The 4 and 8 % of its screen are rows of ``published``; the screen itself is held by tests/test_documents.py.
 """

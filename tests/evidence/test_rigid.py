@@ -1,4 +1,4 @@
-"""Rigid rings: displacements, stiffness and balls against independent solvers; equilibria, tangent, ball pass, friction.
+"""Rigid rings against independent solvers.
 
 The other solver's numbers are printed with three or four digits: half a unit of the last is at most 0.5 % or 0.05 %.
 """

@@ -1,4 +1,4 @@
-"""Rotor models: bearings in ROSS, at the points of a table, in rotors and in time; files of coefficients read back.
+"""Rotor models and ROSS.
 
 Each number is the worst of the versions of ROSS that are there (validation/ross_rotor.py).  The files for Nastran, Ansys and
 spreadsheets are read back by the fields of their formats: neither program is there.

@@ -1,4 +1,4 @@
-"""Sets of rows, mounted and running: makers' factors, independent rings, run-ups and fits over whirl speeds, cost."""
+"""Sets of rows, mounted and running."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stability: stiff and extreme cases, the complete catalogue of `raceway stability`.
+"""Stability: stiff and extreme cases.
 
 The limits are those of the cases themselves; a row here is the worst of theirs.
 """

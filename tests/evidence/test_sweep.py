@@ -1,4 +1,4 @@
-"""Sweeps: speed, memory, warm starts, and what they survive."""
+"""Sweeps: speed, memory and failures."""
 
 from __future__ import annotations
 
