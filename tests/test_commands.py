@@ -110,10 +110,8 @@ SLOW = {"study article", "fit, signals"}
 #: What a screen must name, whatever its words.
 TOLD = {
     "run": (
-        "tangent kxx",
-        "tangent kyy",
-        "Z real",
-        "Z imaginary",
+        "tangent kxx, kyy",
+        "relative error of Z",
         "|Z|",
         "equivalent stiffness K",
         "equivalent damping C",

@@ -7,6 +7,7 @@ import pytest
 
 import raceway as rw
 from raceway.framework.estimate import Estimate
+from raceway.framework.shown import percents
 from raceway.out.quantities import KYY, K
 from raceway.pipeline.run_screen import _model_rows
 from raceway.points.dataset import values_of
@@ -121,9 +122,11 @@ def test_the_spread_is_no_part_of_the_total_and_a_number_of_every_point():
 
 
 def test_the_screen_says_it_beside_k():
-    told = [row[2] for row in _model_rows(rw.run(MOVING).to_dict(), K)]
-    assert any("gyroscopic moments would give +" in line and line.endswith("kinematics.gyroscopic") for line in told)
-    assert any("ring growth would give +" in line for line in told)
+    result = rw.run(MOVING)
+    low, high = result.model_spread[0]["equivalent_stiffness"]
+    ((_, _, sentence),) = _model_rows(result.to_dict(), K)
+    assert sentence == f"model error {percents(low, high)}: kinematics.gyroscopic, kinematics.ring_growth off"
+    assert high > 0.001
     slow = {**STATIC, "kinematics": {"spin_speed_rpm": 100.0}}
     assert _model_rows(rw.run(slow).to_dict(), KYY) == []
 
@@ -132,7 +135,7 @@ def test_a_change_above_all_of_k_is_a_number_that_people_read():
     rows = _model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
         {"key": "kinematics.ring_growth", "value": True, "kyy": 3.7},
     ]}, "short": {"model": ""}}}, KYY)  # fmt: skip
-    assert [row[2] for row in rows] == ["model: ring growth would give kyy +370 %: kinematics.ring_growth"]
+    assert [row[2] for row in rows] == ["model error of kyy +370 %: kinematics.ring_growth off"]
 
 
 def test_the_screen_says_where_the_spread_is_not_estimated():

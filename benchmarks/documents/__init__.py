@@ -173,11 +173,9 @@ def screen() -> str:
 
 
 def answer(shown: str) -> str:
-    """What a reader of two minutes wants of a screen: the quantities, the total error, the wall time; ... for the rest."""
-    head = re.split(r"^(?:Equilibrium under|  C is not resolved)", shown, flags=re.MULTILINE)[0]
-    lines = [line for line in shown.splitlines(keepends=True) if re.match(r"Relative error|  total|Cost|  wall time", line)]
-    error, total, cost, wall = lines
-    return f"{head}...\n{error}{total}...\n{cost}{wall}...\n"
+    """What a reader of two minutes wants of a screen: title to damping, the error, the wall time; ... for the rest."""
+    head, _, tail = shown.partition("Equilibrium under")
+    return f"{head}...\n{tail[tail.index('Error and cost') :]}"
 
 
 def with_screen(text: str, shown: str) -> str:

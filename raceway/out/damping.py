@@ -13,7 +13,7 @@ _NOTHING = 1e-2
 
 
 #: What to do in the scene.
-_REMEDY = "take contact.damping = 'band', or give contact.time_constant, contact.loss_factor or contact.damping"
+_REMEDY = "set contact.damping or contact.time_constant"
 
 
 def dry_damping_note(content: ReadTables) -> str | None:
@@ -40,7 +40,4 @@ def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _RE
     if damping is not None and abs(damping) > _NOTHING * rule:
         return None
     state = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
-    return (
-        f"C {state}: a dry bearing damps next to nothing, where the rule of thumb of rotor programs, 1.25e-5 s times K, gives "
-        f"{rule:.2g} N s/m. Lubricant, cage and seats damp more: {remedy}"
-    )
+    return f"C {state}, dry; the rule of thumb of rotor programs, 1.25e-5 s K, gives {rule:.2g} N s/m: {remedy}"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from raceway.framework.duties import quantity_screen
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
-from raceway.out.quantities import FORCE_AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, PHASE_LAG, Z_IMAG, Z_REAL, X
+from raceway.out.quantities import KXX, KYY, KYY_TILTS_FOLLOW, X
 from raceway.out.table import Row, number, tilt_words
 from raceway.storage.tables import ReadTables
 
@@ -112,16 +112,26 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
     moved, dynamic = found["displacement"], result["identification"] is not None
     rows = [
-        ("Equilibrium under the constant loads", "", ""),
-        X.fact(result, "axial, positive seats the bearing"),
-        ("displacement y, z", f"{in_micro(moved['y'])}, {in_micro(moved['z'])} µm", "radial"),
+        (f"Equilibrium under {_loads(result['scene']['load'])}", "", ""),
+        X.fact(result, "axial, + preloads the bearing"),
     ]
+    across = [in_micro(moved[name]) for name in ("y", "z")]
+    if across != ["0", "0"]:
+        rows.append(("displacement y, z", f"{', '.join(across)} µm", "radial"))
     if tilt != "locked":
         tilts = ", ".join(in_micro(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += _mounted(found)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
+
+
+def _loads(load: ReadTables) -> str:
+    """Constant loads, without those that are 0."""
+    words = [f"{load['axial']:g} N axial"]
+    words += [f"{load['radial'][0]:g}, {load['radial'][1]:g} N radial"] if any(load["radial"]) else []
+    words += [f"{load['moment'][0]:g}, {load['moment'][1]:g} N m"] if any(load["moment"]) else []
+    return ", ".join(words)
 
 
 def _mounted(found: ReadTables) -> list[Row]:
@@ -156,37 +166,32 @@ def quantity_rows(result: ReadTables) -> list[Row]:
     return rows
 
 
-def stiffness_rows(result: ReadTables) -> list[Row]:
-    """Parts of Z and the force that they belong to."""
-    found = result["identification"]
-    if found is None:
-        return []
-    excited = result["scene"]["excitation"]["kind"]
-    return [
-        ("Dynamic stiffness Z", "", found["definition"].partition(", ")[0]),
-        FORCE_AMPLITUDE.fact(result, f"{excited}, {found['frequency_hz']:g} Hz"),
-        Z_REAL.fact(result, "force over displacement"),
-        Z_IMAG.fact(result, "w C"),
-        PHASE_LAG.fact(result),
-    ]
+#: Share of the total error below which a part of it is not shown.
+_NEGLIGIBLE = 1e-2
 
 
 def error_rows(result: ReadTables) -> list[Row]:
-    """Relative errors of Z, each with how it was estimated; of a static scene those that are known."""
-    error = result["error"]
-    rows: list[Row] = [("Relative error of Z", "", "")]
-    static = result["identification"] is None
-    for name in ("total", "time_step", "transient", "identification", "mesh", "contact"):
-        value = error.get(name)
-        if value is not None or not static:
-            rows.append((name.replace("_", " "), "not estimated" if value is None else f"{value:.1e}", error["short"][name]))
-    if static:
-        return [("Relative error of stiffness", "", ""), *rows[1:]] if rows[1:] else []
-    known = [one for one in result["identification"].get("series", []) if one["error"] is not None]
-    if known:
-        worst = max(known, key=lambda one: one["error"])
-        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(known)} windows, each with its own in result.json"
-        rows.insert(2, ("largest of the series", f"{worst['error']:.1e}", how))
+    """Relative error of Z with its parts; of a static scene those that are known."""
+    error, identified = result["error"], result["identification"]
+    parts = {
+        name.replace("_", " "): error.get(name) for name in ("time_step", "transient", "identification", "mesh", "contact")
+    }
+    known = [
+        f"{name} {value:.1e}" for name, value in parts.items() if value and value > _NEGLIGIBLE * (error["total"] or 0.0)
+    ]
+    if identified is None:
+        return [("relative error", "", f"of the stiffness: {', '.join(known)}")] if known else []
+    rigid = result["scene"]["bodies"]["kind"] == "rigid"  # which have no mesh
+    unknown = [name for name, value in parts.items() if value is None and not (rigid and name == "mesh")]
+    words = [", ".join(known) if len(known) > 1 else known[0].rpartition(" ")[0]] if known else []
+    words += [f"{', '.join(unknown)} not estimated"] if unknown else []
+    total = "not estimated" if error["total"] is None else f"{error['total']:.1e}"
+    rows: list[Row] = [("relative error of Z", total, "; ".join(words))]
+    series = [window for window in identified.get("series", []) if window["error"] is not None]
+    if series:
+        worst = max(series, key=lambda window: window["error"])
+        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(series)} windows, each with its own in result.json"
+        rows.append(("largest of the series", f"{worst['error']:.1e}", how))
     return rows
 
 
@@ -203,35 +208,31 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
     return rows
 
 
-def cost_rows(cost: ReadTables) -> list[Row]:
+def cost_row(cost: ReadTables) -> Row:
     """Time and memory."""
-    memory, threads = cost["peak_memory_bytes"] / 2**20, cost["threads"]
-    kept = "kernels were in the cache (raceway dev cache)"
+    words = [f"{number(cost['cpu_s'], 'CPU-s', 3)}"] if "cpu_s" in cost else []
+    words += [f"{cost['steps']} steps"] if cost["steps"] else []
+    words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"] + (
+        [f"{cost['threads']} threads"] if cost["threads"] > 1 else []
+    )
     if cost["compile_s"]:
-        kept = "once; kept for the next run (raceway dev cache)"
-        if not cost.get("compiled_kept", True):
-            kept = "not kept: the cache cannot be written; the next run compiles again"
-    processor = f"{number(cost['cpu_s'], 'CPU-s', 3)}, " if "cpu_s" in cost else ""
-    told = f"{processor}{cost['steps']} steps, {memory:.0f} MiB, {threads} thread{'' if threads == 1 else 's'}"
-    return [
-        ("Cost", "", ""),
-        ("wall time", number(cost["wall_s"], "s", 3), told),
-        ("compiling, apart", number(cost["compile_s"], "s", 3), kept),
-    ]
+        cached = "cached for the next run" if cost.get("compiled_kept", True) else "not cached, the cache cannot be written"
+        words.append(f"and {number(cost['compile_s'], 's', 3)} of compiling, {cached}")
+    return "wall time", number(cost["wall_s"], "s", 3), ", ".join(words)
 
 
 def stability_rows(found: ReadTables) -> list[Row]:
     """How the motion ended; nothing where none was integrated."""
     limit, drift = found["critical_time_step_s"], found["energy_drift"]
-    words = [] if limit is None else [f"explicit limit {limit:.3g} s"]
-    words += [] if drift is None else [f"energy drift {drift:.1e}"]
-    return [("Stability", "", ""), ("status", found["status"], ", ".join(words))] if words else []
+    words = f"explicit limit {limit or 0.0:.3g} s" if drift is None else f"energy drift {drift:.1e}"
+    return [] if limit is None and drift is None else [("stability", found["status"], words)]
 
 
 def tangent_rows(result: ReadTables) -> list[Row]:
     """kxx, kyy, and kyy with tilts that follow."""
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
-    rows = [KXX.fact(result), KYY.fact(result)]
+    axial, radial = (quantity.read(quantity.of(result)) for quantity in (KXX, KYY))
+    rows = [("tangent kxx, kyy", f"{axial:.5g}, {radial:.5g} {KYY.read_unit}", "other motions held")]
     if tilt != "locked":
         rows.append(KYY_TILTS_FOLLOW.fact(result, f"{tilt_words(tilt)}: tilts follow, x and z held"))
     if found["stiffness_rows_held"] is not None:
@@ -257,9 +258,9 @@ def _loaded_ball(result: ReadTables, word: str, alike: bool) -> Row:
     index, ball = pick(enumerate(balls), key=lambda item: item[1][f"load_{own}_n"])
     place = sum(one.get("row") == ball.get("row") for one in balls[:index])
     name = f"row {ball['row']}, ball {place}" if "row" in ball else f"ball {place}"
-    load, contact = number(ball[f"load_{own}_n"], "N"), f"{own} race {_contact(ball, own)}"
+    load, contact = number(ball[f"load_{own}_n"], "N"), f"{own} {_contact(ball, own)}"
     if word == "most":
-        contact += f"; {other} race {number(ball[f'load_{other}_n'], 'N')}, {_contact(ball, other)}"
+        contact += f"; {other} {number(ball[f'load_{other}_n'], 'N')}, {_contact(ball, other)}"
     if alike:
         return "all balls, each", load, contact
     return f"{word} loaded ball", load, f"{name} at {ball['azimuth_deg']:.4g} deg; {contact}"

@@ -8,6 +8,7 @@ from raceway.framework.shown import percents
 from raceway.out.answer import Part
 from raceway.out.damping import dry_damping_note
 from raceway.out.quantities import (
+    FORCE_AMPLITUDE,
     KYY,
     KYY_TILTS_FOLLOW,
     MASS,
@@ -15,8 +16,6 @@ from raceway.out.quantities import (
     ORBIT_MINOR,
     PHASE_LAG,
     SPEED,
-    Z_IMAG,
-    Z_REAL,
     C,
     K,
     Quantity,
@@ -26,14 +25,13 @@ from raceway.out.table import Row, micro, sections, tilt_words
 from raceway.out.wrapping import Words
 from raceway.pipeline.run_parts import (
     bodies_rows,
-    cost_rows,
+    cost_row,
     equilibrium_rows,
     error_rows,
     loaded_balls,
     orbit_rows,
     quantity_rows,
     stability_rows,
-    stiffness_rows,
     tangent_rows,
 )
 from raceway.scene.sets import GEOMETRY, signs_of
@@ -43,7 +41,7 @@ from raceway.storage.tables import ReadTables
 _LINE = 1e-9
 #: Rows that stand or fall with Z.
 _OF_Z = (
-    *(quantity.label for quantity in (K, C, Z, Z_REAL, Z_IMAG, PHASE_LAG)), "loss factor", "orbit, semi-axes",
+    *(quantity.label for quantity in (K, C, Z, PHASE_LAG)), "loss factor", "orbit, semi-axes",
 )  # fmt: skip
 #: Relative change of a stiffness by a hypothesis below which it is not told.
 LEAST_CHANGE = 1e-3
@@ -57,14 +55,15 @@ def _answer_rows(result: ReadTables) -> list[Row]:
     major, minor = ORBIT_MAJOR.of(result), ORBIT_MINOR.of(result)
     thin, dry = minor <= _LINE * major, dry_damping_note(result)
     axes = f"{ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{ORBIT_MINOR.read(minor):.4g}'} {ORBIT_MAJOR.read_unit}"
+    force = f"{FORCE_AMPLITUDE.text(FORCE_AMPLITUDE.of(result), 4)} {result['scene']['excitation']['kind']}"
     return [
-        (f"Answer at {SPEED.of(result):g} r/min, {tilt_words(found['tilt'])}", "", ""),
+        (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(found['tilt'])}", "", ""),
         # The error of Z: larger than the same share of K where m w^2 cancels K.
-        K.fact(result, f"{K.words}, m = {MASS.of(result):.4g} kg"),
+        K.fact(result),
         *_model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
         *_damping_rows(result),
-        Z.fact(result, "dynamic stiffness, force over displacement"),
-        ("orbit, semi-axes", axes, f"1x motion{', a line' if thin else ''}"),
+        Z.fact(result, f"{found['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
+        ("orbit, semi-axes", axes, f"synchronous (1x){', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
 
@@ -95,14 +94,14 @@ def _model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
     if spread is None:
         return [("", "", f"model: change by hypotheses left at their defaults {why}")] if why else []
     name = next((quantity.name for quantity in quantities if spread[quantity.name] is not None), "")
-    of = "" if name in ("", K.name) else f"{name.replace('_', ' ')} "
-    rows: list[Row] = []
-    for key, what in (("kinematics.gyroscopic", "gyroscopic moments"), ("kinematics.ring_growth", "ring growth")):
+    of = "" if name in ("", K.name) else f"of {name.replace('_', ' ')} "
+    parts = {}
+    for key in ("kinematics.gyroscopic", "kinematics.ring_growth"):
         changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
         if max(map(abs, changes), default=0.0) >= LEAST_CHANGE:
-            rows.append(("", "", f"model: {what} would give {of}{percents(*changes)}: {key}"))
-    together = [("", "", f"model: over all of them {of}{percents(*spread[name])}: error.model")] if len(rows) > 1 else []
-    return rows + together
+            parts[key] = changes
+    changes = spread[name] if len(parts) > 1 else next(iter(parts.values()), [])
+    return [("", "", f"model error {of}{percents(*changes)}: {', '.join(parts)} off")] if parts else []
 
 
 def _static(result: ReadTables) -> list[Row]:
@@ -114,7 +113,7 @@ def _static(result: ReadTables) -> list[Row]:
     ]
 
 
-_LEFT_OUT_SHOWN = 3
+_LEFT_OUT_SHOWN = 2
 
 
 def report(result: ReadTables) -> list[Part]:
@@ -123,14 +122,12 @@ def report(result: ReadTables) -> list[Part]:
         *_answer_rows(result),
         *equilibrium_rows(result),
         *quantity_rows(result),
-        *stiffness_rows(result),
         *_tolerances(result),
-        *error_rows(result),
     ]
     rows = _only_resolved(rows, result["error"])
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
-    rows += [*cost_rows(result["cost"]), *stability_rows(result["stability"])]
+    rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]
     # What makes the numbers doubtful is read before them.
     parts: list[Part] = [Words(f"warning: {micro(text)}", "yellow") for text in result["warnings"]]
     return [
@@ -139,7 +136,6 @@ def report(result: ReadTables) -> list[Part]:
         Words(_bearing(result), "dim"),
         sections(rows),
         Words(_left_out(result), "dim"),
-        Words("notes in full: result.json", "dim"),
     ]
 
 
@@ -153,15 +149,15 @@ def _tolerances(result: ReadTables) -> list[Row]:
 
 def _left_out(result: ReadTables) -> str:
     left_out = result["plan"]["left_out"]
-    parts = "; ".join(f"{row['part']} ({row['why']})" for row in left_out[:_LEFT_OUT_SHOWN])
+    parts = ", ".join(row["part"] for row in left_out[:_LEFT_OUT_SHOWN])
     more = len(left_out[_LEFT_OUT_SHOWN:])
-    return f"left out: {parts}{f'; and {more} more, see raceway plan' if more else ''}"
+    return f"left out: {parts}{f' and {more} more' if more else ''} (raceway plan)"
 
 
 def _bearing(result: ReadTables) -> str:
-    """Geometry, arrangement, model and loads, a line each."""
+    """Geometry, arrangement and model, one per line."""
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
-    b, load = scene["bearing"], scene["load"]
+    b = scene["bearing"]
     if b.get("radial_clearance") and not b.get("contact_angle_deg"):
         angle += ", from the clearance"
     balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
@@ -170,13 +166,8 @@ def _bearing(result: ReadTables) -> str:
         words.append(_set(b))
     if result.get("geometry"):
         words.append(result["geometry"]["words"])
-    words += [
-        f"{scene['bodies']['kind']} bodies, law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
-        + _integrator(result["plan"].get("integrator")),
-        f"axial {load['axial']:g} N, radial {load['radial'][0]:g}, {load['radial'][1]:g} N",
-    ]
-    if any(load["moment"]):
-        words[-1] += f", moment {load['moment'][0]:g}, {load['moment'][1]:g} N m"
+    law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
+    words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
     return "\n".join(words)
 
 

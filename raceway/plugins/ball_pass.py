@@ -83,9 +83,9 @@ class BallPass:
             k = texts.index((angle, cage, spin, outer, inner))
             of_row = f" of row {k + 1}" if len(different) > 1 else ""
             hertz = {name: _hertz(table, k, name) for name in words[1:]}
-            facts.append((f"Ball pass{of_row} at {angle} deg, times the shaft's speed", "", ""))
-            facts.append(("cage FTF, ball BSF", f"{cage}, {spin}", _together(hertz["ftf"], hertz["bsf"])))
-            facts.append(("passes BPFO, BPFI", f"{outer}, {inner}", _together(hertz["bpfo"], hertz["bpfi"])))
+            facts.append((f"FTF, BSF x shaft{of_row}", f"{cage}, {spin}", _together(hertz["ftf"], hertz["bsf"])))
+            inner_outer = f"{_together(hertz['bpfo'], hertz['bpfi'])} at {angle} deg".strip()
+            facts.append((f"BPFO, BPFI x shaft{of_row}", f"{outer}, {inner}", inner_outer))
         return facts
 
 

@@ -121,7 +121,7 @@ class Life:
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
         """Lives, equivalent load and static safety of the bearing."""
-        facts: list[Fact] = [("Life", "", "")]
+        facts: list[Fact] = []
         for name, words, share in (
             ("l10r", "reference life L10r", 0.9),
             ("l10mr", "modified life Lnmr", table["reliability"]),

@@ -141,7 +141,7 @@ class CoefficientFile(Shown):
         rows, constant = point_rows(self.coefficients.axes, self.coefficients.columns())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
         # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
-        notes = sorted(self.notes, key=lambda note: "next to nothing" not in note and "in these numbers" not in note)
+        notes = sorted(self.notes, key=lambda note: "rule of thumb" not in note and "in these numbers" not in note)
         facts = [*map(_point_fact, (rows[0], rows[-1])), *(("everywhere", "", text) for text in constant)]
         return f"{self.tag}, coefficients for {self.program}\n{over}", [*facts, *(("note", "", text) for text in notes)]
 
