@@ -165,7 +165,7 @@ def _bearing(result: ReadTables) -> str:
     if b.get("arrangement", "single") != "single" or b.get("row"):
         words.append(_set(b))
     if result.get("geometry"):
-        words.append(result["geometry"]["words"])
+        words += [result["geometry"][key] for key in ("designation", "words") if key in result["geometry"]]
     law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
     words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
     return "\n".join(words)

@@ -24,6 +24,8 @@ import attrs
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
+from raceway.scene.clearance import clearance_range
+from raceway.scene.designation import Designation, read_designation
 from raceway.scene.sets import RATINGS
 from raceway.storage.tables import ReadTables, Tables
 
@@ -60,6 +62,7 @@ class Preset:
     stiffness_error : relative uncertainty of its axial stiffness that comes from inferred geometry; None: of numbers that a source states
     radial_stiffness_error, stiffness_basis : the same of the radial stiffness, tilt locked; what both were compared with
     printed : how well the inferred geometry meets what the maker prints, relative errors by name
+    designation, tolerance_class : what the parts of a maker's designation mean, in one line; its class of ISO 492
 
     Examples
     --------
@@ -76,6 +79,8 @@ class Preset:
     radial_stiffness_error: float | None = None
     stiffness_basis: str = ""
     printed: dict[str, float] = attrs.field(factory=dict)
+    designation: str = ""
+    tolerance_class: str = ""
 
     @property
     def table(self) -> Tables:
@@ -125,9 +130,47 @@ def _single_presets() -> dict[str, Preset]:
 
 
 def preset_of(name: object) -> Preset | None:
-    """One preset; only the series that its designation begins with is read."""
-    if not isinstance(name, str):
+    """One preset, by its name in the catalogue or by a maker's designation.
+
+    Raises
+    ------
+    SceneError
+        A designation of a kind of bearing that is not computed.
+    """
+    return _entry(name) if isinstance(name, str) else None
+
+
+@cache
+def _entry(name: str) -> Preset | None:
+    if (entry := _named(name)) is not None:
+        return entry
+    designation = read_designation(name)
+    if designation is None:
         return None
+    entry = next(filter(None, map(_named, designation.names)), None)
+    return None if entry is None else _designated(name, entry, designation)
+
+
+def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
+    """A bearing of the catalogue with what a designation says of clearance, balls and tolerances."""
+    facts = {fact.key: fact for fact in entry.facts}
+    if designation.clearance and "radial_clearance" in facts:
+        limits = clearance_range("ball", float(str(facts["bore"].value)), designation.clearance) or (0.0, 0.0)
+        source = f"ISO 5753-1, class {designation.clearance}, middle of the range; scatter: the range"
+        scatter = (limits[1] - limits[0]) / sum(limits)
+        facts["radial_clearance"] = Fact("radial_clearance", 0.5 * sum(limits), source, True, scatter)
+    if designation.ceramic:
+        facts = {key: fact for key, fact in facts.items() if not key.startswith("balls.")}
+        facts["balls.material"] = Fact("balls.material", designation.ceramic, f"{name}: ceramic balls", False)
+    title = f"{name}: {entry.title.partition(': ')[2] or entry.title}"
+    words, tolerance = designation.words, designation.tolerance
+    return attrs.evolve(
+        entry, name=name, title=title, facts=tuple(facts.values()), designation=words, tolerance_class=tolerance
+    )
+
+
+def _named(name: str) -> Preset | None:
+    """By its name in the catalogue; only the series that it begins with is read."""
     stem = max((stem for stem in _series_files() if name.startswith(stem)), key=len, default=None)
     return _single_presets().get(name) or (None if stem is None else _series_presets(stem).get(name))
 
@@ -173,7 +216,8 @@ def found_by(pattern: str) -> list[Preset]:
     """Presets whose name matches a pattern of the shell (70*C), or holds the text, in any case."""
     word = pattern.lower()
     matches = [entry for entry in catalogue().values() if fnmatch(entry.name.lower(), word)]
-    return matches or [entry for entry in catalogue().values() if word in entry.name.lower()]
+    matches = matches or [entry for entry in catalogue().values() if word in entry.name.lower()]
+    return matches or [entry for entry in [preset_of(pattern)] if entry is not None]
 
 
 def preset(name: object) -> Tables:
@@ -194,7 +238,9 @@ def no_preset(name: str) -> str:
     """What is said of an unknown designation."""
     by_lower = {word.lower(): word for word in catalogue()}
     close = difflib.get_close_matches(name.lower(), list(by_lower), n=_OFFERED, cutoff=0.0)
-    return f"no such preset; the nearest: {', '.join(by_lower[word] for word in close)} (`raceway catalogue` lists all)"
+    designation = read_designation(name)
+    why = f" ({designation.words})" if designation is not None and not designation.names else ""
+    return f"no such preset{why}; the nearest: {', '.join(by_lower[word] for word in close)} (`raceway catalogue` lists all)"
 
 
 def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
@@ -241,6 +287,7 @@ def _inferred(name: object, tables: ReadTables) -> Tables | None:
         return None
     return {
         "preset": entry.name,
+        **({"designation": entry.designation} if entry.designation else {}),
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
         "printed": {fact.key: {"value": fact.value, "source": fact.source} for fact in entry.facts if not fact.inferred},
         **{key: getattr(entry, key) for key in _INFERRED},

@@ -17,7 +17,7 @@ from raceway.framework.options import (
     nearest,
 )
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.catalogue import preset, with_material
+from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import lubricant_mistakes
 from raceway.scene.scene import Scene
@@ -228,6 +228,7 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
     _start_at_inlet(plain)
+    _class_of_designation(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
@@ -250,6 +251,18 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     if faults := check_tolerances(scene):
         raise SceneError(faults)
     return scene
+
+
+def _class_of_designation(tables: Tables) -> None:
+    """The tolerance class of a maker's designation, where the scene has tolerances and fits that it acts through."""
+    entry, tolerances, fits = (
+        preset_of(tables.get("bearing", {}).get("preset")),
+        tables.get("tolerances"),
+        tables.get("mounting", {}),
+    )
+    acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
+    if entry is not None and entry.tolerance_class and isinstance(tolerances, dict) and acts:
+        tables["tolerances"] = {"class": entry.tolerance_class, **tolerances}
 
 
 def _start_at_inlet(tables: Tables) -> None:

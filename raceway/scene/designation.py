@@ -1,0 +1,116 @@
+"""Makers' designations: ``7206 CD/P4A``, ``HCB7014-C-T-P4S``, ``6205-2RS/C3``; the words are in ``raceway/data/designations.toml``."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from functools import cache
+from importlib.resources import files
+
+import attrs
+
+from raceway.errors import SceneError
+from raceway.storage.tables import Tables
+
+#: Letters of the catalogue's angular-contact bearings by contact angle [deg]: without a prefix, and with B.
+_ANGLES = {15: "C", 25: "A5", 30: "A"}, {15: "C", 25: "E"}
+#: Deep-groove series of Japanese makers that have another number at ISO.
+_SERIES = {"68": "618", "69": "619"}
+_NUMBER = re.compile(
+    r"(?P<prefix>[A-Z]*)[ -]?(?P<number>6[0123]/\d{2,3}|61[89]/\d+|61[89]\d\d|6[02389]\d\d?|719\d\d|7[029]\d\d)(?=\D|$)(?P<rest>.*)"
+)
+_SEPARATORS = " -/.,_"
+#: Groups of parts that set a number; the others are named as ignored.
+_SETTING = ("clearance", "tolerance", "ceramic", "angle")
+
+
+@attrs.frozen
+class Designation:
+    """What a designation says.
+
+    names : of the bearing in the catalogue, the nearest first; none where its contact angle is not known, as ``words`` say;  clearance, tolerance : classes of ISO 5753-1 and ISO 492, or ""
+    ceramic : material of the balls, or "";  words : each part, and whether it is used
+    """
+
+    names: tuple[str, ...]
+    clearance: str
+    tolerance: str
+    ceramic: str
+    words: str
+
+
+@cache
+def _groups() -> Tables:
+    return tomllib.loads(files("raceway").joinpath("data/designations.toml").read_text(encoding="utf-8"))
+
+
+def read_designation(text: str) -> Designation | None:
+    """A maker's designation; None where it is no number of a bearing that the catalogue could have.
+
+    Raises
+    ------
+    SceneError
+        A kind of bearing that is not computed.
+    """
+    word = text.strip().upper()
+    for pattern, bearing in _groups()["refused"].items():
+        if re.match(rf"(?:{pattern})(?!\d)", word):
+            raise SceneError.at("bearing.preset", text, f"is {bearing}, which Raceway does not compute")
+    match = _NUMBER.fullmatch(word)
+    if match is None:
+        return None
+    prefix, number, rest = match["prefix"], match["number"], match["rest"]
+    kind = "angular" if number.startswith("7") else "ball"
+    parts = [*_parts(prefix.removesuffix("B"), kind), *_parts(rest, kind)]
+    if parts and not parts[-1][1] and rest[:1] not in _SEPARATORS:
+        return None
+    values = {group: _groups()[group]["parts"][part] for part, group in parts if group in _SETTING}
+    names = _angular_names(number, prefix.endswith("B"), values.get("angle")) if kind == "angular" else (_iso_name(number),)
+    words = "; ".join(_words(part, group) for part, group in parts)
+    words = f"{text}: {words}" if words else ""
+    if not names:
+        known = "angle" in values
+        words = f"{values['angle']} deg is not in the catalogue" if known else "C is 15, AC or A5 25, A 30 deg: say which"
+    clearance, tolerance, ceramic = (str(values.get(group, "")) for group in ("clearance", "tolerance", "ceramic"))
+    return Designation(names, clearance, tolerance, ceramic, words)
+
+
+def _parts(text: str, kind: str) -> list[tuple[str, str]]:
+    """(part, name of its group) in their order; what the table does not have with an empty name."""
+    groups = {name: group for name, group in _groups().items() if name != "refused" and kind in group.get("kinds", [kind])}
+    known = {part: name for name, group in reversed(groups.items()) for part in group["parts"]}
+    parts = list[tuple[str, str]]()
+    for chunk in filter(None, re.split(f"[{re.escape(_SEPARATORS)}]+", text)):
+        remainder, inside = chunk, list[tuple[str, str]]()
+        while part := max((part for part in known if remainder.startswith(part)), key=len, default=""):
+            inside.append((part, known[part]))
+            remainder = remainder[len(part) :]
+        parts += [(chunk, "")] if remainder else inside
+    return parts
+
+
+def _words(part: str, group: str) -> str:
+    if not group:
+        return f"{part}: not known, ignored"
+    words = _groups()[group]["words"]
+    if group not in _SETTING:
+        return f"{part}: {words}, ignored"
+    return f"{part}: {words.format(_groups()[group]['parts'][part])}"
+
+
+def _iso_name(number: str) -> str:
+    """Number of a deep-groove bearing as ISO writes it: 6805 is 61805, 685 is 618/5."""
+    series = _SERIES.get(number[:2])
+    if series is None or "/" in number:
+        return number
+    return f"{series}{number[2:]}" if len(number) == 4 else f"{series}/{number[2:]}"
+
+
+def _angular_names(number: str, prefix_b: bool, angle: int | None) -> tuple[str, ...]:
+    """Of the catalogue, for a number as 7014 or 71914 (its 7914) and an angle; with a prefix B the maker's own first."""
+    number = number.replace("719", "79", 1) if len(number) == 5 else number
+    bare, maker = _ANGLES
+    if angle not in bare:
+        return ()
+    name = f"{number}{bare[angle]}"
+    return (f"B{number}{maker[angle]}", name) if prefix_b and angle in maker else (name,)
