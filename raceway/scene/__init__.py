@@ -9,7 +9,7 @@ structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
 schema      JSON schema of a scene file
 catalogue   bearing presets and materials by name
-designation makers' designations: angle, clearance, class, ceramic balls, what is ignored
+designation  makers' designations: angle, clearance, class, ceramic balls, what is ignored
 clearance   radial internal clearances of ISO 5753-1 by class and bore
 ratings     load ratings of the rows: by keys, as the catalogue prints them, or from geometry
 lubricant   oils, their viscosity, and the table [lubricant]
