@@ -112,6 +112,7 @@ def test_a_spring_keeps_its_preload_and_is_colder():
         ({"oil_flow": 0.0}, "heat.oil_flow", "greater than 0"),
         ({"oil_flow": "-1 m3/s"}, "heat.oil_flow", "greater than 0"),
         ({"inner_oil": 0.0}, "heat.inner_oil", "greater than 0"),
+        ({"inner_wetting": 0.0}, "heat.inner_wetting", "from 0.001 to 1"),
         ({"housing_ambient": -1.0}, "heat.housing_ambient", "greater than 0"),
         ({"inner_oil": "endless"}, "heat.inner_oil", "'infinite'"),
     ],

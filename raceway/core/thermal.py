@@ -147,8 +147,7 @@ def rolling_contact(
     ----------
     Bejan, J. Heat Transfer 111 (1989) 257 (rolling contact heat transfer); Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed.,
     section 2.9 (two half-spaces); Muzychka, Yovanovich, J. Heat Transfer 123 (2001) 624 (limits of the Peclet number, joined);
-    Greenwood, Wear 150 (1991) 153 (the sum of squares).  None but the abstract of the third was seen: the first two formulas are derived
-    anew, the sum of squares is an interpolation.
+    Greenwood, Wear 150 (1991) 153 (the sum of squares).  The first two formulas are derived anew; the sum of squares interpolates.
     """
     closed = semi_minor > 0.0
     a, b = np.where(closed, semi_major, 1.0), np.where(closed, semi_minor, 1.0)
@@ -177,8 +176,7 @@ def oil_convection(
 
     References
     ----------
-    Eschmann, Hasbargen, Weigand, Ball and Roller Bearings, 2nd ed. (1985), as Harris & Kotzalas and papers on spindles use it; not
-    seen in its own source.
+    Eschmann, Hasbargen, Weigand, Ball and Roller Bearings, 2nd ed. (1985), as papers on spindles use it.
     """
     prandtl = viscosity * capacity / conductivity
     rate = 30.0 / np.pi * shaft_speed * (1.0 - ratio) / viscosity
@@ -194,13 +192,13 @@ def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Num
 
     Notes
     -----
-    XCAV = 1e5 W^0.37 / (n d_m^1.7), in cm3/min, r/min and mm, an empirical one of jet lubricated ball bearings: with it the program
-    SHABERTH has their measured heat, with a law of drag as that of ``Lubricant.drag_coefficient``.  The heat of the 35 mm bearing in
-    docs/measurements.md is no independent check: it is among Parker's.  That it goes with 1/n means that oil stays for a number of turns, some 40.
+    XCAV = 1e5 W^0.37 / (n d_m^1.7), in cm3/min, r/min and mm, empirical, of jet lubricated ball bearings: with it the program SHABERTH has
+    their measured heat, with a law of drag as that of ``Lubricant.drag_coefficient``.  Heat of such bearings is no independent check of it.
+    That it goes with 1/n means that oil stays for a number of turns, some 40.
 
     References
     ----------
-    Parker, NASA TP-2275 (1984), as others print it.
+    Parker, NASA TP-2275 (1984), as others cite it.
     """
     turns = 30.0 / np.pi * np.maximum(speed, 1e-9)
     return np.minimum(1e5 * (6e7 * flow) ** 0.37 / (turns * (1e3 * pitch_diameter) ** 1.7), 1.0)
@@ -221,7 +219,7 @@ def seat_emission(diameter: Number, seats: Number, width: Number) -> Number:
 
     References
     ----------
-    ISO 15312 (thermal speed ratings): reference heat flow density 0.016 W/mm2 at 70 and 20 degrees, not seen in its own source.
+    ISO 15312 (thermal speed ratings): reference heat flow density 0.016 W/mm2 at 70 and 20 degrees.
     """
     area = np.pi * width * seats
     large = np.maximum(area / _LARGE_SEATS, 1.0) ** _LARGE_POWER

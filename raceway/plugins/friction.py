@@ -176,13 +176,13 @@ def _by_source(lost: Losses, balls: np.ndarray | slice = slice(None)) -> dict[st
 
 def _oil_fraction(points: SolvedPoints) -> Number:
     """Of the space around each ball: by the flow where [heat] has one, else that of little oil."""
+    heat, rows = points.problem.heat, points.problem.bearing.of_rows
+    if heat is None or isinstance(heat.oil_flow, str):
+        return _LITTLE_OIL
     import numpy as np
 
     from raceway.core.thermal import jet_oil_fraction
 
-    heat, rows = points.problem.heat, points.problem.bearing.of_rows
-    if heat is None or isinstance(heat.oil_flow, str):
-        return _LITTLE_OIL
     by_row = [jet_oil_fraction(heat.oil_flow / len(rows), points.speed, b.pitch_diameter) for b in rows]
     return np.stack(by_row, axis=-1)[:, None, points.row]
 
