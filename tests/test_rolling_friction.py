@@ -7,17 +7,17 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipe
 
 from raceway.core.contact.hertz import ellipse
-from raceway.core.rolling_friction import (
-    BallContacts,
-    Lubrication,
-    _ball_rates,
-    _drag_force,
-    _hydrodynamic_force,
-    _hysteresis_moment,
-    _mean_slip,
-    _spin_shape,
-    _traction_coefficient,
-    losses,
+from raceway.core.contact.losses import _mean_slip
+from raceway.core.elementary import exponential, logarithm
+from raceway.core.rolling_friction import Lubrication, _spin_shape, losses
+from validation.rolling_friction import (
+    LoadedContacts,
+    ball_rates,
+    drag_force,
+    hydrodynamic_force,
+    hysteresis_moment,
+    torques,
+    traction_coefficient,
 )
 
 OIL = Lubrication(0.03, 2e-8, 0.04, 0.14, 870.0, 0.05, 5e6, 0.01, 0.44)
@@ -37,19 +37,19 @@ def contacts(load=(200.0, 200.0), angle=(0.26, 0.26), diameter=9.525e-3, pitch=4
     ]
     major, minor = np.array(axes).T[:, None, :, None]
     column = np.array([load, angle])[:, None, :, None]
-    return BallContacts(*column, major, minor, diameter, pitch, conformity, modulus, 0.0)
+    return LoadedContacts(*column, major, minor, diameter, pitch, conformity, modulus, 0.0)
 
 
 def brain():
     """That ball's contact with the inner race, at both places."""
     axes = (np.full((1, 2, 1), half) for half in (429.5e-6, 76.762e-6))
-    return BallContacts(np.full((1, 2, 1), 136.0), np.zeros((1, 2, 1)), *axes, D, PITCH, GROOVE / D, 207e9 / 0.91, 0.0)
+    return LoadedContacts(np.full((1, 2, 1), 136.0), np.zeros((1, 2, 1)), *axes, D, PITCH, GROOVE / D, 207e9 / 0.91, 0.0)
 
 
 def test_rolling_resistance_has_the_printed_moment():
     """``RollingResistance0`` of D-BRAIN's tests; it states pi and lengths to other digits than 1.3e-5."""
     oil = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30)
-    moment = _hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
+    moment = hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
     assert moment == pytest.approx(0.7780845243544707e-3, rel=2e-5)
 
 
@@ -74,7 +74,7 @@ def test_rolling_resistance_is_the_shear_of_both_surfaces_in_the_inlet(load, spe
     """An independent quadrature; strips without side flow and a film that the fit does not have differ by up to 30 %."""
     ball = contacts((load, load))
     oil = attrs.evolve(OIL, temperature_viscosity=1e-30)
-    force = _hydrodynamic_force(ball, oil, np.full((1, 2, 1), speed))[0, 0, 0]
+    force = hydrodynamic_force(ball, oil, np.full((1, 2, 1), speed))[0, 0, 0]
     a, b = ball.semi_major[0, 0, 0], ball.semi_minor[0, 0, 0]
     peak, places = 1.5 * load / (np.pi * a * b), np.linspace(-0.995, 0.995, 21)
     radius = b * ball.modulus / (4.0 * peak)
@@ -84,7 +84,7 @@ def test_rolling_resistance_is_the_shear_of_both_surfaces_in_the_inlet(load, spe
 
 def test_heat_of_the_inlet_takes_a_part_of_the_rolling_resistance():
     speed = np.full((1, 2, 1), 20.0)
-    hot, cold = (_hydrodynamic_force(contacts(), attrs.evolve(OIL, temperature_viscosity=b), speed) for b in (0.04, 1e-30))
+    hot, cold = (hydrodynamic_force(contacts(), attrs.evolve(OIL, temperature_viscosity=b), speed) for b in (0.04, 1e-30))
     assert hot / cold == pytest.approx(1.0 / (1.0 + 0.29 * (0.03 * 0.04 * 20.0**2 / 0.14) ** 0.78), rel=1e-12)
 
 
@@ -93,8 +93,8 @@ def test_hysteresis_is_that_of_a_loss_of_two_percent():
     radius, e = 4.7625e-3, 226.4e9
     for load in (1.0, 100.0):
         a = np.cbrt(1.5 * load * radius / e)
-        ball = BallContacts(*(np.full((1, 2, 1), v) for v in (load, 0.0, a, a)), 2.0 * radius, 1.0, 0.52, e, 0.0)
-        assert 0.02 < _hysteresis_moment(ball)[0, 0, 0] / (3.0 / 16.0 * a * load) < 0.026
+        ball = LoadedContacts(*(np.full((1, 2, 1), v) for v in (load, 0.0, a, a)), 2.0 * radius, 1.0, 0.52, e, 0.0)
+        assert 0.02 < hysteresis_moment(ball)[0, 0, 0] / (3.0 / 16.0 * a * load) < 0.026
 
 
 @pytest.mark.parametrize(("spin", "curvature"), [(1.0, 0.0), (0.0, 1.0), (0.2, 1.0), (0.5, 1.0), (0.8, 1.0), (1.0, 1.0)])
@@ -105,13 +105,13 @@ def test_the_mean_slip_is_the_least_over_the_place_of_rolling(spin, curvature):
         return np.trapezoid(0.75 * (1.0 - t * t) * np.abs(spin * t + curvature * (t * t - c)), t)
 
     least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-    assert float(_mean_slip(np.array(spin), np.array(curvature))) == pytest.approx(least, rel=1e-4)
+    assert _mean_slip(spin, curvature) == pytest.approx(least, rel=1e-4)
 
 
 def test_slip_has_the_published_limits():
     """Houpert: 3/8 mu Q a of spin and 0.0806 mu Q a^2 / R of the contact's curvature, whose slip is y^2 / (2 R)."""
-    assert float(_mean_slip(np.array(1.0), np.array(0.0))) == 0.375
-    assert f"{0.5 * float(_mean_slip(np.array(0.0), np.array(1.0))):.4f}" == "0.0806"
+    assert _mean_slip(1.0, 0.0) == 0.375
+    assert f"{0.5 * _mean_slip(0.0, 1.0):.4f}" == "0.0806"
     k = np.array([1.0, 1.5, 4.0, 9.0, 30.0])
     assert _spin_shape(k) == pytest.approx(ellipe(1.0 - 1.0 / k**2), abs=4e-5)
 
@@ -129,14 +129,14 @@ def test_spin_with_curvature_over_the_whole_ellipse():
             return float((pressure * np.hypot(along, spin * z / k)).sum())
 
         least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-        shaped = np.array(spin * _spin_shape(np.array(k)))
-        assert float(_mean_slip(shaped, np.array(curvature))) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
+        shaped = float(spin * _spin_shape(np.array(k)))
+        assert _mean_slip(shaped, curvature) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
 
 
 def test_balls_roll_at_both_races_and_one_contact_does_not_spin():
     for outer in (True, False):
         ball = contacts((60.0, 300.0) if outer else (300.0, 310.0), (0.5, 0.3))
-        rates = _ball_rates(ball, outer_race=True)
+        rates = ball_rates(ball, outer_race=True)
         g = 9.525e-3 / 46e-3 * np.cos(ball.angle[0, :, 0])
         # Speeds of the surfaces from rates: (w - w_c) d_m (1 - g) / 2 and w_c d_m (1 + g) / 2.
         cage = rates.cage[0, 0, 0]
@@ -144,40 +144,41 @@ def test_balls_roll_at_both_races_and_one_contact_does_not_spin():
         assert rates.entraining[0, :, 0] == pytest.approx(expected, rel=1e-12)
         assert rates.spin[0, 1, 0] == pytest.approx(0.0, abs=1e-14) and rates.spin[0, 0, 0] > 0.1
     # At equal angles without centrifugal force the ball's spin goes where it costs less.
-    free = _ball_rates(contacts((300.0, 300.0), (0.5, 0.5))).spin[0, :, 0]
+    free = ball_rates(contacts((300.0, 300.0), (0.5, 0.5))).spin[0, :, 0]
     assert 0.0 < free.min() < free.max()
 
 
 def test_traction_follows_eyring_up_to_its_limit():
     ball, speed = contacts(), np.full((1, 2, 1), 5.0)
     thin = attrs.evolve(OIL, pressure_viscosity=1e-12, traction_limit=1.0)
-    slow, fast = (_traction_coefficient(ball, thin, np.full((1, 2, 1), v), speed) for v in (1e-6, 2e-6))
+    slow, fast = (traction_coefficient(ball, thin, np.full((1, 2, 1), v), speed) for v in (1e-6, 2e-6))
     assert fast == pytest.approx(2.0 * slow, rel=1e-6)  # Newton's fluid below the Eyring stress
-    assert _traction_coefficient(ball, OIL, np.full((1, 2, 1), 0.5), speed) == pytest.approx(0.05)
-    assert _traction_coefficient(ball, OIL, np.zeros((1, 2, 1)), speed) == pytest.approx(0.0)
+    assert traction_coefficient(ball, OIL, np.full((1, 2, 1), 0.5), speed) == pytest.approx(0.05)
+    assert traction_coefficient(ball, OIL, np.zeros((1, 2, 1)), speed) == pytest.approx(0.0)
 
 
 def test_drag_is_that_of_a_sphere():
     """By hand: mixture 0.01 * 870 + 0.99 * 1.2 = 9.888 kg/m3, 0.5 * 9.888 * 0.44 * pi/4 * 0.009525^2 * (0.023 * 500)^2 N."""
-    force = _drag_force(contacts(), OIL, np.array([[[500.0]]]))
+    force = drag_force(contacts(), OIL, np.array([[[500.0]]]))
     assert float(force[0, 0, 0]) == pytest.approx(0.5 * 9.888 * 0.44 * 0.25 * np.pi * 9.525e-3**2 * 11.5**2, rel=1e-12)
 
 
 def test_limits_of_the_torque():
     still, speed = np.zeros(1), np.array([1000.0])
     ball = contacts()
-    at_rest = losses(ball, OIL, still)
+    at_rest = losses(ball.compiled(), OIL, still)
     assert at_rest.contact_power.sum() == at_rest.drag_power[0] == at_rest.seal_power[0] == 0.0
     # Pure rolling at angle 0 without oil on bodies that do not deform: nothing is lost.
     rolling = attrs.evolve(
         contacts(angle=(0.0, 0.0)), semi_major=np.full((1, 2, 1), 1e-12), semi_minor=np.full((1, 2, 1), 1e-12)
     )
     dry = attrs.evolve(OIL, viscosity=1e-30, oil_fraction=0.0, drag_coefficient=0.0)
-    none = losses(rolling, dry, speed)
+    none = losses(rolling.compiled(), dry, speed)
     assert (none.rolling + none.sliding + none.drag.sum()).max() < 1e-12
-    opened = losses(attrs.evolve(ball, load=np.array([[[0.0], [200.0]]]), angle=np.array([[[np.nan], [0.26]]])), OIL, speed)
+    half = attrs.evolve(ball, load=np.array([[[0.0], [200.0]]]), angle=np.array([[[np.nan], [0.26]]]))
+    opened = losses(half.compiled(), OIL, speed)
     assert opened.contacts[0, 0, 0] == 0.0 and opened.contacts[0, 1, 0] > 0.0
-    total = losses(ball, OIL, speed, seals=0.01)
+    total = losses(ball.compiled(), OIL, speed, seals=0.01)
     assert total.torque[0] * 1000.0 == pytest.approx(
         total.contact_power.sum() + total.drag_power[0] + total.seal_power[0], rel=1e-12
     )
@@ -185,7 +186,50 @@ def test_limits_of_the_torque():
 
 def test_a_gyroscopic_moment_adds_slip_across_until_the_ball_slips_sideways():
     ball, speed = contacts(angle=(0.5, 0.4)), np.array([1000.0])
-    plain = losses(ball, OIL, speed).sliding
-    part = losses(attrs.evolve(ball, inertia=1e-8), OIL, speed)
+    plain = losses(ball.compiled(), OIL, speed).sliding
+    part = losses(attrs.evolve(ball, inertia=1e-8).compiled(), OIL, speed)
     assert part.sliding / plain == pytest.approx(1.0 / np.sqrt(1.0 - part.gyroscopic[0, 0] ** 2), rel=1e-12)
-    assert 0.0 < part.gyroscopic[0, 0] < 1.0 < losses(attrs.evolve(ball, inertia=1e-4), OIL, speed).gyroscopic[0, 0]
+    assert (
+        0.0 < part.gyroscopic[0, 0] < 1.0 < losses(attrs.evolve(ball, inertia=1e-4).compiled(), OIL, speed).gyroscopic[0, 0]
+    )
+
+
+@pytest.mark.parametrize("outer_race", [False, True])
+@pytest.mark.parametrize("sizes", ["shared", "columns"])
+def test_the_compiled_loop_sums_the_terms(sizes, outer_race):
+    """Two rows of seven balls at 200 points, some contacts open, viscosities of each point: 1e-12 of the terms in arrays."""
+    rng, n, z = np.random.default_rng(3), 200, 14
+    points = n if sizes == "columns" else 1
+    load = 10.0 ** rng.uniform(-1.0, 3.5, (n, 2, z))
+    load[rng.random((n, 2, z)) < 0.05] = 0.0
+    load[:, 1] = np.maximum(load[:, 1], 1.0)
+    diameter, conformity = rng.uniform(8e-3, 12e-3, (points, 1, z)), rng.uniform(0.51, 0.56, (points, 2, z))
+    axes = np.cbrt(np.where(load > 0.0, load, 1.0)) * 10.0 ** rng.uniform(-5.0, -4.0, (points, 1, z))
+    balls = LoadedContacts(
+        load, np.where(load > 0.0, rng.uniform(0.0, 0.9, (n, 2, z)), np.nan), axes * rng.uniform(1.0, 9.0, (points, 2, z)), axes,
+        diameter, rng.uniform(4.0, 7.0, (points, 1, z)) * diameter, conformity, 2.2e11, 1e-9,
+    )  # fmt: skip
+    oil = attrs.evolve(OIL, viscosity=10.0 ** rng.uniform(-2.5, -0.5, n))
+    speed, row = 10.0 ** rng.uniform(0.0, 3.5, n), np.repeat([0, 1], 7)
+    columns = attrs.evolve(oil, viscosity=oil.viscosity[:, None, None])
+    compiled, terms = losses(balls.compiled(row), oil, speed, 0.0, outer_race), torques(balls, columns, speed, outer_race)
+    for k in (0, 1):
+        for name, term in terms.items():
+            of_row = term[..., row == k]
+            expected = of_row.max(axis=-1) if name == "gyroscopic" else of_row.sum(axis=-1)
+            assert getattr(compiled, name)[..., k] == pytest.approx(expected, rel=1e-12), name
+
+
+def test_the_compiled_loop_has_the_printed_moment():
+    """As above, from the torque on the shaft: moment over radius is that force."""
+    oil, turns = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30), 10_000.0 * np.pi / 30.0
+    force = losses(brain().compiled(), oil, np.array([turns])).rolling[0, 0, 0] * turns / SPEED
+    assert force * 0.5 * D * (1.0 - D / PITCH) == pytest.approx(0.7780845243544707e-3, rel=2e-5)
+
+
+def test_exponential_and_logarithm_are_exact():
+    x = np.random.default_rng(1).uniform(-700.0, 700.0, 2000)
+    y = np.concatenate([np.exp(x), 1.0 + 1e-3 * x])
+    assert np.array([exponential(v) for v in x]) == pytest.approx(np.exp(x), rel=1e-15)
+    assert np.array([logarithm(v) for v in np.abs(y)]) == pytest.approx(np.log(np.abs(y)), rel=1e-15, abs=1e-18)
+    assert exponential(-1e9) < 4e-308 and exponential(1e9) > 8e307 and logarithm(0.0) < -709.0

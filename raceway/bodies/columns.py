@@ -23,7 +23,7 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.periodic.collocation import one_pitch
 from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
-from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria
+from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria, groove_centres
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
@@ -327,15 +327,10 @@ class ColumnBearing:
 
     def contact_angles(self, states: States) -> tuple[np.ndarray, np.ndarray]:
         """Inner and outer (n, Z) [rad]; nan where a contact is open."""
-        scalars, table, q = self.points.scalars, self.points.table, states.q
-        cosine, sine, side, lever = (table[..., k] for k in (ring.COSINE, ring.SINE, ring.SIDE, ring.LEVER))
-        turned = q[:, 3:4] * sine - q[:, 4:5] * cosine
-        reach = scalars[:, ring.TILT_ARM, None] + table[..., ring.OWN_TILT_ARM]
-        axial = scalars[:, ring.REST_AXIAL, None] + table[..., ring.OWN_REST_AXIAL] + table[..., ring.SHIFT]
-        axial = axial + side * (q[:, :1] + reach * turned)
-        radial = scalars[:, ring.REST_RADIAL, None] + table[..., ring.OWN_REST_RADIAL]
-        radial = radial + q[:, 1:2] * cosine + q[:, 2:3] * sine - lever * turned
-        return contact_angles(np.stack([axial, radial], axis=-1), self.plan.balls != "weightless", states.ball, states.force)
+        centre = np.empty((len(states.q), 2, self.points.table.shape[1]))
+        groove_centres(self.points.scalars, self.points.table, states.q, centre)
+        placed = self.plan.balls != "weightless"
+        return contact_angles(np.moveaxis(centre, 1, 2), placed, states.ball, states.force)
 
     def pressures(self, force: np.ndarray) -> np.ndarray:
         """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""

@@ -2,6 +2,7 @@
 
 jit            the one decorator for compiled kernels
 columns        numbers that may be columns, one of each operating point
+elementary     exponential and logarithm that loops over them are vectorised with
 signatures     types of the kernels that are passed as function pointers
 thermal        steady temperatures of a network of six nodes, and its conductances
 threads        threads that share work, and how many there are

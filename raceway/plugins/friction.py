@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.framework.duties import is_foundation
 from raceway.framework.options import at_least, between, option
 from raceway.out.quantities import Quantity
 
@@ -114,7 +115,7 @@ class Friction:
         numbers = {name: float(value[0]) for name, value in values.items()}
         rows = []
         for row in range(len(points.problem.bearing.of_rows)):
-            parts = {name: float(part[0]) for name, part in _by_source(lost, points.row == row).items() if name != "seals"}
+            parts = {name: float(part[0]) for name, part in _by_source(lost, slice(row, row + 1)).items() if name != "seals"}
             total = sum(parts.values())
             rows.append({"torque_nm": total, "power_w": total * speed, "parts": parts})
         inner, outer = (float(heat) for heat in lost.contact_power[0].sum(axis=1))
@@ -166,12 +167,10 @@ class Friction:
         ]
 
 
-def _by_source(lost: Losses, balls: np.ndarray | slice = slice(None)) -> dict[str, np.ndarray]:
+def _by_source(lost: Losses, rows: slice = slice(None)) -> dict[str, np.ndarray]:
     """(n,) torque of each of ``PARTS``."""
-    contacts = {
-        name: getattr(lost, name)[:, :, balls].sum(axis=(1, 2)) for name in ("rolling", "elastic_rolling", "sliding")
-    }
-    return {**contacts, "drag": lost.drag[:, balls].sum(axis=1), "seals": lost.seals}
+    contacts = {name: getattr(lost, name)[:, :, rows].sum(axis=(1, 2)) for name in ("rolling", "elastic_rolling", "sliding")}
+    return {**contacts, "drag": lost.drag[:, rows].sum(axis=1), "seals": lost.seals}
 
 
 def _oil_fraction(points: SolvedPoints) -> Number:
@@ -202,10 +201,16 @@ def ball_contacts(points: SolvedPoints) -> BallContacts:
     diameter = of_balls([b.ball_diameter for b in rows])
     stiff = [2.0 / sum((1.0 - m.poisson**2) / m.young for m in (b.rings, b.balls)) for b in rows]
     races = [of_balls([getattr(b, f"conformity_{race}") for b in rows]) for race in ("inner", "outer")]
+    # Ellipses of Hertz grow with the cube root of the load, those of a foundation do not.
+    own = is_foundation(points.problem.contact.law)
+    load = np.where(points.load > 0.0, points.load, 1.0) if own else np.ones((1, *points.load.shape[1:]))
+    _, major, minor = points.ellipse(load)
     return BallContacts(
         points.load,
         points.contact_angle,
-        *points.semi_axes,
+        points.row,
+        major / np.cbrt(load),
+        minor / np.cbrt(load),
         diameter,
         of_balls([b.pitch_diameter for b in rows]),
         np.concatenate(races, axis=1),

@@ -243,21 +243,12 @@ class Lubricant(Oil):
         return with_values(cls(), **_oil_of(oil))
 
     def around_balls(self, oil_fraction: Number) -> Lubrication:
-        """As friction sees it; columns are spread over contacts.
-
-        Parameters
-        ----------
-        oil_fraction : where the key says 'auto', broadcast to (n, 1, Z)
-        """
+        """As friction sees it; ``oil_fraction`` : where the key says 'auto', broadcast to (n, 1, Z)."""
         from raceway.core.rolling_friction import Lubrication
-
-        def spread(number: Number) -> Number:
-            return number[:, None, None] if getattr(number, "ndim", 0) == 1 else number
 
         coefficients = self.dynamic_viscosity, self.alpha, self.beta, self.conductivity, self.density
         fraction = oil_fraction if isinstance(self.oil_fraction, str) else self.oil_fraction
-        keys = self.traction_limit, self.eyring_stress, fraction, self.drag_coefficient
-        return Lubrication(*map(spread, (*coefficients, *keys)))
+        return Lubrication(*coefficients, self.traction_limit, self.eyring_stress, fraction, self.drag_coefficient)
 
 
 def lubricated(contact: T, lubricant: Lubricant | None) -> tuple[T, Lubricant | None]:

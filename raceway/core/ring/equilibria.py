@@ -10,7 +10,7 @@ from numba import float64, int64, void
 from raceway.core.jit import jit
 from raceway.core.ring.equilibrium import CONVERGED, SLOW, cholesky_solve, copy_matrix, find_root, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, work_rows
+from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, place, work_rows
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
@@ -161,3 +161,14 @@ def equilibria(kernels, linear, points, states):
                 states.force[p, i] = work[CONTACT_FORCE, i]
             _slow_damping(kernels, contacts, constants, q, ball, response, history)
         states.status[p] = status
+
+
+@jit(void(MATRIX, CUBE, MATRIX, CUBE), allocates=True, releases=True)
+def groove_centres(scalars, table, q, out):
+    """Of every point the vectors from outer to inner groove centres: ``out`` (n, 2, Z), axial and radial [m]."""
+    z, still = table.shape[1], np.zeros(5)
+    work = np.empty((3, 2 * z))
+    for p in range(q.shape[0]):
+        place(0.0, q[p], still, Constants(scalars[p], table[p]), work, (0, 1, 2))
+        for k in range(z):
+            out[p, 0, k], out[p, 1, k] = work[1, k], work[1, z + k]
