@@ -66,6 +66,14 @@ def test_a_function_has_the_numbers_of_runs(inputs):
             assert float(np.asarray(computed[output])[k]) == pytest.approx(stated[output], rel=1e-8, abs=1e-15)
 
 
+def test_ellipses_of_a_law_of_its_own_are_those_of_its_runs():
+    """Of a foundation they do not grow with the cube root of the load: points of a function are runs."""
+    own = scene(contact={"kind": "penalty"})
+    computed = rw.function(own, ["load.axial"], ["torque_nm"])
+    assert computed.why_slow
+    assert float(computed(1000.0)["torque_nm"]) == pytest.approx(run(own).quantities["torque_nm"], rel=1e-12)
+
+
 def test_heat_of_a_measured_bearing():
     """NASA TP-2275, read off a figure by others to 5 %; the oil is assumed, an ester of 26 and 5.1 mm2/s at its inlet's temperature."""
     bearing = {

@@ -117,7 +117,7 @@ class Function:
     @property
     def why_slow(self) -> str:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
-        if is_foundation(self.scene.contact.law) and any(name.startswith("p0") for name in self.outputs):
+        if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._stated for n in self.outputs):
             return "pressures are the contact law's own"
         whys = (why_no_column(self.scene, key) for key in self.inputs)
         return next(filter(None, whys), "") or why_not(self.scene, self.moving)
