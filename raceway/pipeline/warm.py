@@ -97,7 +97,7 @@ def warm(
     )
     start, nodes = np.repeat(inlet[:, np.newaxis], len(_FELT), axis=1), np.full((n, len(NODES)), np.nan)
     if why_not(scene, False):
-        solve: Solve = partial(_one_by_one, scene)
+        solve: Solve = partial(_one_by_one, scene, plan)
     else:
         solve = partial(_in_columns, scene, mounted_columns(column_problem(scene, {**columns, **_at(keys, start)}), plan))
 
@@ -241,13 +241,15 @@ def _in_columns(
     return np.where(fine[:, np.newaxis], level, np.nan)
 
 
-def _one_by_one(scene: Scene, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]) -> np.ndarray:
+def _one_by_one(
+    scene: Scene, plan: ScenePlan, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
+) -> np.ndarray:
     """The same of scenes that the compiled loops do not take."""
     level = np.full((len(rows), len(NODES)), np.nan)
     for row in range(len(rows)):
         with suppress(RacewayError):
             problem = _at_row(scene, at, row)
-            model = model_of(problem, plan_of(problem))
+            model = model_of(problem, attrs.evolve(plan, problem=problem))
             point = solved_point(model, solve_equilibrium(model), None)
             level[row] = thermal_network(point, *(factor[row] for factor in factors)).temperatures[0]
     return level
