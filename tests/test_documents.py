@@ -61,6 +61,7 @@ SLOW = {
     "CONTRIBUTING",
     "article",
     "cluster",
+    "coefficients",
     "compare",
     "elastic",
     "fit",
