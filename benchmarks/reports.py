@@ -194,7 +194,7 @@ def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
             (
                 f"[{data['title']}]({links}{name}.md)",
                 f"{sum(map(holds, data['rows']))} of {len(data['rows'])}",
-                f"{data['commit']}, {data['date']}",
+                data["commit"],
             )
             for name, data in reports.items()
         ),
@@ -210,16 +210,15 @@ def documents() -> list[Path]:
 
 
 def misses(reports: dict[str, dict[str, Any]], links: str = "") -> str:
-    """Every row outside its limits, with its reason, as a Markdown table."""
+    """Every row outside its limits as a Markdown table; the reason is in its report."""
     return _markdown(
-        ("report", "quantity", "value", "limit", "why"),
+        ("report", "quantity", "value", "limit"),
         (
             (
                 f"[{name}]({links}{name}.md)",
                 row["quantity"],
                 shown(row["value"]),
                 limits(row["low"], row["high"]),
-                row["misses"],
             )
             for name, data in reports.items()
             for row in data["rows"]
