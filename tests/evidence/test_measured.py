@@ -345,7 +345,7 @@ def test_contact_angle_fitted_to_stiffness_over_load(claim):
         data = {"load.axial [N]": loads, "kxx [N/m]": exact * (1.0 + 0.005 * random.standard_normal(len(loads)))}
         found = fit(data, scene, ANGLE)
         inside += abs(found[ANGLE] - 17.0) <= found.half_width(ANGLE)
-    quantity = f"kxx at 6 loads with 0.5 % of scatter: share of the true angle within the stated 95 %, {count} tables"
+    quantity = f"kxx at 6 loads with 0.5 % of random error: share of the true angle within the stated 95 %, {count} tables"
     misses = "the interval is too wide: more than 98 of 100 hold the true angle; why is not known"
     claim(quantity, inside / count, **SHARES, source="95 % within two standard deviations of 100", misses=misses)
 
