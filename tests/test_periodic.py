@@ -198,7 +198,7 @@ def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
         branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, 1e-6, 1e-4, 512, slope)
         return list(islice(branch.follow(branch.start(first.solved, 0.0), 0.1), 12))
 
-    known, by_differences = followed(lambda at, path: -at.force(path.nodes)), followed(None)
+    known, by_differences = followed(lambda at, path: -at.force(at.angles(path.nodes))), followed(None)
     for one, two in zip(known, by_differences, strict=True):
         assert one.parameter == pytest.approx(two.parameter, abs=1e-6)
         assert one.solved.path.q[0, 0] == pytest.approx(two.solved.path.q[0, 0], abs=1e-6 * two.solved.size + 1e-15)

@@ -28,11 +28,23 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.targetconfig import ConfigStack
+from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
 from numba.core.types.functions import BaseFunction
-from numba.core.typing.templates import Signature
+from numba.core.typing.templates import Signature, _OverloadFunctionTemplate
+from numba.core.untyped_passes import (
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    RewriteDynamicRaises,
+    WithLifting,
+)
 
 from raceway.core.signatures import Pointer
 from raceway.errors import PluginError, RacewayError
@@ -111,20 +123,22 @@ def _collector_off() -> Iterator[None]:
 _Numba = Any
 _Function: _Numba = BaseFunction
 _resolve = _Function.get_call_type
+_Overload: _Numba = _OverloadFunctionTemplate
 #: Signatures and implementations of operators and functions of numba's own, by their arguments' types and the compiler's flags.
 _resolved: dict[tuple[_Numba, ...], tuple[Signature, _Numba]] = {}
 
 
 @contextmanager
 def _resolved_once() -> Iterator[None]:
-    """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types."""
-    words: dict[int, tuple[object, str]] = {}
+    """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types.
+
+    Functions of numba's own become parts of their callers, once for all kernels that may allocate and once for the others.
+    """
 
     def resolve(function: _Numba, context: _Numba, args: _Numba, kws: _Numba) -> Signature:
         flags = ConfigStack.top_or_none()
-        if id(flags) not in words:
-            words[id(flags)] = flags, "" if flags is None else flags.summary()
-        key = function, args, tuple(kws.items()), words[id(flags)][1]
+        inherited = None if flags is None else (flags.nrt, flags.error_model, str(flags.fastmath))
+        key = function, args, tuple(kws.items()), inherited
         if key not in _resolved:
             signature = _resolve(function, context, args, kws)
             _resolved[key] = signature, function._impl_keys[signature.args]
@@ -132,11 +146,15 @@ def _resolved_once() -> Iterator[None]:
         function._impl_keys[signature.args] = implementation
         return signature
 
+    def compiler(_template: _Numba) -> _Numba:
+        return lambda **options: lambda function: _Helper(function, targetoptions=options)
+
     before, _Function.get_call_type = _Function.get_call_type, resolve
+    jitter, _Overload._get_jit_decorator = _Overload._get_jit_decorator, compiler
     try:
         yield
     finally:
-        _Function.get_call_type = before
+        _Function.get_call_type, _Overload._get_jit_decorator = before, jitter
 
 
 @contextmanager
@@ -166,6 +184,24 @@ def _numbered_from(base: str) -> Iterator[None]:
         FunctionIdentity._unique_ids = before
 
 
+#: For closures, ``with``, ``literal_unroll``, functions that are written into their callers, parallel loops, and one loop for several
+#: operators of arrays: kernels have none of them.
+_NEEDLESS = {
+    DumpParforDiagnostics, FindLiterallyCalls, InlineClosureLikes, InlineInlinables, LiteralPropagationSubPipelinePass, LiteralUnroll,
+    MakeFunctionToJitFunction, NopythonRewrites, RewriteDynamicRaises, WithLifting,
+}  # fmt: skip
+
+
+class _Compiler(CompilerBase):
+    """numba's, without passes that kernels of the core do not need."""
+
+    def define_pipelines(self) -> list[_Numba]:
+        passes: _Numba = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [each for each in passes.passes if each[0] not in _NEEDLESS]
+        passes.finalize()
+        return [passes]
+
+
 _Dispatcher: _Numba = CPUDispatcher
 
 
@@ -180,7 +216,10 @@ class Kernel(_Dispatcher):
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        super().__init__(function, targetoptions=options)
+        if function.__module__.startswith("raceway.core."):
+            super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
+        else:
+            super().__init__(function, targetoptions=options)
         self.signature = signature
         self._compiler._customize_flags = self._flags
 
@@ -341,13 +380,8 @@ class _Linked(JITCodeLibrary):
         self._finalized = True
 
 
-class _Part(Kernel):
-    """A kernel as a part of those that call it, without machine code, entry points for Python and pointers, or files of its own.
-
-    As numba compiles its own overloads; a first run takes a quarter less.
-    """
-
-    get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
+class _Inlined(_Dispatcher):
+    """Code that has no entry points for Python and pointers either: a first run takes a quarter less."""
 
     @staticmethod
     def _flags(flags: _Numba) -> _Numba:
@@ -358,6 +392,20 @@ class _Part(Kernel):
         cres.library.__class__ = _Linked
         self.overloads[tuple(cres.signature.args)] = cres = cres._replace(entry_point=object())
         self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+
+
+class _Helper(_Inlined):
+    """A function of numba's own as a part of kernels."""
+
+    def __init__(self, function: _Numba, targetoptions: _Numba) -> None:
+        super().__init__(function, targetoptions=targetoptions)
+        self._compiler._customize_flags = self._flags
+
+
+class _Part(_Inlined, Kernel):
+    """A kernel as a part of those that call it, without files of its own."""
+
+    get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
 
     def _through_cache(self) -> None:
         folder = _kernel_folder()

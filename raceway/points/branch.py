@@ -12,10 +12,10 @@ import numpy as np
 
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.intervals import Change, contacts, forces, spread
+from raceway.core.periodic.intervals import Change, forces, spread
 from raceway.core.periodic.refinement import displacements, states
 from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
-from raceway.core.ring.orbit import States
+from raceway.core.ring.orbit import States, responses
 from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.shown import Fact
@@ -317,12 +317,12 @@ def open_contacts(solved: Solved) -> tuple[float, int]:
     problem, system = solved.problem, solved.problem.system
     angles = problem.symmetry.span * np.arange(_CONTACTS) / _CONTACTS
     q, v, _, ball, rate = states(solved, angles)
-    gap, force = np.empty((2, len(angles), 2 * system.ball_count))
-    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
+    at = States(angles / problem.speed, q, v * problem.speed, ball, rate)
     # A ball that grazes a race may have no equilibrium with a dashpot that must not pull, which hardly changes which contacts are open.
-    systems = (system, system.without(DAMPING, TIME_CONSTANT))
-    if all(contacts(ring.compiled_forces, ring.law_state, at, gap, force) < len(angles) for ring in systems):
-        raise ConvergenceError("the balls find no place between the races")
+    try:
+        gap = responses(system, at).gap
+    except ConvergenceError:
+        gap = responses(system.without(DAMPING, TIME_CONSTANT), at).gap
     inner = gap[:, : system.ball_count]
     return float(inner.max()), int((inner >= 0.0).sum(axis=1).max())
 

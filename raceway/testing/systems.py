@@ -18,17 +18,14 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.contact.laws import three_halves
-from raceway.core.excitations import harmonic, no_force
+from raceway.core.excitations import harmonic
 from raceway.core.jit import jit
 from raceway.core.record import Motion
-from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE
-from raceway.core.ring.kernels.layout import COLUMNS, DIAMETER, REST_AXIAL, SCALARS, TILT_ARM
+from raceway.core.ring.kernels.impact import CLEARANCE, impact_system
 from raceway.core.ring.system import System
-from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, SYSTEM, VECTOR
+from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, VECTOR
 from raceway.testing.suite import require
 
-#: A diameter that no ball here has: the gap at x = 0 [m].
-CLEARANCE = DIAMETER
 #: Gap of contacts that stay open [m].
 _OPEN = 1.0
 #: Mass [kg], stiffness [N/m], damping and gyroscopic coupling [N s/m] of the springs' motion.
@@ -78,31 +75,6 @@ def along_x(t, params, out):
     out[0] = params[0] * np.cos(params[1] * t)
 
 
-@jit(SYSTEM)
-def _one_contact(t, q, v, balls, contacts, constants, response):
-    """See ``raceway.core.ring.kernels``."""
-    law, law_params, law_old, law_new, dt = contacts
-    scalars, _ = constants
-    f, K, C, work = response
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
-    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
-    for i in range(gap.size):
-        gap[i] = _OPEN
-        rate[i] = 0.0
-    gap[0] = scalars[DIAMETER] - q[0]
-    rate[0] = -v[0]
-    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-    for i in range(5):
-        f[i] = 0.0
-        for j in range(5):
-            K[i, j] = 0.0
-            C[i, j] = 0.0
-    f[0] = force[0]
-    K[0, 0] = -d_gap[0]
-    C[0, 0] = -d_rate[0]
-    return 0
-
-
 @jit(LAW)
 def _counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     """Hertz in the first contact; in the second, which is open, the "force" says how often its memory was committed."""
@@ -141,18 +113,10 @@ def counting_system() -> System:
     return attrs.evolve(contact_system(), law=_counting, law_state=np.zeros((2, 1)))
 
 
-def _system(free: list[float], **parts: object) -> System:
-    scalars = np.zeros(SCALARS)
-    # The first trust radius of an equilibrium is taken from it: a typical approach.
-    scalars[REST_AXIAL], scalars[TILT_ARM] = 1e-4, 1.0
-    scalars[CLEARANCE] = parts.pop("clearance", 0.0)
-    zero = np.zeros((5, 5))
-    usual = {
-        "kernel": _one_contact, "base_kernel": _one_contact, "law": three_halves, "law_params": np.full((2, 1), FACTOR), "law_state": np.zeros((2, 0)),
-        "scalars": scalars, "table": np.zeros((1, COLUMNS)), "mass": MASS * np.eye(5), "damping": zero,
-        "stiffness": zero, "free": np.array(free), "load": np.zeros(5), "force": no_force, "force_params": np.zeros(1),
-    }  # fmt: skip
-    return System(**{**usual, **parts})
+def _system(free: list[float], clearance: float = 0.0, **parts: object) -> System:
+    return attrs.evolve(
+        impact_system(MASS, three_halves, np.array([FACTOR]), clearance=clearance), free=np.array(free), **parts
+    )
 
 
 def linear_system(damped: bool = True, forced: bool = True) -> System:

@@ -9,6 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.intervals import (
+    BALLS_FAILED,
     CORRECTION,
     REPORT,
     ROUNDING,
@@ -25,14 +26,12 @@ from raceway.core.periodic.intervals import (
     Limits,
     Mesh,
     Samples,
-    contacts,
-    differentiate,
     forces,
     newton,
     renew_rates,
 )
 from raceway.core.ring.kernels.layout import CAGE, COSINE, LEVER, REST_RADIAL, SIDE, SINE
-from raceway.core.ring.orbit import States
+from raceway.core.ring.orbit import States, responses
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 
@@ -49,9 +48,8 @@ class _Rule:
     points : (s,) in (0, 1)
     velocity, position : (s, s) first and second integrals of the Lagrange polynomials up to each point
     packed : (2 s + 3, s) velocity, position, the same up to the end of the interval and points one below the other, for kernels
-    tried_values : (e, s) values at e further points from those at the points;  try_packed : (2 e + 3, s + e) integrals up to them
-        (columns 0 to s - 1), then weights of all s + e points for the velocity and the position at the end, then the further points
-        themselves in columns 0 to e - 1
+    tried : (e,) further points;  tried_values, tried_velocity, tried_position : (e, s) values there, and integrals up to them
+    gain : (2, s + e) what the position and the velocity at the end take more of the values at all points than of those at the Gauss points
     legendre : (s, s) Legendre coefficients of values at the points
 
     On an interval of length h the acceleration is the polynomial through its values A_j at the Gauss points c_j; v(u) = v0 +
@@ -68,8 +66,11 @@ class _Rule:
     velocity: np.ndarray
     position: np.ndarray
     packed: np.ndarray
+    tried: np.ndarray
     tried_values: np.ndarray
-    try_packed: np.ndarray
+    tried_velocity: np.ndarray
+    tried_position: np.ndarray
+    gain: np.ndarray
     legendre: np.ndarray
 
 
@@ -90,15 +91,13 @@ def _rule(stages: int = STAGES) -> _Rule:
     points = 0.5 * (x + 1.0)
     _, velocity, position = integrals(points, points)
     _, v_end, q_end = integrals(points, np.ones(1))
-    tried, e = np.array(_TRIED), len(_TRIED)
-    values, v_tried, q_tried = integrals(points, tried)
+    tried = np.array(_TRIED)
     _, v_all, q_all = integrals(np.concatenate([points, tried]), np.ones(1))
-    packed = np.zeros((2 * e + 3, stages + e))
-    packed[:e, :stages], packed[e : 2 * e, :stages] = v_tried, q_tried
-    packed[2 * e], packed[2 * e + 1], packed[2 * e + 2, :e] = v_all[0], q_all[0], tried
+    gain = np.vstack([q_all, v_all])
+    gain[:, :stages] -= np.vstack([q_end, v_end])
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
     both = np.ascontiguousarray(np.vstack([velocity, position, v_end, q_end, points]))
-    return _Rule(points, velocity, position, both, values, packed, legendre)
+    return _Rule(points, velocity, position, both, tried, *integrals(points, tried), gain, legendre)
 
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
@@ -214,10 +213,12 @@ def _bodies_turn(system: System, symmetry: Symmetry, speed: float, q: np.ndarray
     state = q + off
     v = 0.3 * speed * off[[0, 2, 1, 4, 3]]
     z = system.ball_count
-    ball, gap, load = np.zeros((2, z, system.ball_columns)), np.empty((2, 2 * z)), np.empty((2, 2 * z))
+    ball = np.zeros((2, z, system.ball_columns))
     times = np.array([0.0, symmetry.span / speed])
     states = States(times, np.array([state, turn @ state]), np.array([v, turn @ v]), ball, np.zeros_like(ball))
-    if contacts(system.compiled_forces, system.law_state, states, gap, load) < 2:
+    try:
+        _, _, _, gap, load = responses(system, states)
+    except ConvergenceError:
         return False
     # Forces, gaps and places of all balls are what the ring's force is made of.
     both = np.concatenate([symmetry.order, symmetry.order + z])
@@ -277,16 +278,15 @@ class Problem:
         """(m s,) of the Gauss points."""
         return (nodes[:-1, None] + np.diff(nodes)[:, None] * self.rule.points).ravel()
 
-    def force(self, nodes: np.ndarray) -> np.ndarray:
-        """The whole excitation at the Gauss points (m s, 5)."""
-        angles = self.angles(nodes)
+    def force(self, angles: np.ndarray) -> np.ndarray:
+        """The whole excitation at angles (n,): (n, 5)."""
         force = np.empty((len(angles), 5))
         forces(self.system.force, self.system.force_params, angles / self.clock, force)
         return force
 
     def push(self, nodes: np.ndarray) -> np.ndarray:
         """Load and excitation at the Gauss points (m s, 5)."""
-        return self.system.load + self.share * self.force(nodes)
+        return self.system.load + self.share * self.force(self.angles(nodes))
 
     @property
     def equations(self) -> Equations:
@@ -328,6 +328,14 @@ class Path:
     def state(self, k: int, free: np.ndarray) -> np.ndarray:
         """(2 n,) of the unknown coordinates at a node."""
         return np.concatenate([self.q[k, free], self.v[k, free]])
+
+    def states(self, rule: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Angles (m, e), q and v (m, e, 5) at places (e,) in each interval with their integrals (e, s): of velocities and of positions."""
+        at, once, twice = rule
+        h, a = np.diff(self.nodes)[:, None], self.a.reshape(self.intervals, -1, 5)
+        step = h[:, :, None]
+        q = self.q[:-1, None] + at[:, None] * step * self.v[:-1, None] + step**2 * (twice @ a)
+        return self.nodes[:-1, None] + h * at, q, self.v[:-1, None] + step * (once @ a)
 
     def samples(self, push: np.ndarray, slope: np.ndarray | None = None) -> Samples:
         """For compiled parts, with outer forces ``push`` (m s, 5) and their derivative ``slope``; zeros for none."""
@@ -382,12 +390,6 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     path.rate[:, :, rated] = rates
 
 
-def _longer(nodes: np.ndarray) -> np.ndarray:
-    """Nodes with an interval more at each end."""
-    h = np.diff(nodes)
-    return np.concatenate([[nodes[0] - h[-1]], nodes, [nodes[-1] + h[0]]])
-
-
 @cache
 def _steepest(rule: _Rule) -> float:
     """Largest entry of the derivative on an interval of length 1 among equals."""
@@ -396,21 +398,22 @@ def _steepest(rule: _Rule) -> float:
 
 def _weights(rule: _Rule, nodes: np.ndarray) -> np.ndarray:
     """D (m s, s + 4) by the angle: row i has the weights of samples k s - 2 to k s + s + 1, k the interval of sample i."""
-    m, s = len(nodes) - 1, len(rule.points)
-    width = s + 4
-    rows = np.arange(m * s + 4)
-    # Any s + 4 samples in a row have different remainders: one signal for each remainder tells every weight.
-    signal = np.ascontiguousarray((rows[:, None] % width == np.arange(width)).astype(float)[:, :, None])
-    out = np.empty_like(signal)
-    differentiate(_longer(nodes), rule.points, 1.0, signal, out)
-    of = (np.arange(m * s) // s * s)[:, None] + np.arange(width)
-    return np.take_along_axis(out[2:-2, :, 0], of % width, axis=1)
+    s, h = len(rule.points), np.diff(nodes)[:, None]
+    x = np.hstack([np.roll(h, 1) * (rule.points[-2:] - 1.0), h * rule.points, h + np.roll(h, -1) * rule.points[:2]]) / h
+    # The derivative of the polynomial through them, in barycentric form.
+    apart, own = x[:, :, None] - x[:, None, :], np.arange(s + 4)
+    apart[:, own, own] = 1.0
+    w = 1.0 / apart.prod(axis=2)
+    derivative = w[:, None, :] / w[:, :, None] / apart
+    derivative[:, own, own] = 0.0
+    derivative[:, own, own] = -derivative.sum(axis=2)
+    return (derivative[:, 2:-2] / h[:, :, None]).reshape(-1, s + 4)
 
 
 def _lags(problem: Problem, path: Path) -> np.ndarray:
     """T (m s, Z, r, r) [s]: places by rates."""
     columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
-    here, *moved = _places(problem, path, np.arange(len(path.a)), [[], *columns])
+    here, *moved = _places(problem, path, [[], *columns])
     return np.stack([(balls - here) / _step(problem, path) for balls in moved], axis=-1)
 
 
@@ -418,24 +421,17 @@ def _step(problem: Problem, path: Path) -> float:
     return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
 
 
-def _places(problem: Problem, path: Path, samples: np.ndarray, moved: list[list[int]]) -> list[np.ndarray]:
-    """Columns (n, Z, r) of the balls at some of the Gauss points, for each set of columns with the rates of that set moved."""
+def _places(problem: Problem, path: Path, moved: list[list[int]]) -> list[np.ndarray]:
+    """Columns (m s, Z, r) of the balls at the Gauss points, for each set of columns with the rates of that set moved."""
     system, rule = problem.system, problem.rule
-    s, rated = len(rule.points), system.rated_columns
-    k, i = samples // s, samples % s
-    h, a = np.diff(path.nodes)[k, None], path.a.reshape(path.intervals, s, 5)[k]
-    q = path.q[k] + rule.points[i, None] * h * path.v[k] + h**2 * np.einsum("ns,nsc->nc", rule.position[i], a)
-    v = (path.v[k] + h * np.einsum("ns,nsc->nc", rule.velocity[i], a)) * problem.speed
-    times = (path.nodes[k] + rule.points[i] * h[:, 0]) / problem.speed
-    gap, force = np.empty((2, len(samples), 2 * system.ball_count))
+    angles, q, v = path.states((rule.points, rule.velocity, rule.position))
     places = []
     for columns in moved:
-        ball, rate = path.ball[samples].copy(), path.rate[samples].copy()
+        ball, rate = path.ball.copy(), path.rate.copy()
         rate[:, :, columns] += _step(problem, path)
-        evaluated = contacts(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), gap, force)
-        if evaluated < len(samples):
-            raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
-        places.append(ball[:, :, rated])
+        at = States(angles.ravel() / problem.speed, q.reshape(-1, 5), v.reshape(-1, 5) * problem.speed, ball, rate)
+        responses(system, at)
+        places.append(ball[:, :, system.rated_columns])
     return places
 
 
@@ -533,6 +529,19 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
         "strong dashpots in the contacts",
         {"q": path.q[0].copy()},
     )
+
+
+def linearised(problem: Problem, path: Path) -> Eliminated:
+    """About a path, whose arrays a step of Newton's method moves then."""
+    eliminated, closure = (
+        problem.eliminated(path.nodes),
+        Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64)),
+    )
+    samples, once = path.samples(problem.push(path.nodes)), Limits(0.0, 0.0, 1, 0)
+    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, once, eliminated, np.zeros(REPORT))
+    if status == BALLS_FAILED:
+        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
+    return eliminated
 
 
 def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:

@@ -18,10 +18,8 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.intervals import condense
+from raceway.core.periodic.collocation import Solved, linearised
 from raceway.core.periodic.refinement import divided, resampled
-from raceway.errors import ConvergenceError
 from raceway.storage.tables import Tables
 
 #: Distance from the unit circle that counts as on it: what a mesh fit for 1e-8 of the motion leaves of error.
@@ -109,8 +107,4 @@ def _finer(solved: Solved, highest: float) -> np.ndarray:
     parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
     if parts.max() <= 1:
         return solved.eliminated.span_transfer
-    path = resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))
-    out, samples = problem.eliminated(path.nodes), path.samples(problem.push(path.nodes))
-    if condense(problem.equations, problem.mesh(path.nodes), samples, out, np.zeros(3)) < path.intervals:
-        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
-    return out.span_transfer
+    return linearised(problem, resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))).span_transfer

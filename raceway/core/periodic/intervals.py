@@ -15,11 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import boolean, float64, int64, types, void
 
-from raceway.core.jit import Kernel, jit
+from raceway.core.jit import jit
 from raceway.core.ring.equilibrium import copy_cube, copy_matrix, eliminate
-from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.layout import work_rows
-from raceway.core.ring.orbit import STATES
 from raceway.core.signatures import (
     CUBE,
     FORCE_POINTER,
@@ -54,7 +52,7 @@ class Equations(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Angles of the nodes (m + 1,), and ``Rule.packed`` (2 p + 3, s) or ``Rule.try_packed`` (2 p + 3, s + p) of p points."""
+    """Angles of the nodes (m + 1,), and ``Rule.packed`` (2 s + 3, s)."""
 
     nodes: np.ndarray
     rule: np.ndarray
@@ -117,13 +115,13 @@ LOCAL = record(_Local, VECTOR, VECTOR, MATRIX, MATRIX)
 def _state_at(mesh, samples, k, i, speed, q, v):
     """q [m] and v [m/s] (5,) at point i of the mesh's rule in interval k; the time [s]."""
     nodes, rule = mesh
-    points, s = (rule.shape[0] - 3) // 2, samples.a.shape[0] // (nodes.size - 1)
-    h, u = nodes[k + 1] - nodes[k], rule[2 * points + 2, i]
+    s, h = rule.shape[1], nodes[k + 1] - nodes[k]
+    u = rule[2 * s + 2, i]
     for c in range(5):
         q[c] = samples.q[k, c] + u * h * samples.v[k, c]
         v[c] = samples.v[k, c]
         for j in range(s):
-            q[c] += h * h * rule[points + i, j] * samples.a[k * s + j, c]
+            q[c] += h * h * rule[s + i, j] * samples.a[k * s + j, c]
             v[c] += h * rule[i, j] * samples.a[k * s + j, c]
     for c in range(5):
         v[c] *= speed
@@ -351,99 +349,6 @@ def differentiate(nodes, points, speed, ball, rate):
                         if j != i:
                             total += w[j] / w[i] / (x[i] - x[j]) * (ball[k * s + j, ball_number, c] - here)
                     rate[k * s + i, ball_number, c] = total * speed / h
-
-
-@jit(int64(FORCES, MATRIX, STATES, MATRIX, MATRIX), allocates=True)
-def contacts(forces, memory, states, gap, force):
-    """gap, force (n, 2 Z) at n states; their balls are a guess and become the places.  The number of states done."""
-    constants = forces.constants
-    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
-    response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
-    law = Contacts(forces.law, forces.law_params, memory, memory.copy(), 0.0)
-    for i in range(states.times.size):
-        balls = Balls(states.ball[i], 0.0, states.rate[i])
-        if forces.system(states.times[i], states.q[i], states.v[i], balls, law, constants, response) != 0:
-            return i
-        for c in range(gap.shape[1]):
-            gap[i, c] = work[GAP, c]
-            force[i, c] = work[CONTACT_FORCE, c]
-    return states.times.size
-
-
-class Excitation(NamedTuple):
-    """Excitation with its parameters (k,), the share of it that acts, and the speed of its own clock [rad/s]."""
-
-    force: Kernel
-    params: np.ndarray
-    share: float
-    clock: float
-
-
-EXCITATION = record(Excitation, FORCE_POINTER, VECTOR, float64, float64)
-
-
-@jit(void(EQUATIONS, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
-def _acceleration_of(equations, inverse, q, v, push, f, out):
-    """out (n,): second derivatives by the angle of the unknowns, which balance the forces; ``inverse`` (n, n) of the mass.
-
-    f (5,), at first the contacts' forces, becomes what is left of the others.
-    """
-    linear, free, speed = equations.linear, equations.free, equations.speed
-    n = free.size
-    for r in range(n):
-        c = free[r]
-        total = push[c] - f[c]
-        for d in range(5):
-            total -= linear.damping[c, d] * v[d] + linear.stiffness[c, d] * q[d]
-        f[c] = total
-    for r in range(n):
-        out[r] = 0.0
-        for j in range(n):
-            out[r] += inverse[r, j] * f[free[j]]
-        out[r] /= speed * speed
-
-
-@jit(int64(EQUATIONS, EXCITATION, MATRIX, MESH, MATRIX, SAMPLES, MATRIX), allocates=True)
-def try_between(equations, excitation, inverse, mesh, tried, samples, defect):
-    """defect (m, 2 n): what q and v at the end of each interval gain; the number of intervals done, less than m at a failure.
-
-    Parameters
-    ----------
-    inverse : (n, n) of the mass
-    tried : ``Rule.try_packed``;  ``samples.rate`` : (m e, Z, c) [m/s] at the e points of an interval that are tried
-    """
-    forces, free = equations.forces, equations.free
-    constants, load = forces.constants, equations.linear.load
-    m, s, n = mesh.nodes.size - 1, mesh.rule.shape[1], free.size
-    e, trial = tried.shape[1] - s, Mesh(mesh.nodes, tried)
-    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
-    response = Response(np.empty(5), np.empty((0, 0)), np.empty((0, 0)), work)
-    contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
-    q, v, push, acceleration = np.empty(5), np.empty(5), np.empty(5), np.empty(n)
-    ball = np.empty((constants.table.shape[0], samples.ball.shape[2]))
-    for k in range(m):
-        h = mesh.nodes[k + 1] - mesh.nodes[k]
-        for i in range(2 * n):
-            defect[k, i] = 0.0
-        for i in range(s):
-            for r in range(n):
-                value = samples.a[k * s + i, free[r]]
-                defect[k, r] += h * h * (tried[2 * e + 1, i] - mesh.rule[2 * s + 1, i]) * value
-                defect[k, n + r] += h * (tried[2 * e, i] - mesh.rule[2 * s, i]) * value
-        for i in range(e):
-            u = tried[2 * e + 2, i]
-            t = _state_at(trial, samples, k, i, equations.speed, q, v)
-            copy_matrix(samples.ball[k * s + min(s - 1, int64(u * s))], ball)
-            if forces.system(t, q, v, Balls(ball, 0.0, samples.rate[k * e + i]), contacts, constants, response) != 0:
-                return k
-            excitation.force((mesh.nodes[k] + u * h) / excitation.clock, excitation.params, push)
-            for c in range(5):
-                push[c] = load[c] + excitation.share * push[c]
-            _acceleration_of(equations, inverse, q, v, push, response.f, acceleration)
-            for r in range(n):
-                defect[k, r] += h * h * tried[2 * e + 1, s + i] * acceleration[r]
-                defect[k, n + r] += h * tried[2 * e, s + i] * acceleration[r]
-    return m
 
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.

@@ -18,9 +18,9 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Path, Problem, Solved, integrals, rotations, solve
-from raceway.core.periodic.intervals import Excitation, carry, contacts, forces, try_between
+from raceway.core.periodic.intervals import forces
 from raceway.core.record import Motion, Record, Schedule
-from raceway.core.ring.orbit import States
+from raceway.core.ring.orbit import States, responses
 from raceway.errors import ConvergenceError
 from raceway.storage.tables import Tables
 
@@ -34,12 +34,34 @@ _BETWEEN = 1.0 / 64.0
 _NEWTON = 1e-2
 
 
-def _between(problem: Problem, path: Path) -> np.ndarray:
-    """Rates (m e, Z, c) at the points between the Gauss points that estimates try."""
-    s = len(problem.rule.points)
-    values = problem.rule.tried_values
-    rate = path.rate.reshape(path.intervals, s, *path.rate.shape[1:])
-    return np.ascontiguousarray(np.einsum("es,mszc->mezc", values, rate).reshape(-1, *path.rate.shape[1:]))
+def _defects(problem: Problem, path: Path) -> np.ndarray:
+    """(m, 2 n): what q and q' at the end of each interval gain by the accelerations at further points, which balance the forces there."""
+    system, rule, free, speed = problem.system, problem.rule, problem.free, problem.speed
+    m, s, e = path.intervals, len(rule.points), len(rule.tried)
+    angles, q, v = (x.reshape(m * e, -1) for x in path.states((rule.tried, rule.tried_velocity, rule.tried_position)))
+    angle, v = angles[:, 0], v * speed
+    ball, rate = (x.reshape(m, s, *x.shape[1:]) for x in (path.ball, path.rate))
+    near = ball[:, np.minimum(s - 1, (rule.tried * s).astype(int))].reshape(m * e, *path.ball.shape[1:])
+    between = np.einsum("es,mszc->mezc", rule.tried_values, rate).reshape(near.shape)
+    f = responses(system, States(angle / speed, q, v, near, between)).f
+    left = system.load + problem.share * problem.force(angle) - f - v @ system.damping.T - q @ system.stiffness.T
+    further = np.linalg.solve(system.mass[np.ix_(free, free)], left[:, free].T).T / speed**2
+    both = np.concatenate([path.a.reshape(m, s, 5)[:, :, free], further.reshape(m, e, -1)], axis=1)
+    h = np.diff(path.nodes)[:, None]
+    by_position, by_velocity = np.einsum("gs,msn->gmn", rule.gain, both)
+    defect = np.hstack([h**2 * by_position, h * by_velocity])
+    if not np.isfinite(defect).all():
+        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
+    return defect
+
+
+def _carried(transfer: np.ndarray, first: np.ndarray, defect: np.ndarray) -> np.ndarray:
+    """(m + 1, 2 n) changes of the states at nodes that defects (m, 2 n) and a first change (2 n,) make; ``transfer`` (m 2 n, 2 n)."""
+    out = np.empty((len(defect) + 1, len(first)))
+    out[0] = first
+    for k, (step, gain) in enumerate(zip(transfer.reshape(-1, len(first), len(first)), defect, strict=True)):
+        out[k + 1] = step @ out[k] + gain
+    return out
 
 
 @attrs.frozen(eq=False)
@@ -67,23 +89,14 @@ def estimate(solved: Solved, closed: Callable[[np.ndarray], np.ndarray] | None =
         of a branch stays as it is, which has no answer at a fold
     """
     problem, path = solved.problem, solved.path
-    system, free, weight = problem.system, problem.free, problem.weight
+    free, weight = problem.free, problem.weight
     m, s, n = path.intervals, len(problem.rule.points), len(free)
-    inverse = np.linalg.inv(system.mass[np.ix_(free, free)])
-    defect = np.empty((m, 2 * n))
-    excitation = Excitation(system.force, system.force_params, problem.share, problem.clock)
-    tried = attrs.evolve(path, rate=_between(problem, path)).samples(np.empty((0, 5)))
-    evaluated = try_between(
-        problem.equations, excitation, inverse, problem.mesh(path.nodes), problem.rule.try_packed, tried, defect
-    )
-    if evaluated < m or not np.isfinite(defect).all():
-        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
-    dq, dv = np.zeros_like(path.q), np.zeros_like(path.v)
-    transfer, span_transfer = solved.eliminated.transfer, solved.eliminated.span_transfer
-    carry(free, transfer, np.zeros(2 * n), defect, dq, dv)
-    end = np.concatenate([dq[-1, free], dv[-1, free]])
+    defect = _defects(problem, path)
+    transfer, span_transfer = solved.eliminated.transfer[:, : 2 * n], solved.eliminated.span_transfer
+    end = _carried(transfer, np.zeros(2 * n), defect)[-1]
     first = np.linalg.solve(problem.closing - span_transfer[:, : 2 * n], end) if closed is None else closed(end)
-    carry(free, transfer, first, defect, dq, dv)
+    dq = np.zeros_like(path.q)
+    dq[:, free] = _carried(transfer, first, defect)[:, :n]
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)
@@ -153,12 +166,11 @@ def refine(solved: Solved, tolerance: float) -> Refined:
     """
     problem = solved.problem
     s = len(problem.rule.points)
-    extra = problem.rule.try_packed.shape[1] - s
     sweeps, evaluations = solved.sweeps, solved.sweeps * solved.path.intervals * s
     for rounds in range(_ROUNDS):
         estimated = estimate(solved)
         m = solved.path.intervals
-        evaluations += m * extra
+        evaluations += m * len(problem.rule.tried)
         if estimated.error <= max(tolerance, solved.rounding) or rounds == _ROUNDS - 1:
             break
         target = tolerance * solved.size
@@ -278,14 +290,10 @@ def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
 
 def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
     """The same, balls where they are at rest, with gaps and contact forces (n, 2 Z)."""
-    problem, system = solved.problem, solved.problem.system
+    speed = solved.problem.speed
     q, v, a, ball, rate = states(solved, angles)
-    gap, force = np.empty((2, len(angles), 2 * system.ball_count))
-    at = States(angles / problem.speed, np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed), ball, rate)
-    evaluated = contacts(system.compiled_forces, system.law_state, at, gap, force)
-    if evaluated < len(angles):
-        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
-    return q, v, a, ball, rate, gap, force
+    now = responses(solved.problem.system, States(angles / speed, q, v * speed, ball, rate))
+    return q, v, a, ball, rate, now.gap, now.force
 
 
 class _Repeat:

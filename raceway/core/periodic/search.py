@@ -318,7 +318,7 @@ def _force_continuation(
     length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
 
     def slope(at: Problem, path: Path) -> np.ndarray:
-        return -problem.share * at.force(path.nodes)
+        return -problem.share * at.force(at.angles(path.nodes))
 
     branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, ROUGH, MOST, slope)
     still = attrs.evolve(problem, share=0.0)

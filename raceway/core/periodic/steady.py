@@ -23,7 +23,7 @@ from raceway.core.periodic.search import (
 )
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
-from raceway.core.ring.orbit import Orbit, States, evaluate_many, steady_orbit
+from raceway.core.ring.orbit import Orbit, States, responses, steady_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System, compiled, surrogate
 from raceway.core.signals import stiffness
@@ -273,11 +273,8 @@ def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
     problem, system = solved.problem, solved.problem.system
     times = period / _SAMPLES * np.arange(_SAMPLES)
     q, v, a, ball, rate = states(solved, problem.speed * times)
-    q, v = np.ascontiguousarray(q), np.ascontiguousarray(v * problem.speed)
-    f, K, C = np.empty((_SAMPLES, 5)), np.empty((_SAMPLES, 5, 5)), np.empty((_SAMPLES, 5, 5))
-    evaluated = evaluate_many(system.compiled_forces, system.law_state, States(times, q, v, ball, rate), f, K, C)
-    if evaluated < _SAMPLES:
-        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
+    v = v * problem.speed
+    now = responses(system, States(times, q, v, ball, rate), tangents=True)
     force = np.array([system.outer_force(t) for t in times])
     iterations = motion.refined.sweeps
-    return Orbit(period, q, v, a * problem.speed**2, force, ball, K, C, motion.refined.error, iterations)
+    return Orbit(period, q, v, a * problem.speed**2, force, ball, now.K, now.C, motion.refined.error, iterations)

@@ -22,9 +22,10 @@ from numba import int64
 
 from raceway.core.jit import jit
 from raceway.core.record import Motion
+from raceway.core.ring.kernels import CONTACT_FORCE, GAP
 from raceway.core.ring.kernels.layout import work_rows
 from raceway.core.ring.ring import Ring
-from raceway.core.ring.system import compiled, surrogate
+from raceway.core.ring.system import System, compiled, surrogate
 from raceway.core.signatures import CUBE, FORCES, MATRIX, VECTOR, Balls, Contacts, Response, record
 from raceway.errors import ConvergenceError
 
@@ -46,17 +47,55 @@ class States(NamedTuple):
 STATES = record(States, VECTOR, MATRIX, MATRIX, CUBE, CUBE)
 
 
-@jit(int64(FORCES, MATRIX, STATES, MATRIX, CUBE, CUBE), allocates=True)
-def evaluate_many(forces, memory, states, f, K, C):
-    """Contact forces (n, 5) and tangents (n, 5, 5) at n states; the index of the first that fails, or n."""
-    constants = forces.constants
+class Responses(NamedTuple):
+    """Of n states: contact forces on the ring f (n, 5), their tangents K and C (n, 5, 5), or (n, 0, 0), gaps and forces of contacts (n, 2 Z)."""
+
+    f: np.ndarray
+    K: np.ndarray
+    C: np.ndarray
+    gap: np.ndarray
+    force: np.ndarray
+
+
+RESPONSES = record(Responses, MATRIX, CUBE, CUBE, MATRIX, MATRIX)
+
+
+@jit(int64(FORCES, MATRIX, STATES, RESPONSES), allocates=True)
+def _respond(forces, memory, states, responses):
+    """The responses at n states; the index of the first that fails, or n."""
+    constants, (f, K, C, gap, force) = forces.constants, responses
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     contacts = Contacts(forces.law, forces.law_params, memory, memory.copy(), 0.0)
     for i in range(states.times.size):
         balls, response = Balls(states.ball[i], 0.0, states.rate[i]), Response(f[i], K[i], C[i], work)
         if forces.system(states.times[i], states.q[i], states.v[i], balls, contacts, constants, response) != 0:
             return i
+        for c in range(gap.shape[1]):
+            gap[i, c] = work[GAP, c]
+            force[i, c] = work[CONTACT_FORCE, c]
     return states.times.size
+
+
+def _room(system: Ring, n: int, tangents: bool) -> Responses:
+    size = 5 if tangents else 0
+    K, C = np.empty((2, n, size, size))
+    return Responses(np.empty((n, 5)), K, C, *np.empty((2, n, 2 * system.ball_count)))
+
+
+def responses(system: System, states: States, tangents: bool = False) -> Responses:
+    """What the contacts do at many states, whose balls are a guess and become the places.
+
+    Raises
+    ------
+    ConvergenceError
+        Where the balls of one find no place.
+    """
+    n, out = len(states.times), _room(system, len(states.times), tangents)
+    q, v = np.ascontiguousarray(states.q), np.ascontiguousarray(states.v)
+    evaluated = _respond(system.compiled_forces, system.law_state, states._replace(q=q, v=v), out)
+    if evaluated < n:
+        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
+    return out
 
 
 @attrs.frozen(eq=False)
@@ -149,7 +188,7 @@ def orbit_near(
     ball = np.zeros((samples, system.ball_count, system.ball_columns))
     rate = np.zeros_like(ball)
     rated = system.rated_columns
-    f, K, C = np.empty((samples, 5)), np.empty((samples, 5, 5)), np.empty((samples, 5, 5))
+    f, K, C, _, _ = now = _room(system, samples, tangents=True)
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
     linear, diagonal = _linear_part(system, free, first, inertial), np.arange(samples)
     residual, worst, iterations, damping_factor = np.inf, np.inf, 0, 1.0
@@ -158,7 +197,7 @@ def orbit_near(
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
             rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        evaluated = _evaluate(system, States(times, q, v, ball, rate), f, K, C)
+        evaluated = _evaluate(system, States(times, q, v, ball, rate), now)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
@@ -201,17 +240,17 @@ def _linear_part(system: Ring, free: np.ndarray, first: np.ndarray, inertial: bo
     return linear
 
 
-def _evaluate(system: Ring, states: States, f: np.ndarray, K: np.ndarray, C: np.ndarray) -> int:
-    """``evaluate_many`` for any system; the balls of one that is evaluated from Python follow the ring, ``rate`` is not used."""
+def _evaluate(system: Ring, states: States, out: Responses) -> int:
+    """``_respond`` for any system; the balls of one that is evaluated from Python follow the ring, ``rate`` is not used."""
     ring, ball = compiled(system), states.ball
     if ring is not None:
-        return int(evaluate_many(ring.compiled_forces, system.law_state, states, f, K, C))
+        return int(_respond(ring.compiled_forces, system.law_state, states, out))
     for i, t in enumerate(states.times):
         try:
             now = system.evaluate(states.q[i], states.v[i], ball[i] if ball[i].any() else None, None, float(t))
         except ConvergenceError:
             return i
-        f[i], K[i], C[i], ball[i] = now.force, now.stiffness, now.damping, now.ball
+        out.f[i], out.K[i], out.C[i], ball[i] = now.force, now.stiffness, now.damping, now.ball
     return len(states.times)
 
 
