@@ -9,7 +9,7 @@ INSTALL = $(BIN)/python -m pip install -q -c constraints.txt
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: help demo test test-all lint docs ross evidence mutants constraints apt-line clean
+.PHONY: help demo test test-all lint docs ross wheel evidence mutants constraints apt-line clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1 :\2/p' Makefile | while IFS=: read -r name words; do printf '%-20s%s\n' "$$name" "$$words"; done
@@ -36,6 +36,13 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run
 
 ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
 	$(VENV)-docs/bin/python -m pytest -q -m ross tests/test_ross_inside.py tests/rig/test_against_ross.py
+
+wheel: $(VENV)/.all ## a wheel in dist, installed into an empty environment without extras, which runs a scene
+	rm -rf dist build/wheel
+	$(BIN)/python -m build --wheel --no-isolation --outdir dist .
+	$(PYTHON) -m venv build/wheel
+	build/wheel/bin/python -m pip install -q -c constraints.txt dist/*.whl
+	cd build/wheel && bin/raceway run $(CURDIR)/examples/minimal.toml --out out
 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m benchmarks.night

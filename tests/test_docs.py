@@ -12,7 +12,9 @@ from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.scene.inputs import read_toml
+from raceway.scene.schema import scene_schema
 from raceway.testing import check
+from validation.command_line import invoke
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "plugins.md"
@@ -98,3 +100,18 @@ def test_the_watcher_sees_a_run(folder):
     run(scene_from_dict(tables, registry), registry)
     (watcher,) = [p for p in registry.manager.get_plugins() if hasattr(p, "seen")]
     assert watcher.seen[0] == "plan" and watcher.seen[-1] == "finished" and "chunk" in watcher.seen
+
+
+def test_the_page_for_assistants_runs_and_knows_the_commands(monkeypatch, tmp_path):
+    page = (ROOT / "docs" / "skill.md").read_text(encoding="utf-8")
+    assert len(page.splitlines()) <= 300
+    monkeypatch.chdir(ROOT)
+    names: dict[str, object] = {}
+    for block in re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
+        exec(block, names)
+    for command in re.findall(r"^\| `raceway (\w+) ", page, re.MULTILINE):
+        assert invoke(command, "--help").exit_code == 0, command
+    keys = re.findall(r"^\| `(\w+\.\w+)`", page, re.MULTILINE)
+    properties = scene_schema()["properties"]
+    for table, key in (path.split(".") for path in keys):
+        assert key in str(properties[table]), f"{table}.{key}"

@@ -13,6 +13,7 @@ from rich.console import Console
 import raceway as rw
 from raceway.bodies.model import tilts_follow
 from raceway.framework.estimate import Estimate, short
+from raceway.framework.shown import duration
 from raceway.out.table import rows_table
 from raceway.out.wrapping import Words
 from raceway.pipeline.run_parts import cost_row, equilibrium_rows
@@ -251,3 +252,11 @@ def test_a_cost_says_whether_compiled_kernels_were_kept_and_the_processor_time()
     assert wall == "12 s" and "3 CPU-s" in words and "9 s of compiling, cached for the next run" in words
     assert "9 s of compiling, not cached" in cost_row({**cost, "compiled_kept": False})[2]
     assert "compiling" not in cost_row({**cost, "compile_s": 0.0, "compiled_kept": True})[2]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.853, "0.85 s"), (99.0, "99 s"), (100.0, "2 min"), (3600.0, "1 h"), (21012.0, "5 h 50 min"), (90000.0, "1 d 1 h")],
+)
+def test_a_time_is_said_in_the_units_of_people(seconds, words):
+    assert duration(seconds) == words

@@ -14,6 +14,7 @@ from rich.padding import Padding
 from rich.table import Table
 
 from raceway.errors import SceneError
+from raceway.framework.shown import duration
 from raceway.out.answer import Answer, Part
 from raceway.out.table import Row, grouped, number, sections
 from raceway.out.wrapping import Words
@@ -34,20 +35,22 @@ class _Planned(Answer):
         return {"title": self.title, "errors": [], **self.plan.to_dict()}
 
     def report(self) -> Iterator[Part]:
-        """Parts kept and left out, and the predictions."""
+        """Size, memory and time, then the parts kept and left out."""
         yield Words(self.title, "bold")
         plan = self.plan.to_dict()
-        yield from (_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]))
         step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
+        memory = plan["predicted_bytes"]
         size = [
             ("Size and cost, predicted", "", ""),
             ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
+            *([("memory", f"{memory / 2**20:.3g} MiB", "at the peak")] if memory else []),
+            _wall_time(plan),
             ("time step", step, f"{plan['predicted_steps']} steps"),
             *([_derived(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
             _derived(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
-            _wall_time(plan),
         ]
         yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
+        yield from (_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]))
 
 
 def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
@@ -71,7 +74,7 @@ def _derived(plan: ReadTables, name: str, words: str, unit: str = "", units: flo
 def _wall_time(plan: ReadTables) -> Row:
     if plan["predicted_at_least"]:
         return ("wall time", "not known", "before the mesh is read: how large it is")
-    return ("wall time", number(plan["predicted_wall_s"], "s", 2), "with compiled kernels in the cache")
+    return ("wall time", duration(plan["predicted_wall_s"]), "with compiled kernels in the cache")
 
 
 def _mesh_rows(mesh: ReadTables) -> list[Row]:

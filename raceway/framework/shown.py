@@ -116,3 +116,15 @@ def percents(*changes: float) -> str:
     """Both ends of relative changes in percent, or the one that there is."""
     ends = (f"{100.0 * change:+.{'2g' if abs(change) < 0.995 else '0f'}}" for change in (min(changes), max(changes)))
     return f"{' to '.join(dict.fromkeys(ends))} %"
+
+
+def duration(seconds: float) -> str:
+    """A time in the two largest units that a person reads: "5 h 50 min"."""
+    if seconds < 99.5:
+        return number(seconds, "s", 2)
+    minutes = round(seconds / 60.0)
+    hours, minutes = divmod(minutes, 60)
+    days, hours = divmod(hours, 24)
+    parts = [(days, "d"), (hours, "h"), (minutes, "min")]
+    first = next(k for k, (count, _) in enumerate(parts) if count)
+    return " ".join(f"{count} {unit}" for count, unit in parts[first : first + 2] if count)

@@ -13,7 +13,7 @@ import attrs
 
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
-from raceway.framework.shown import Fact, Shown, number
+from raceway.framework.shown import Fact, Shown, duration
 from raceway.planning.cost import slowness
 from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.resolve import Problem, refuse_memory, resolve
@@ -93,7 +93,7 @@ class ScenePlan(Shown):
 
     def _shown(self) -> tuple[str, list[Fact]]:
         step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
-        time = "time not known before the mesh is read" if self.at_least else number(self.predicted_wall_s, "s", 2)
+        time = "time not known before the mesh is read" if self.at_least else duration(self.predicted_wall_s)
         head: list[Fact] = [
             ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
             ("kept", "", ", ".join(part.part for part in self.kept)),

@@ -23,6 +23,7 @@ from raceway.framework.doors import door
 from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
+from raceway.framework.shown import duration
 from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
@@ -362,7 +363,7 @@ class Function:
         if seconds > _LIMIT_S:
             answer["reason"][left] = (
                 f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
-                f"{seconds:.3g} s: they are made with force = True"
+                f"{duration(seconds)}: they are made with force = True"
             )
             return answer
         return self._run_all(flat, left, answer)
@@ -413,7 +414,7 @@ class Function:
         seconds = self._seconds(n)
         if seconds > _LIMIT_S and not self.force:
             raise RacewayError(
-                f"{n} points would take about {seconds:.3g} s, one run after another, because {why}: give fewer points, or force = True. "
+                f"{n} points would take about {duration(seconds)}, one run after another, because {why}: give fewer points, or force = True. "
                 "`raceway sweep` shares such points among processes and goes on where it was stopped"
             )
 

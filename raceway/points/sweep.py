@@ -20,6 +20,7 @@ from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
 from raceway.framework.doors import door
 from raceway.framework.registry import Registry, registry_with
+from raceway.framework.shown import duration
 from raceway.out.progress import telling
 from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
@@ -246,7 +247,7 @@ def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
             seconds = size * plan.predicted_work_s / getattr(executor, "workers", 1)
         if seconds > _LIMIT_S:
             raise RacewayError(
-                f"{size} runs would take about {seconds / 3600.0:.3g} hours: give fewer points or more workers, or force them"
+                f"{size} runs would take about {duration(seconds)}: give fewer points or more workers, or force them"
             )
 
 
