@@ -53,6 +53,19 @@ def test_the_tangent_is_the_derivative(built, hypothesis, friction, pair):
     assert len(smooth) >= 5 and max(smooth) < 1e-6
 
 
+@pytest.mark.parametrize("off", [1e-16, 1e-10])
+def test_forces_do_not_depend_on_the_first_guess(built, off):
+    """Balls that settle one after the other leave rounding, and nothing of the first order in their last steps of 1e-16 m."""
+    system, rng = fast(built).system, np.random.default_rng(3)
+    q, ball, _ = system.solve_equilibrium(np.array([2e-5, 0.0, 0.0, 0.0, 0.0]))
+    known = system.evaluate(q, ball=ball)
+    for _ in range(20):
+        guess = known.ball.copy()
+        guess[:, :2] += off * rng.normal(size=guess[:, :2].shape)
+        change = system.evaluate(q, ball=guess).force - known.force
+        assert np.abs(change[:3]).max() < 2e-14 * known.contact_force.sum()
+
+
 def test_without_moment_it_is_the_inertial_kernel(built):
     model = fast(built, "none")
     plain = model.system

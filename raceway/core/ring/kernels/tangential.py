@@ -567,7 +567,9 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
             if attempt == PATIENCE and work[STATE, z + k] == MOVES:
                 # Forces without a potential can lead in circles: once more from the seat on the outer race.
                 _seat_outside(k, scalars, table, ball, work)
-            _approach(k, scalars, ball, ball_gain, ball_history, work)
+            # Directions of balls that have settled are those before their last step, as their forces are.
+            if work[STATE, z + k] != SETTLED:
+                _approach(k, scalars, ball, ball_gain, ball_history, work)
         normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[STATE, z + k] == MOVES:
