@@ -170,3 +170,24 @@ def test_bands_of_samples_have_them(loads):
     assert mean == pytest.approx(rw.run(SCENE).quantities["mean_load"], rel=1e-9)
     assert band.high["mean_load"] / mean == pytest.approx(1.095, abs=0.02) and band.low["mean_load"] < mean
     assert band.to_dict()["quantities"]["mean_load"]["unit"] == "N"
+
+
+def test_a_band_to_first_order_has_them(loads):
+    """Of a number that a key moves in proportion, the derivative is that number over the key's; a key of the plug-in acts, too."""
+    scene = rw.evolve(SCENE, {"quantities": {"loads": {"scale": 2.0}}})
+    tolerances = {"load.axial": "+-1 %", "quantities.loads.scale": "+-2 %"}
+    band = rw.run(rw.evolve(scene, {"tolerances": tolerances})).to_dict()["tolerances"]["quantities"]["mean_load"]
+    near = [float(rw.function(scene, ["load.axial"], ["mean_load"])(load)["mean_load"]) for load in (999.0, 1001.0)]
+    widths = 20.0 * (near[1] - near[0]) / 2.0, 0.04 * band["value"]
+    assert band["unit"] == "N" and band["definition"].startswith("mean load of the inner contacts")
+    assert band["shares"]["load.axial"] == pytest.approx(widths[0] ** 2 / (widths[0] ** 2 + widths[1] ** 2), rel=1e-5)
+    sampled = rw.band(scene, tolerances, count=256)
+    assert [band["low"], band["high"]] == pytest.approx([sampled.low["mean_load"], sampled.high["mean_load"]], rel=2e-3)
+
+
+def test_a_fit_takes_them_as_measured(loads):
+    angle, axial = 17.0, [400.0, 800.0, 1500.0]
+    steep = rw.evolve(SCENE, {"bearing.contact_angle_deg": angle})
+    measured = rw.function(steep, ["load.axial"], ["mean_load"])(axial)["mean_load"]
+    fitted = rw.fit({"load.axial [N]": axial, "mean_load [N]": measured}, SCENE, free=["bearing.contact_angle_deg"])
+    assert fitted.estimate.values[0] == pytest.approx(angle, rel=1e-6)

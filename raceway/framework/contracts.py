@@ -345,8 +345,8 @@ class Quantities(attrs.AttrsInstance, Protocol):
     """Numbers of a solved point; its options are the keys of the table [quantities.NAME], which all have defaults.
 
     1. ``numbers``: a ``raceway.out.quantities.Quantity`` for each, whose ``path`` begins with the plug-in's name: NAME.KEY is its place
-       in result.json.  They are outputs of functions, columns of sweeps and numbers of bands by their names, which no other
-       quantity has.
+       in result.json.  They are outputs of functions, columns of sweeps, numbers of bands and of fits by their names, which no other
+       quantity has; short tables show the first.
     2. ``why_not(problem)``: what a scene lacks for them, with the keys; empty where it has all.  They are left out then.
     3. ``compute(points)``: name -> numbers (n,), or arrays (n, ...) over the quantity's ``dims``, of ``SolvedPoints``: what follows for
        one point follows for columns.  Points are not changed.

@@ -10,6 +10,8 @@ from typing import Any
 
 import attrs
 
+from raceway.errors import PluginError
+from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number, number_within
 from raceway.storage.tables import Tables
 
@@ -216,3 +218,28 @@ COLUMNS = named(
 # fmt: on
 #: Numbers that have derivatives by the keys of a scene, by their symbols; what a scene does not have is left out.
 DIFFERENTIABLE = {number.symbol: number for number in (K, C, AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, X, LARGEST_BALL_LOAD)}
+_BUILT_IN = {"largest_multiplier", "stiffness_change"} | {
+    number.name for number in (*COLUMNS.values(), *IDENTIFIED, *DIFFERENTIABLE.values(), BALL_LOAD, CONTACT_ANGLE)
+}
+
+
+def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
+    """Name -> plug-in and quantity of every number that plug-ins of quantities state.
+
+    Raises
+    ------
+    PluginError
+        A name that is another quantity's.
+    """
+    numbers: dict[str, tuple[str, Quantity]] = {}
+    for entry in (each for each in registry.all() if each.kind == "quantity"):
+        for quantity in entry.plugin.numbers:
+            if quantity.name in numbers or quantity.name in _BUILT_IN:
+                raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")
+            numbers[quantity.name] = entry.name, quantity
+    return numbers
+
+
+def quantity_of(symbol: str) -> Quantity:
+    """That of results which has derivatives, by its symbol, or a plug-in's by its name."""
+    return DIFFERENTIABLE.get(symbol) or plugin_quantities(default_registry())[symbol][1]

@@ -19,7 +19,7 @@ limits of 95 % are taken.  Tolerances that bend the answer within their range ne
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeAlias
 
 import attrs
@@ -30,6 +30,7 @@ from raceway.bodies.columns import (
     build_columns,
     column_problem,
     impedance,
+    solved_columns,
     why_no_column,
     why_not,
 )
@@ -42,11 +43,25 @@ from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import surrogate
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.duties import renews
+from raceway.framework.contracts import SolvedPoints
+from raceway.framework.duties import fitting_quantities, renews
+from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, race_words, tilt_words
-from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, KXX, KYY, KYY_TILTS_FOLLOW, LARGEST_BALL_LOAD, C, K, X, read_in
+from raceway.out.quantities import (
+    AMPLITUDE,
+    DIFFERENTIABLE,
+    KXX,
+    KYY,
+    KYY_TILTS_FOLLOW,
+    LARGEST_BALL_LOAD,
+    C,
+    K,
+    X,
+    quantity_of,
+    read_in,
+)
 from raceway.pipeline.equilibrium import race_of, solve_equilibrium
-from raceway.pipeline.quantities import quantity_of
+from raceway.pipeline.quantities import solved_point, stated_numbers
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import Key, key_of, with_number, with_numbers
 from raceway.scene.tolerance import stated_tolerances, tolerances_of
@@ -90,6 +105,7 @@ class _StaticGradient:
     ----------
     step : of the differences, in the unit of the key; 0 where it changes nothing at rest
     displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
+    stated : of ``Gradients.stated``
     remark : why they may not be smooth; empty where they are
     models : that were built for them, beside columns
     """
@@ -100,6 +116,7 @@ class _StaticGradient:
     stiffness: np.ndarray
     damping: np.ndarray
     contact_force: np.ndarray
+    stated: np.ndarray
     remark: str
     models: int
 
@@ -233,6 +250,18 @@ class Gradients:
         searched = self.moving and self.model.excitation is not None
         return _SteadyOrbit.of(self.model, self.equilibrium) if searched else None
 
+    @cached_property
+    def _plugins(self) -> list[str]:
+        """Plug-ins of quantities whose numbers ``stated`` has."""
+        fitting = [] if self.model.excitation is not None else fitting_quantities(self.model.problem)
+        return [plugin.name for plugin in fitting]
+
+    @cached_property
+    def stated(self) -> dict[str, float]:
+        """Numbers of plug-ins, of scenes without a motion."""
+        numbers = stated_numbers(solved_point(self.model, self.equilibrium, None), self._plugins)
+        return {name: float(value[0]) for name, value in numbers.items() if np.isfinite(value[0])}
+
     def by_path(self, path: str) -> Gradient:
         """By the key of a path, such as "load.axial".
 
@@ -306,6 +335,7 @@ class Gradients:
         states = bearing.equilibria()
         values = {"displacement": states.q, "stiffness": states.stiffness, "contact_force": states.force}
         values["damping"], fine = bearing.damping(states), states.status == 0
+        values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
             excitations = Excitations.of(scene, columns)
             orbits = bearing.orbits(states, excitations, _TOLERANCE, neighbours)
@@ -340,11 +370,12 @@ class Gradients:
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
-        solutions = dict.fromkeys(shifts, base)
-        if _changed(self.model, ahead):
+        solutions, moves = dict.fromkeys(shifts, base), _changed(self.model, ahead)
+        if moves or self.stated:
             models = {k: ahead if k == 1 else self._model(key, k * step) for k in shifts}
+            solve = self._solution if moves else partial(self._values, equilibrium=self.equilibrium)
             try:
-                solutions = {k: self._solution(neighbour) for k, neighbour in models.items()}
+                solutions = {k: solve(neighbour) for k, neighbour in models.items()}
             except ConvergenceError as why:
                 raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
         stacked = {k: {name: value[None] for name, value in solution.items()} for k, solution in solutions.items()}
@@ -371,9 +402,15 @@ class Gradients:
         line = None if self.orbit is None else self.orbit.near(model, equilibrium.displacement - q)
         return self._values(model, equilibrium, line)
 
+    def _stated(self, points: SolvedPoints, n: int) -> np.ndarray:
+        """(n, numbers) of ``stated``."""
+        numbers = stated_numbers(points, self._plugins)
+        return np.stack([np.zeros(n), *(numbers[name] for name in self.stated)], axis=1)[:, 1:]
+
     def _values(self, model: Model, equilibrium: Equilibrium, line: np.ndarray | None = None) -> _Solutions:
         names = ("displacement", "stiffness", "damping", "contact_force")
         values = {name: getattr(equilibrium, name) for name in names}
+        values["stated"] = self._stated(solved_point(model, equilibrium, None), 1)[0]
         if self.orbit is not None:
             values["line"] = self.orbit.line if line is None else line
         return values
@@ -441,7 +478,7 @@ def _gradients(
             real, damping, stiffness, amplitude, imag = statics.pop("line").tolist()
             line = _MotionGradient(complex(real, imag), stiffness, damping, amplitude)
         remark = _AT_THE_EDGE if edges[k] else _BENDS if bends[k] > _KINK else ""
-        step = float(steps[k]) if any(slope.any() for slope in statics.values()) else 0.0
+        step = float(steps[k]) if any(slope.any() for name, slope in statics.items() if name != "stated") else 0.0
         answers[key.path] = Gradient(
             _StaticGradient(key, step, remark=remark if step else "", models=models, **statics), line
         )
@@ -554,9 +591,12 @@ def first_order_band(
         if isinstance(answer, NoDerivative):
             left_out.append({"key": key.path, "reason": str(answer)})
         else:
-            slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, derivatives(model, equilibrium, answer)
+            by_name = dict(zip(gradients.stated, answer.statics.stated.tolist(), strict=True))
+            by_name |= derivatives(model, equilibrium, answer)
+            slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, by_name
+    words |= {name: quantity_of(name).words for name in gradients.stated}
     quantities = {}
-    for name, value in values(model, equilibrium, orbit).items():
+    for name, value in {**values(model, equilibrium, orbit), **gradients.stated}.items():
         ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
         low, high = limits(ends)
         widths = np.array([(above - below) ** 2 for below, above in ends])
@@ -571,16 +611,23 @@ def first_order_band(
 
 
 def tolerance_rows(band: Tables | None) -> list[Fact]:
-    """The band over the scene's tolerances to first order, as rows of a screen; of each answer the tolerance that makes most of it."""
+    """The band over the scene's tolerances to first order, as rows of a screen; of each answer the tolerance that makes most of it.
+
+    Of a plug-in's numbers the first one.
+    """
     if not band:
         return []
+    plugins = (entry.plugin for entry in default_registry().all() if entry.kind == "quantity")
+    leading = {plugin.numbers[0].name: plugin.numbers[0].label for plugin in plugins}
     rows: list[Fact] = [("Tolerances, 95 % to first order", "", band["why"])]
     for name, quantity in band["quantities"].items():
+        if name not in DIFFERENTIABLE and name not in leading:
+            continue
         (low, unit), (high, _) = (read_in(quantity[end], quantity["unit"]) for end in ("low", "high"))
         key, share = max(quantity["shares"].items(), key=lambda item: item[1], default=("", 0.0))
         remarks = [f"{100.0 * share:.0f} % of the variance by {key}"] if share else []
         remarks += [quantity["definition"]] if name in ("kyy", "kyy_tilts_follow", "largest_ball_load") else []
-        rows.append((name.replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(remarks)))
+        rows.append((leading.get(name, name).replace("_", " "), f"{low:.5g} to {high:.5g} {unit}", "; ".join(remarks)))
     rows += [("", "", f"without {left_out['key']}: {left_out['reason']}") for left_out in band["left_out"]]
     return rows
 

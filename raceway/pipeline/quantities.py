@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 
 import attrs
@@ -12,8 +13,6 @@ from raceway.bodies.running import running_pairs
 from raceway.core.record import Record
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
-from raceway.framework.registry import default_registry
-from raceway.out.quantities import DIFFERENTIABLE, Quantity
 from raceway.storage.tables import Tables
 
 
@@ -48,10 +47,13 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     return StatedQuantities(values, tables, tuple(warnings))
 
 
-def quantity_of(symbol: str) -> Quantity:
-    """That of results which has derivatives, by its symbol, or a plug-in's by its name."""
-    plugins = (entry.plugin for entry in default_registry().all() if entry.kind == "quantity")
-    return DIFFERENTIABLE.get(symbol) or next(n for plugin in plugins for n in plugin.numbers if n.name == symbol)
+def stated_numbers(points: SolvedPoints, names: Iterable[str]) -> dict[str, np.ndarray]:
+    """(n,) by name of plug-ins by their names; arrays are left out."""
+    numbers: dict[str, np.ndarray] = {}
+    for plugin in (getattr(points.problem.quantities, name) for name in names):
+        computed = quantities_at(plugin, points)
+        numbers |= {number.name: computed[number.name] for number in plugin.numbers if not number.dims}
+    return numbers
 
 
 def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) -> SolvedPoints:

@@ -18,11 +18,11 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import Z_IMAG, Z_REAL, C, read_in
+from raceway.out.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
-from raceway.pipeline.quantities import quantity_of, stated_quantities
+from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
 from raceway.points.column_quantities import stated_columns

@@ -22,11 +22,22 @@ from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
-from raceway.errors import PluginError
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.registry import Registry, default_registry
-from raceway.out.quantities import AMPLITUDE, COLUMNS, DIFFERENTIABLE, IDENTIFIED, Z_IMAG, Z_REAL, C, K, Quantity, named
+from raceway.out.quantities import (
+    AMPLITUDE,
+    COLUMNS,
+    DIFFERENTIABLE,
+    IDENTIFIED,
+    Z_IMAG,
+    Z_REAL,
+    C,
+    K,
+    Quantity,
+    named,
+    plugin_quantities,
+)
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
@@ -238,23 +249,6 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
 MOVING, EXTREMES = frozenset(_MOVING), frozenset(_EXTREMES)
 QUANTITIES = _STATIC | _EXTREMES | _MOVING
 _KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
-
-
-def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
-    """Name -> plug-in and quantity of every number that plug-ins of quantities state.
-
-    Raises
-    ------
-    PluginError
-        A name that is another quantity's.
-    """
-    numbers: dict[str, tuple[str, Quantity]] = {}
-    for entry in (each for each in registry.all() if each.kind == "quantity"):
-        for quantity in entry.plugin.numbers:
-            if quantity.name in numbers or quantity.name in QUANTITIES or quantity.name in _KNOWN:
-                raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")
-            numbers[quantity.name] = entry.name, quantity
-    return numbers
 
 
 def stated_columns(problem: Problem, registry: Registry) -> dict[str, Quantity]:

@@ -24,13 +24,13 @@ from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
-from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named
+from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named, plugin_quantities
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.labelled import labelled_dataset
-from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result, plugin_quantities
+from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import key_of, with_columns, with_numbers
 from raceway.scene.inputs import SceneSource, as_scene

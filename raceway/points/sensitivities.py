@@ -20,7 +20,7 @@ from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import new_figure
 from raceway.out.progress import telling
-from raceway.out.quantities import read_in
+from raceway.out.quantities import quantity_of, read_in
 from raceway.out.table import sections
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import (
@@ -34,7 +34,6 @@ from raceway.pipeline.gradient import (
     tolerance_rows,
     values,
 )
-from raceway.pipeline.quantities import quantity_of
 from raceway.planning.plan import make_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene

@@ -14,9 +14,12 @@ import numpy as np
 from raceway import build_model
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, read_in
+from raceway.framework.registry import default_registry
+from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, quantity_of, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import definitions, resolved
+from raceway.planning.resolve import resolve
+from raceway.points.column_quantities import stated_columns
 from raceway.points.function import Function, function
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
 from raceway.scene.inputs import evolve
@@ -29,8 +32,6 @@ from raceway.studies.fit.fitted import Fitted, Series, refuse_few
 
 #: Index of displacements across the axis in the coordinates at rest.
 _ACROSS = {"y": 1, "z": 2}
-#: Quantities that may be measured, with units: those of sensitivities, and the displacement across the axis at rest.
-MEASURED = {name: quantity.unit for name, quantity in DIFFERENTIABLE.items()} | dict.fromkeys(_ACROSS, X.unit)
 #: Quantities of a motion, which need its orbit.
 _MOTION = (K.symbol, C.symbol, AMPLITUDE.symbol)
 #: Relative tolerance of the 1x lines of orbits.
@@ -125,14 +126,15 @@ def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> l
     if unknown := next((text for text in meant if text not in header), None):
         raise ValueError(f"no column '{unknown}' for --map; there are {', '.join(map(repr, header))}")
     keys = {key.path: key for key in continuous_keys(scene)}
-    columns = [_column(meant.get(text, text), text, keys) for text in header]
+    measured = [*DIFFERENTIABLE, *_ACROSS, *stated_columns(resolve(scene), default_registry())]
+    columns = [_column(meant.get(text, text), text, keys, measured) for text in header]
     names = [(kind, name) for kind, name, _ in columns if kind != IGNORE]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise ValueError(f"'{twice[1]}' stands there twice: leave one of its columns out with --map \"HEADER={IGNORE}\"")
     values = [name for kind, name in names if kind == "value"]
     if not values:
         raise ValueError(
-            f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(MEASURED)}, such as K [N/µm]"
+            f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(measured)}, such as K [N/µm]"
         )
     if "kyy_tilts_follow" in values and scene.supports.tilt == "locked":
         raise ValueError(
@@ -143,28 +145,33 @@ def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> l
     return columns
 
 
-def _column(text: str, header: str, keys: Mapping[str, Key]) -> tuple[str, str, float]:
+def _unit(name: str) -> str:
+    """SI unit of a quantity that may be measured: those of sensitivities and of plug-ins, and displacements across the axis at rest."""
+    return X.unit if name in _ACROSS else quantity_of(name).unit
+
+
+def _column(text: str, header: str, keys: Mapping[str, Key], measured: Sequence[str]) -> tuple[str, str, float]:
     if text.strip() == IGNORE:
         return IGNORE, header, 0.0
     match = _HEADER.match(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
     quantity = "_".join(name.removesuffix(" error").split())
-    if quantity in MEASURED:
+    if quantity in measured:
         if not unit:
-            raise ValueError(f"'{header}' has no unit: write {name} [{read_in(1.0, MEASURED[quantity])[1]}]")
-        return "error" if name.endswith(" error") else "value", quantity, _factor(header, MEASURED[quantity], unit)
+            raise ValueError(f"'{header}' has no unit: write {name} [{read_in(1.0, _unit(quantity))[1]}]")
+        return "error" if name.endswith(" error") else "value", quantity, _factor(header, _unit(quantity), unit)
     # A key by its path, or by its last word where one key of the scene ends so.
     paths = [name] if name in keys else [path for path in keys if path.rpartition(".")[2] == name]
     if len(paths) != 1:
         raise ValueError(
-            f"unknown column '{header}'{nearest(name, [*MEASURED, *keys])}. Known are {', '.join(MEASURED)}, each with a unit, '... error', "
+            f"unknown column '{header}'{nearest(name, [*measured, *keys])}. Known are {', '.join(measured)}, each with a unit, '... error', "
             f'keys of the scene; --map "{header}=NAME" says what it is, or {IGNORE}'
         )
     return "key", paths[0], _factor(header, keys[paths[0]].unit, unit) if unit else 1.0
 
 
 def _factor(header: str, unit: str, written: str) -> float:
-    if not unit and written.strip() in ("", "1", "-"):
+    if written.strip() == unit or not unit and written.strip() in ("", "1", "-"):
         return 1.0
     try:
         return number_in(unit, f"1 {written}")
@@ -186,7 +193,7 @@ def _refuse_contradictions(measured: _Measurements) -> None:
             if distance > _CONTRADICT:
                 raise ValueError(
                     f"measurements {min(low, high) + 1} and {max(low, high) + 1} contradict each other: under the same keys {name} is "
-                    f"{numbers[low]:.6g} and {numbers[high]:.6g} {MEASURED[name]}, {distance:.3g} of their stated standard errors apart"
+                    f"{numbers[low]:.6g} and {numbers[high]:.6g} {_unit(name)}, {distance:.3g} of their stated standard errors apart"
                 )
 
 
@@ -209,7 +216,8 @@ class _TableResiduals:
     def __attrs_post_init__(self) -> None:
         self.scenes = self.measured.scenes(self.scene)
         self._last = np.array([key.start for key in self.free])
-        if any(name in _MOTION for name in self.measured.values):
+        of_plugins = self.scene.excitation is not None and {*self.measured.values} - {*DIFFERENTIABLE, *_ACROSS}
+        if of_plugins or any(name in _MOTION for name in self.measured.values):
             self.scene = evolve(self.scene, {"integrator": None, "identifier": None}, {"integrator.kind": "periodic"})
 
     def residuals(self, at: np.ndarray) -> np.ndarray:
@@ -282,7 +290,7 @@ class _TableResiduals:
 
 def _measured(columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """(n,) of a quantity that may be measured, among outputs of a function."""
-    return columns["displacement"][:, _ACROSS[name]] if name in _ACROSS else columns[DIFFERENTIABLE[name].name]
+    return columns["displacement"][:, _ACROSS[name]] if name in _ACROSS else columns[quantity_of(name).name]
 
 
 def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted:
@@ -319,7 +327,7 @@ def _series(
     noise = answer.widened if measured.stated else (answer.scatter or 0.0)
     return tuple(
         Series(
-            name, MEASURED[name], key or "measurement", unit, x, numbers, fitted[name],
+            name, _unit(name), key or "measurement", unit, x, numbers, fitted[name],
             noise * measured.weights[name], band[k] * measured.weights[name],
         )
         for k, (name, numbers) in enumerate(measured.values.items())
