@@ -10,6 +10,7 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.points.dataset import open_store, write_csv
 from raceway.scene.lubricant import Lubricant
 
 DGB7 = {"preset": "DGB7-MASTA", "tilt_arm": "pitch"}
@@ -140,6 +141,20 @@ def test_sweeps_and_bands_have_them():
     found = rw.band({**B7206, "tolerances": {"load.axial": "±10 %"}}, count=64)
     assert 1.05 < found.high["equivalent_load_n"] / found.nominal["equivalent_load_n"] < 1.1
     assert found.low["l10r_hours"] < found.nominal["l10r_hours"] < found.high["l10r_hours"]
+
+
+@pytest.mark.parametrize("status", ["computed", "run"])
+def test_rows_of_a_sweep_say_that_a_life_has_no_limit(tmp_path, status):
+    """At a standstill it has no hours; of compiled loops and of runs, which contacts that rub need."""
+    scene = B7206 if status == "computed" else {**B7206, "contact": {"friction": 0.05}}
+    rw.sweep(scene, {"kinematics.spin_speed_rpm": [0.0, 6000.0]}, store=tmp_path / "s")
+    with open_store(tmp_path / "s") as store:
+        still, turning = store.rows()
+        write_csv(store, tmp_path / "s.csv")
+    assert "l10r_hours" not in still["values"] and still["reason"].endswith(": no limit") and "l10r_hours" in still["reason"]
+    assert still["status"] == turning["status"] == status
+    assert turning["values"]["l10r_hours"] > 0.0 and turning["reason"] == ""
+    assert still["reason"] in (tmp_path / "s.csv").read_text()
 
 
 # --- along a motion

@@ -161,10 +161,11 @@ class Points:
         """``{point, status, reason, values, warnings}`` of every point."""
         for number, status in enumerate(self.status.tolist()):
             values = {name: column[number] for name, column in self.columns.items() if status in FINISHED}
+            unlimited = ", ".join(name for name, value in values.items() if np.isposinf(value).any())
             yield {
                 "point": self.design.point(number),
                 "status": status,
-                "reason": self.reasons.get(number, ""),
+                "reason": self.reasons.get(number, f"{unlimited}: no limit" if unlimited else ""),
                 "values": {name: value.tolist() for name, value in values.items() if np.isfinite(value).any()},
                 "warnings": self.warnings.get(number, []),
             }
@@ -196,7 +197,8 @@ def points_of(store: SweepStore) -> Points:
         damaged += row.reason == DAMAGED
         points.reasons.update({number: row.reason} if row.reason else {})
         points.warnings.update({number: row.content.get("warnings", [])} if row.state == "done" else {})
-        for name, value in row.content.get("values", {}).items():
+        values = dict.fromkeys(row.content.get("unlimited", []), math.inf) | row.content.get("values", {})
+        for name, value in values.items():
             put(name, number, value, np.shape(value))
     return attrs.evolve(points, damaged=damaged)
 

@@ -73,7 +73,8 @@ class Point:
         state, reason, content, cost = "failed", "", Tables(), Tables()
         try:
             result = run(scene_from_dict(tables_at(self.tables, point, registry), registry), registry)
-            content = {"values": values_of(result), "warnings": list(result.warnings)}
+            unlimited = [name for name, value in result.quantities.items() if np.isposinf(value).all()]
+            content = {"values": values_of(result), "unlimited": unlimited, "warnings": list(result.warnings)}
             cost = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
             state = "done"
         except RacewayError as error:
