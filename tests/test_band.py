@@ -10,7 +10,6 @@ import raceway as rw
 from raceway import SceneError, scene_from_dict
 from raceway.framework.registry import default_registry
 from raceway.pipeline.gradient import limits
-from raceway.planning.resolve import resolve
 from raceway.points.band import design, indices
 from raceway.points.column_quantities import stated_columns
 from raceway.scene.tolerance import tolerances_of
@@ -50,7 +49,7 @@ def test_a_result_has_the_band_of_its_tolerances_to_first_order():
     own = LOADED | moving | {"tolerances": {"load.axial": "±1 %", "bearing.contact_angle_deg": "+0.1 deg -0.05 deg"}}
     found, samples = rw.run(own).tolerances["quantities"], rw.band(own, count=256)
     # Numbers of plug-ins have no first-order band.
-    stated = set(stated_columns(resolve(scene_from_dict(own)), default_registry()))
+    stated = set(stated_columns(scene_from_dict(own), default_registry()))
     assert set(found) == set(samples.nominal) - stated and "K" in found
     for name, one in found.items():
         width = samples.high[name] - samples.low[name]

@@ -307,7 +307,7 @@ def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     model = build_model(scene, make_plan(scene))
     equilibrium = solve_equilibrium(model)
     numbers, words = values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
-    columns = stated_columns(model.problem, default_registry())
+    columns = stated_columns(scene, default_registry())
     moving = scene.excitation is not None
     stated = run(_steady(scene)).quantities if moving else stated_quantities(model, equilibrium, None).values
     numbers |= {name: float(stated[name]) for name in columns if name in stated and np.isfinite(stated[name])}

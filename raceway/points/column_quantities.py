@@ -251,9 +251,9 @@ QUANTITIES = _STATIC | _EXTREMES | _MOVING
 _KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
 
 
-def stated_columns(problem: Problem, registry: Registry) -> dict[str, Quantity]:
-    """Quantities of plug-ins with one number a point which a problem has, by their names."""
-    fitting = {plugin.name for plugin in fitting_quantities(problem)}
+def stated_columns(scene: Scene, registry: Registry) -> dict[str, Quantity]:
+    """Quantities of plug-ins with one number a point which a scene has, by their names."""
+    fitting = {plugin.name for plugin in fitting_quantities(resolve(scene))}
     numbers = plugin_quantities(registry)
     return {name: quantity for name, (plugin, quantity) in numbers.items() if plugin in fitting and not quantity.dims}
 

@@ -25,7 +25,6 @@ from raceway.out.progress import telling
 from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import resolve
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
@@ -140,7 +139,7 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
     # What the meshes of bodies are off by is known to runs alone.
     if scene.bodies.name != "rigid" or not all(axis.numeric and axis.key in keys for axis in design.axes):
         return None
-    stated = stated_columns(resolve(scene), registry)
+    stated = stated_columns(scene, registry)
     moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
     outputs = [name for name in COLUMNS if name in QUANTITIES and (moving or name not in MOVING)]
     left_out = [] if tilts else [KYY_TILTS_FOLLOW.name]
@@ -211,7 +210,7 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
         "scene": surveyed.scene.to_dict(),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
-        "quantities": {name: each.labels for name, each in stated_columns(resolve(surveyed.scene), registry).items()},
+        "quantities": {name: each.labels for name, each in stated_columns(surveyed.scene, registry).items()},
         "identity": identity(registry, surveyed.used),
         "files": surveyed.files,
     }

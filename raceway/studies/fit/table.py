@@ -18,7 +18,6 @@ from raceway.framework.registry import default_registry
 from raceway.out.quantities import AMPLITUDE, DIFFERENTIABLE, C, K, X, quantity_of, read_in
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import definitions, resolved
-from raceway.planning.resolve import resolve
 from raceway.points.column_quantities import stated_columns
 from raceway.points.function import Function, function
 from raceway.scene.changes import Key, continuous_keys, key_of, with_number
@@ -126,7 +125,7 @@ def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> l
     if unknown := next((text for text in meant if text not in header), None):
         raise ValueError(f"no column '{unknown}' for --map; there are {', '.join(map(repr, header))}")
     keys = {key.path: key for key in continuous_keys(scene)}
-    measured = [*DIFFERENTIABLE, *_ACROSS, *stated_columns(resolve(scene), default_registry())]
+    measured = [*DIFFERENTIABLE, *_ACROSS, *stated_columns(scene, default_registry())]
     columns = [_column(meant.get(text, text), text, keys, measured) for text in header]
     names = [(kind, name) for kind, name, _ in columns if kind != IGNORE]
     if twice := next((name for name in names if names.count(name) > 1), None):
