@@ -57,7 +57,7 @@ $(VENV)/.python:
 	touch $@
 
 $(VENV)/.base: $(VENV)/.python pyproject.toml constraints.txt
-	@echo "installing into $(VENV): half a minute or more"
+	@echo "installing into $(VENV): half a minute or more, 0.5 GB"
 	$(INSTALL) -e .
 	touch $@
 
@@ -67,7 +67,7 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt
 	touch $@ $(VENV)/.base
 
 $(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt
-	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes"
+	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes, 2.1 GB, most of it what ROSS needs"
 	$(PYTHON) -m venv $(VENV)-docs
 	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[sweep,view,ross,docs]' pytest
 	touch $@
