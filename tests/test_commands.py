@@ -610,8 +610,8 @@ def test_a_home_and_a_cache_that_cannot_be_written(tmp_path):
     )  # fmt: skip
     assert found.returncode == 0, found.stderr
     assert "equivalent stiffness K" in found.stdout
-    assert found.stderr.count("warning: compiled kernels cannot be kept") == 1
-    assert "not kept: the cache cannot be written" in " ".join(found.stdout.split())
+    assert found.stderr.count("warning: compiled kernels cannot be cached") == 1
+    assert "not cached, the cache cannot be written" in " ".join(found.stdout.split())
     assert "RACEWAY_CACHE_DIR" in found.stderr and "Traceback" not in found.stderr
 
 

@@ -231,7 +231,7 @@ def test_a_branch_that_an_internal_resonance_ends_names_it():
         "examples/b7206.toml", {"load.axial": 400.0, "supports.tilt": "free", "excitation.kind": "unidirectional"}
     )
     curve = rw.follow(scene, "excitation.speed_rpm=5000:6000")
-    assert "its 5x harmonic outweighs the 1x line" in curve.end
+    assert "its 5x harmonic outweighs the synchronous (1x) component" in curve.end
 
 
 @pytest.mark.slow

@@ -144,7 +144,7 @@ def test_directions_give_both_columns_and_the_cross_terms():
     # Two inversions of well-conditioned 2x2 matrices; w C is 1e-5 of K, which costs the damping five digits.
     np.testing.assert_allclose(found.stiffness, np.broadcast_to(k, found.stiffness.shape), rtol=1e-12)
     np.testing.assert_allclose(found.damping, np.broadcast_to(c, found.damping.shape), rtol=1e-8)
-    with pytest.raises(RacewayError, match="cross terms are there, and two directions do not tell them"):
+    with pytest.raises(RacewayError, match="cross terms are there, and two directions do not determine them"):
         table(made({SPEED: SPEEDS, DIRECTION: [0, 90]}, tables, **changes))
 
 
@@ -267,7 +267,7 @@ def test_what_ross_2_smooths_is_said_and_can_be_undone():
         ({SPEED: SPEEDS[:4]}, None, {}, None, "has 4 points (2000, 5500, 9000, 12500); rotor programs put cubics"),
         ({"load.axial": [1.0, 2.0, 3.0]}, None, {}, None, "choose one with --at load.axial=1"),
         ({SPEED: SPEEDS[:1]}, None, {}, None, "does not vary here (`excitation.speed_rpm` has the one value 2000)"),
-        ({SPEED: SPEEDS}, scene(excitation={"kind": "unidirectional"}), {}, None, "one direction does not tell"),
+        ({SPEED: SPEEDS}, scene(excitation={"kind": "unidirectional"}), {}, None, "one direction does not show"),
         ({SPEED: SPEEDS}, None, {"backward_amplitude": lambda at: 3e-8 + 0 * at[SPEED]}, None, "not isotropic: the orbit's counter-rotating part reaches 3.0%"),
         ({SPEED: SPEEDS, DIRECTION: [0, 30, 90]}, scene(excitation={"kind": "unidirectional"}), {}, None, "both columns take 0 and 90"),
         ({SPEED: SPEEDS}, None, {}, "directions", "there is one direction only"),

@@ -178,7 +178,7 @@ def test_a_table_over_speed_and_frequency():
     "given, told",
     [
         ({"kind": "abaqus"}, "must be one of nastran, ansys, csv, json"),
-        ({"path": "b.xls"}, "tells its kind by the ending: one of .csv, .json"),
+        ({"path": "b.xls"}, "states its kind by the ending: one of .csv, .json"),
         ({"kind": "nastran", "number": 0}, "`number` = 0: must be a whole number from 1 to"),
         ({"kind": "ansys", "number": 10**6}, "give an element type of Ansys from 1 to"),
     ],
@@ -235,4 +235,4 @@ def test_the_command_writes_all_of_them(tmp_path):
     refused = invoke("export", tmp_path / "store")
     assert refused.exit_code == 2 and "give --ross, --nastran, --ansys or --table" in " ".join(refused.stderr.split())
     refused = invoke("export", tmp_path / "store", "--table", tmp_path / "b.xls")
-    assert refused.exit_code == 2 and "tells its kind by the ending" in refused.stderr
+    assert refused.exit_code == 2 and "states its kind by the ending" in refused.stderr

@@ -42,25 +42,24 @@ _SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re
 
 _HEAD = """# The scene file
 
-One TOML file. SI units; a key that is not SI base says so in its name (`_rpm`, `_deg`). A missing table or key takes its
-default; a key without default is required. A table with `kind` names a plug-in, and its other keys are that plug-in's own.
-Every mistake is reported at once, each with its path, the value, the rule and the nearest valid name.
+One TOML file in SI units; other units are in the key's name (`_rpm`, `_deg`). Missing tables and keys take their defaults; a key without
+default is required. In a table with `kind`, which names a plug-in, the other keys are that plug-in's. All mistakes are reported at once,
+with path, value, rule and nearest valid name.
 
-A number of a key that has a unit may be text with another unit of the same dimension: `axial = "1 kN"`,
-`ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`. It becomes a number in the key's unit while the
-scene is read. Known are m, N, Pa, g, s, Hz and rad with the prefixes n, u (µ), m, c, k, M and G, and in, min, deg, r, rev, rpm and K;
-products, quotients and powers are written as `N s/m`, `kg m2` or `N/mm^3`. In Python, quantities of pint are taken, too.
+Numbers with a unit may be text: `axial = "1 kN"`, `ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`, of
+m, N, Pa, g, s, Hz, rad with prefixes n, u (µ), m, c, k, M, G, and in, min, deg, r, rev, rpm, K, combined as `N s/m`, `kg m2` or
+`N/mm^3`; in Python also quantities of pint.
 
-`raceway check SCENE` validates, `raceway dev schema` prints the same declarations as a JSON schema for editors, `--set
-table.key=value` changes one key for one run. Made by `python -m benchmarks.documents` from the declarations in
-`raceway/scene/bearing.py`, `raceway/scene/tables.py` and in the plug-ins; do not edit by hand.
+| command | |
+|---|---|
+| `raceway dev new-scene` | writes a scene with comments |
+| `raceway check SCENE` | validates |
+| `raceway dev schema` | prints a JSON schema for editors |
+| `--set table.key=value` | changes a key for one run; title and folder of the results state it |
 
-`raceway dev new-scene` writes a scene with comments to start from.
+![a bearing in section, along its axis, and pairs of rows, with the keys of their dimensions](pictures/parameters.svg)
 
-![a bearing in section, along its axis, and pairs of rows, with the keys that say their measures](pictures/parameters.svg)
-
-`title` is a string; by default the name of the file. What `--set` changes stands in its second line, by key, on screens,
-pictures and pages, and in the name of the folder of the results, so that no run overwrites another's.
+`title` is a string; default: the name of the file. This page is made by `python -m benchmarks.documents` from the program's declarations.
 """
 
 #: Tables in the order in which people write them: with the kind of plug-in that each names.
@@ -81,72 +80,89 @@ _ORDER = (
     ("identifier", "identifier"),
 )
 _NOTES = {
-    "bearing": "`preset` fills in a bearing of [the catalogue](catalogue.md); any other key overrides the preset's value. `balls.material` and "
-    "`rings.material` take a material by name (`raceway catalogue --materials`). Without a preset "
-    "the required keys and one of `contact_angle_deg`, `radial_clearance` have to be given.",
-    "supports": "`outer_seat` and `inner_seat` are `rigid` for rigid bodies.",
+    "bearing": "`preset` names a bearing of [the catalogue](catalogue.md); other keys override it. Without it the required keys and one of "
+    "`contact_angle_deg`, `radial_clearance` are needed. Materials by name: `raceway catalogue --materials`.",
+    "supports": "For rigid bodies seats are `rigid`.",
     "excitation": "Without this table the scene is static and `identification` is null.",
-    "bodies": "What deforms; `formulation` and `hourglass` belong to `elastic` bodies ([how they move](elastic_dynamics.md)).",
-    "mesh": "How bodies become hexahedra. A run with rigid bodies has no mesh, elastic bodies need one; meshing by itself needs no other table than "
-    "[bearing] and this one.",
-    "lubricant": "The oil, given once for all that needs one: friction, life, heat, and the film law where `[contact]` has no oil keys. Left out, it is "
-    "the oil of the film law.",
-    "kinematics": "`gyroscopic` and `ring_growth` are hypotheses, and no default fits all bearings. What the others would change in K and kyy "
-    "is in [`error.model`](physics.md#hypotheses-left-at-their-defaults) and beside K on the screen, as long as the scene does not state them: "
-    'a key that is written, `gyroscopic = "none"` too, is a decision.',
-    "mounting": "How rings are fitted and how warm they run, as given numbers: what that does to the grooves is added to the preload "
-    "([sets](sets.md)).",
-    "integrator": '`kind = "auto"` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn and contacts have no '
-    "memory, which is exact and costs least. `newmark` integrates over time where the force changes its speed or grows, with friction, laws with a "
-    "memory, balls that orbit, or forces that are not compiled; also where `turns`, `steps_per_turn` or `start` is given, which a transient has. "
-    "Where no steady orbit is found, or it is unstable, `newmark` is taken instead and a warning says so. `raceway plan` and the table `plan` of "
-    "result.json say which and why. A comparison whose points would differ takes `newmark` at all of them.",
-    "quantities": "Options of plug-ins that state numbers of a result, a table each: [life](life.md), [friction torque](friction.md).",
-    "rig": "Read by `raceway study rig` and `raceway identify` ([the rig](rig.md)); a run takes no notice of it.",
-    "heat": "Steady temperatures are computed ([a warm spindle](warm_spindle.md)): `mounting`'s temperatures and `lubricant.temperature_c` follow. Left out, they "
-    "are given numbers.",
-    "contact": "`discretisation` is `resultant` for rigid bodies, `nodal` for elastic ones; condensed bodies take both.",
+    "bodies": "What deforms. `elastic` bodies: [at rest](elastic.md), [in motion](elastic_dynamics.md).",
+    "mesh": "Hexahedra of the bodies ([meshes](mesh.md)): required for elastic, not used for rigid bodies.",
+    "lubricant": "The oil of friction, life, heat, and of the film law without own oil keys; default: the oil of the film law.",
+    "kinematics": "`gyroscopic` and `ring_growth` are hypotheses without a default for all bearings. Their effect on K and kyy "
+    'is reported as [`error.model`](physics.md#hypotheses-left-at-their-defaults) unless the scene states them, also as `gyroscopic = "none"`.',
+    "mounting": "Fits and temperatures as numbers; they change the preload ([sets](sets.md)).",
+    "integrator": '`kind = "auto"` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn. `newmark` is used '
+    "with forces of changing speed or size, friction, laws with memory, orbiting balls, forces that are not compiled, given `turns`, "
+    "`steps_per_turn` or `start`, and, with a warning, where no stable orbit is found. `raceway plan` and `plan` in "
+    "result.json state choice and reason. A comparison uses one integrator at all points.",
+    "quantities": "Options of plug-ins with numbers of a result: [life](life.md), [friction torque](friction.md).",
+    "rig": "For `raceway study rig` and `raceway identify` ([the rig](rig.md)); ignored by `raceway run`.",
+    "heat": "Computes the steady temperatures of `mounting` and `lubricant.temperature_c` ([a warm spindle](warm_spindle.md)).",
+    "contact": "`discretisation` is `resultant` for rigid bodies; condensed and elastic ones take both.",
 }
 
 
 def scene_page() -> str:
     """The text of docs/scene.md; third-party plug-ins of this installation are left out."""
-    registry = Registry(third_party=False)
+    registry, shown = Registry(third_party=False), dict[str, str]()
     parts = [_HEAD]
     for name, kind in _ORDER:
         parts.append(f"## [{name}]\n")
         if name in _NOTES:
             parts.append(_NOTES[name] + "\n")
         if name in TABLES:
-            parts += _tables(TABLES[name], name)
+            parts += _tables(TABLES[name], name, f"[{name}]", shown)
         if kind is None:
             continue
         for entry in (e for e in registry.all() if e.kind == kind):
             sentence = (entry.plugin.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ")
             parts.append(f'### {name}.kind = "{entry.name}"\n\n{sentence}\n')
-            parts += _tables(entry.plugin, name)
+            parts += _tables(entry.plugin, name, f"`{entry.name}`", shown)
     parts += ["## [quantities]\n", _NOTES["quantities"] + "\n"]
     for entry in (e for e in registry.all() if e.kind == "quantity" and attrs.fields(e.plugin)):
-        parts += [f"### [quantities.{entry.name}]\n", *_tables(entry.plugin, f"quantities.{entry.name}")]
+        path = f"quantities.{entry.name}"
+        parts += [f"### [{path}]\n", *_tables(entry.plugin, path, f"[{path}]", shown)]
     for name, cls in STUDY_TABLES.items():
-        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(cls, name)]
+        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(cls, name, f"[{name}]", shown)]
     return "\n".join(parts)
 
 
-def _tables(cls: type, path: str) -> list[str]:
-    rows, inner = [], []
+def _tables(cls: type, path: str, title: str, shown: dict[str, str]) -> list[str]:
+    """Tables of a class and of those in it; a row that another table has, by ``shown``, is named with that table's title."""
+    rows, same, inner = [], dict[str, list[str]](), []
     for field in keys(cls):
-        if attrs.has(field.type):
-            inner += [f"### [{path}.{field.name}]\n\n{field.metadata.get('help', '')}\n", *_tables(field.type, path)]
+        listed = table_of_list(field.type)
+        if (table := field.type if attrs.has(field.type) else listed) is not None:
+            name = f"[[{path}.{field.name}]]" if listed else f"[{path}.{field.name}]"
+            inner += [f"### {name}\n\n{field.metadata.get('help', '')}\n", *_tables(table, path, name, shown)]
             continue
-        if (listed := table_of_list(field.type)) is not None:
-            inner += [f"### [[{path}.{field.name}]]\n\n{field.metadata.get('help', '')}\n", *_tables(listed, path)]
-            continue
-        cells = f"`{field.name}`", field.metadata.get("unit", ""), _default(field.default), field.metadata.get("rule", "")
-        rows.append("| " + " | ".join((*cells, field.metadata.get("help", ""))) + " |")
-    if not rows:
-        return ["No keys of its own.\n", *inner]
-    return ["\n".join(["| key | unit | default | rule | meaning |", "|---|---|---|---|---|", *rows]) + "\n", *inner]
+        key, unit = f"`{field.name}`", field.metadata.get("unit", "")
+        cells = f"{key} [{unit}]" if unit else key, _default(field.default), _range(field.metadata.get("rule", ""))
+        row = "| " + " | ".join((*cells, field.metadata.get("help", ""))) + " |"
+        if (other := shown.setdefault(row, title)) == title:
+            rows.append(row)
+        else:
+            same.setdefault(other, []).append(key)
+    parts = ["\n".join(["| key | default | range | meaning |", "|---|---|---|---|", *rows]) + "\n"] if rows else []
+    parts += [f"As {other}: {', '.join(names)}.\n" for other, names in same.items()]
+    return [*(parts or ["No keys.\n"]), *inner]
+
+
+#: Words of a rule and their signs, in this order.
+_SIGNS = (
+    (r"^a finite number$|^one of ", ""),
+    (r"\bor a number (greater|from|at least)", r"or \1"),
+    (r" and less than (?=[\d.-])", ", <\u2009"),
+    (r"\bgreater than (?=[\d.-])", ">\u2009"),
+    (r"\bat least (?=[\d.-])", "\u2265\u2009"),
+    (r"\bfrom ([\d.e-]+) to ([\d.e+-]+)", "\\1\u2026\\2"),
+)
+
+
+def _range(rule: str) -> str:
+    """A rule of the declarations in signs."""
+    for words, sign in _SIGNS:
+        rule = re.sub(words, sign, rule)
+    return rule
 
 
 def _default(value: Any) -> str:

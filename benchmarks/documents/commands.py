@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 
 import click
@@ -12,21 +13,27 @@ from raceway.cli.main import main
 
 _HEAD = """# Command line
 
-Made by `python -m benchmarks.documents` from the commands themselves; do not edit by hand.
+Made by `python -m benchmarks.documents` from the commands.
 
 ## What all commands share
 
-- `--set table.key=value` changes one key of the scene for one command; repeat it for more. Numbers may carry a unit, and are in the
-  key's own without one.
-- `--json` prints one JSON object and nothing else, errors too, for other programs.
-- Results go to `raceway-out/TITLE`, or to the folder that `--out` names.
-- A command that takes more than a second shows its progress on a terminal, on stderr, and nowhere else.
-- Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C, 143 SIGTERM,
-  129 SIGHUP.
+| option | |
+|---|---|
+| `--set table.key=value` | change a key of the scene, with or without unit; repeat for more |
+| `--plugin FILE.py` | a one-off plug-in file; repeat for more |
+| `--pictures`, `--no-pictures` | draw pictures as PNG (studies: by default) |
+| `--json` | print one JSON object only, errors too |
+| `-v`, `--verbose` | report on stderr what is computed |
+| `--debug` | show tracebacks |
+| `-h`, `--help` | show the help |
+
+- Results go to `raceway-out/TITLE`, or to the folder of `--out`.
+- After a second a terminal shows progress on stderr.
+- Exit codes: 0 success, 1 numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP.
 
 ## Completion
 
-The shell completes commands, options, keys of a scene after `--set` and their values after one line in its start file:
+With one line in its start file the shell completes commands, options, keys of a scene after `--set` and their values:
 
 | shell | line | file |
 |---|---|---|
@@ -55,8 +62,17 @@ def walk(group: click.Group, path: str) -> Iterator[tuple[str, click.Command]]:
             yield from walk(command, f"{path} {name}")
 
 
+#: Options that all commands share, and the lines of a help that they take.
+_SHARED = re.compile(r"^  (?:-\w, )?--(?:set A|plugin|pictures|json|verbose|debug|help)\b.*\n(?: {5,}.*\n)*", re.MULTILINE)
+
+
 def section(name: str) -> str:
-    """One command: its help, 80 columns wide."""
-    told = CliRunner().invoke(main, [*name.split()[1:], "--help"], prog_name="raceway", terminal_width=80).output
+    """One command: its help, 80 columns wide, without what all commands share."""
+    text = CliRunner().invoke(main, [*name.split()[1:], "--help"], prog_name="raceway", terminal_width=80).output
     # The default of workers is the number of cores of the machine that writes the page.
-    return f"### {name}\n\n```text\n{told.replace(f'[{os.cpu_count()}]', '[cores]').rstrip()}\n```\n"
+    text = (
+        _SHARED.sub("", text.replace(f"[{os.cpu_count()}]", "[cores]"))
+        .removesuffix("Options:\n")
+        .partition("\nCommands:")[0]
+    )
+    return f"### {name}\n\n```text\n{text.rstrip()}\n```\n"

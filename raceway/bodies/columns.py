@@ -179,7 +179,7 @@ class Excitations:
 
 
 def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """(n,) Z = (F^H F) / (F^H x) [N/m] of 1x lines (n, 3), see ``raceway.core.signals``."""
+    """(n,) Z = (F^H F) / (F^H x) [N/m] of synchronous (1x) components (n, 3), see ``raceway.core.signals``."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
 
@@ -238,7 +238,7 @@ class ColumnBearing:
 
         Parameters
         ----------
-        excitations : periodic ones;  tolerance : of the 1x line, relative;  loop : ``orbits``, or ``neighbours`` of the first point
+        excitations : periodic ones;  tolerance : of the 1x component, relative;  loop : ``orbits``, or ``neighbours`` of the first point
         disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia

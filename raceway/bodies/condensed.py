@@ -177,7 +177,7 @@ _WITH_HALF = 1.5
 
 @attrs.frozen
 class Condensed:
-    """Elastic rings and balls, reduced to the compliances that their contacts feel."""
+    """Elastic rings and balls, reduced to compliances at the contacts."""
 
     name: ClassVar[str] = "condensed"
 
@@ -246,7 +246,7 @@ class Condensed:
             )
             parts.decide(self.balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
             if problem.excitation is not None:
-                why = "rings and balls follow at once; what that costs is told by `model.inertia` of the result"
+                why = "rings and balls follow quasi-statically; `model.inertia` of the result states the error"
                 parts.leave_out("inertia of the bodies' deformation", why)
         parts.leave_out("a compliance for each ball and contact", "balls are equal and rings are bodies of revolution")
         why = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"

@@ -113,7 +113,7 @@ def sections(problem: Problem, basis: Basis) -> Hashable:
 
 
 def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
-    """Structural compliances of a scene's rings and balls; those of the last few scenes are kept.
+    """Structural compliances of a scene's rings and balls; those of the last few scenes are cached.
 
     Parameters
     ----------

@@ -264,7 +264,7 @@ def words(cost: _ElasticCost) -> str:
 
 @attrs.frozen
 class Elastic:
-    """Finite elements of rings and balls, all nodes unknowns: the bodies' own inertia and any mesh."""
+    """Finite elements of rings and balls with inertia on any mesh."""
 
     name: ClassVar[str] = "elastic"
 
@@ -275,7 +275,7 @@ class Elastic:
     )
     hourglass: float = option(
         0.05,
-        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts want 0.005 and elements "
+        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts: 0.005 and elements "
         "of at most 0.6 of the contact's radius",
         rule=positive(),
     )
@@ -313,7 +313,7 @@ class Elastic:
         return Traits(compiled=False, resultants=resultants, calibrated=calibrated, every_node=True)
 
     def stable_step(self, problem: Problem) -> float | None:
-        """Of elements and contacts [s]; None where the mesher cannot tell."""
+        """Of elements and contacts [s]; None where the mesher cannot predict it."""
         cost = _elastic_cost(problem)
         return None if cost is None or cost.stable_step_s == 0.0 else cost.stable_step_s
 
@@ -331,7 +331,7 @@ class Elastic:
         )
         parts.decide(nodal, "pressures at surface points", why, why_not)
         parts.keep("ideal cage", "holds each ball at its azimuth and keeps it from turning")
-        why_not = "balls do not orbit: the cage holds them, their centrifugal force is kept where the plan says so"
+        why_not = "balls do not orbit: the cage holds them, their centrifugal force acts where the plan states it"
         parts.leave_out("travel of the balls", why_not)
         parts.keep("a compliance for each ball and contact", "every node of every ball and ring is an unknown")
         why = "every node of both halves: the forces may have any direction; a half model is no part of this program"

@@ -170,7 +170,7 @@ class ElasticResultants(ElasticBodies):
 
     Attributes
     ----------
-    compliances : of the bearing's own rings and balls, which tell how contacts at surface points calibrate the law
+    compliances : of the bearing's own rings and balls, for the calibration of the law by contacts at surface points
     """
 
     compliances: Compliances
@@ -207,12 +207,12 @@ class ElasticResultants(ElasticBodies):
         }
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
-        """Meshes that do not tell the contacts' compliance from the bodies', contacts that moved away; elements that lock."""
+        """Meshes that do not separate the contacts' compliance from the bodies', contacts that moved away; elements that lock."""
         sentences = []
         unsure = self._uncertainty(model, equilibrium)
         if unsure > _UNSURE:
             sentences.append(
-                f"the mesh is too coarse to tell its own compliance under a contact to better than {100 * unsure:.2g} % of the "
+                f"the mesh is too coarse to determine its own compliance under a contact to better than {100 * unsure:.2g} % of the "
                 "contact's: take a smaller mesh.element_size, or bodies.kind = 'condensed'"
             )
         turned = self._turned(model, equilibrium)

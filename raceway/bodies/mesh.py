@@ -219,7 +219,7 @@ def predicted_mesh(problem: Problem) -> Tables | None:
     -------
     dict or None
         ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
-        made; None without [mesh], and where the mesher cannot tell before it reads or meshes.
+        made; None without [mesh], and where the mesher cannot predict it before it reads or meshes.
 
     Raises
     ------

@@ -148,7 +148,7 @@ class Bearing(ABC):
         return {}
 
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
-        """The table ``model`` of result.json; empty where there is nothing to tell."""
+        """The table ``model`` of result.json; empty where there is nothing to report."""
         return {}
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:

@@ -278,7 +278,7 @@ def _first_open(rows: Ring, start: float, furthest: float) -> tuple[float, int] 
 
 
 def lost_preload(model: Model) -> str:
-    """What took the whole preload of a pair and the remedy; empty where some is left, or there was none.
+    """What took all preload of a pair and the remedy; empty where some is left, or there was none.
 
     Notes
     -----

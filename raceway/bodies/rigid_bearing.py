@@ -34,7 +34,7 @@ _SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}
 
 
 class RigidBearing(Bearing):
-    """Rigid rings and balls: what their law is off by is all there is to tell."""
+    """Rigid rings and balls: the error of their law is all there is to report."""
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """None."""

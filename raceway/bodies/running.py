@@ -70,7 +70,7 @@ def running_pairs(
 
 
 def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
-    """What the scene's law tells of its contacts in an equilibrium; None where it tells nothing."""
+    """What the scene's law reports of its contacts in an equilibrium; None where it reports nothing."""
     if not renews(model.problem.contact.law):
         return None
     angles = (equilibrium.angle_inner, equilibrium.angle_outer)

@@ -40,12 +40,12 @@ def _cache_screen(caches: ReadTables) -> RenderableType:
     return sections(rows)
 
 
-@click.command(short_help="See or clear what is kept between runs.")
+@click.command(short_help="List or clear the caches.")
 @click.option("--clear", is_flag=True, help="Remove all of it; the next run compiles and condenses again.")
 @common
 def cache(clear: bool, as_json: bool) -> int:
-    """Say where compiled kernels and compliances of bodies are kept (RACEWAY_CACHE_DIR overrides it), how many, how large,
-    what each is and when it was last used; and clear them.
+    """List the caches of compiled kernels and compliances of bodies (RACEWAY_CACHE_DIR names another folder): number, size, content,
+    last use; or clear them.
 
     \b
     Example:
@@ -56,7 +56,7 @@ def cache(clear: bool, as_json: bool) -> int:
     from raceway.storage import array_cache
     from raceway.storage import kernel_cache as cache_folder
 
-    with show_progress(waiting="looking through what is kept"):
+    with show_progress(waiting="looking through the caches"):
         if clear:
             cache_folder.clear()
             array_cache.clear()

@@ -58,7 +58,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "sweep",
         "raceway.cli.sweep:sweep",
-        "One scene at thousands of points, kept in a store; parallel, resumable.",
+        "One scene at thousands of points, in a store; parallel, resumable.",
         "raceway sweep examples/b7206.toml --plot K \\\n"
         "    --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200\n"
         "raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200\n"
@@ -262,7 +262,7 @@ DEVELOPERS = (
     Command(
         "law",
         "raceway.points.law:law",
-        "What a contact law does: force, stiffness, damping, energy a cycle.",
+        "A contact law on one contact: force, stiffness, damping, energy per cycle.",
         "raceway dev law hertz --set contact.damping=300\n"
         "raceway dev law penalty --out raceway-out/penalty\n"
         "raceway dev law film --set contact.viscosity=0.03 \\\n"
@@ -277,7 +277,7 @@ DEVELOPERS = (
         folder=None,
     ),
     Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
-    Later("cache", "raceway.cli.cache:cache", "See or clear what is kept between runs."),
+    Later("cache", "raceway.cli.cache:cache", "List or clear the caches."),
     Later("plugins", "raceway.cli.plugins:plugins", "List what is installed, with options."),
     Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
 )

@@ -35,7 +35,7 @@ class _Planned(Answer):
         return {"title": self.title, "errors": [], **self.plan.to_dict()}
 
     def report(self) -> Iterator[Part]:
-        """Size, memory and time, then the parts kept and left out."""
+        """Size, memory and time, then the parts included and left out."""
         yield Words(self.title, "bold")
         plan = self.plan.to_dict()
         step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"

@@ -44,7 +44,7 @@ class _Listener:
         steps = f", {plan.predicted_steps} steps in {plan.turns} turns" if plan.predicted_steps else ""
         LOGGER.info("plan: %d degrees of freedom%s, predicted %.2g s", plan.dofs, steps, plan.predicted_wall_s)
         for part in plan.kept:
-            LOGGER.info("kept: %s (%s)", part.part, part.why)
+            LOGGER.info("included: %s (%s)", part.part, part.why)
         LOGGER.info("left out: %s", ", ".join(part.part for part in plan.left_out) or "nothing")
 
     @hookimpl
@@ -67,7 +67,7 @@ _PARTS = {"compiling": "compile_s", "building": "build_s", "solving": "solve_s",
 
 
 def listen(context: click.Context, _option: click.Parameter, verbose: bool) -> None:
-    """Begin to tell, until the command ends."""
+    """Begin to report, until the command ends."""
     if not verbose:
         return
     from raceway.framework.registry import default_registry

@@ -8,7 +8,7 @@ from raceway.core.signatures import FORCE
 
 @jit(FORCE)
 def harmonic(t, params, out):
-    """A force that turns, or swings along one direction: out (5,), F_y = F (p3 cos + p4 sin)(W t - lag), F_z likewise with p5, p6.
+    """A force that rotates, or oscillates along one direction: out (5,), F_y = F (p3 cos + p4 sin)(W t - lag), F_z likewise with p5, p6.
 
     params: amplitude F [N], speed W [rad/s], lag [rad], then the cos and sin parts p3 to p6 of F_y and of F_z.
     """

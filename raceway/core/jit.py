@@ -89,7 +89,7 @@ def _kernel_folder() -> OpenFolder | None:
     if isinstance(folder, OpenFolder):
         return folder
     warnings.warn(
-        f"compiled kernels cannot be kept in {current_folder()} ({folder}); compiling in memory, which costs some ten seconds "
+        f"compiled kernels cannot be cached in {current_folder()} ({folder}); compiling in memory, which costs some ten seconds "
         "a run. Set RACEWAY_CACHE_DIR to a folder of your own that can be written.",
         RuntimeWarning,
         stacklevel=2,

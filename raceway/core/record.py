@@ -88,7 +88,7 @@ class Record:
     gap, contact_force : (n, 2 Z) inner races first [m, N];  ball : (n, Z, 2 or 4) positions and slips [m]
     final : Motion
     counts : dict with steps, evaluations, max_penetration_m, peak_contact_force_n
-    energies : name -> (n,) [J], of systems that tell them
+    energies : name -> (n,) [J], of systems that have them
     solution : what a similar motion by the same method may start from
     """
 
@@ -228,7 +228,7 @@ class Observation:
     displacement, velocity : (5,) of the ring's reference point
     gap, contact_force : (2 Z,) inner races first [m, N]
     ball : (Z, 2 or 4) positions (and slips) of the balls [m]
-    energies : name -> [J]; the same names at every step, none where the system does not tell.  "elastic", "kinetic" and
+    energies : name -> [J]; the same names at every step, none where the system has none.  "elastic", "kinetic" and
         "contact" are stored (sticking friction's springs in "contact"), "friction" and "damping" lost since the beginning,
         "hourglass" is a part of "elastic"; the recorder adds "external", the work of all outer forces
     """
@@ -425,7 +425,7 @@ class Recorder:
                 raise
 
     def record(self) -> Record:
-        """The whole ``Record``."""
+        """The complete ``Record``."""
         times = np.array([t for t, _ in self._rows])
         observations = [observation for _, observation in self._rows]
         z = self.system.ball_count

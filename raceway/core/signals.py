@@ -24,7 +24,7 @@ class Identification:
     equivalent_stiffness, equivalent_damping : K [N/m], C [N s/m]
     forward_amplitude, backward_amplitude, orbit_major, orbit_minor : of the 1x orbit [m]
     residual : rms of what is not 1x (mean and drift removed) over the rms of 1x, in the plane of the force
-    spread : largest deviation of a single turn's Z from the whole, relative; None for one turn
+    spread : largest deviation of a single turn's Z from that of all turns, relative; None for one turn
     window : deviation of Z from the other fit (Fourier against least squares), relative, or the misfit of a fit over speeds;
         None where neither is known
     series : (speed [rad/s], Z) of every speed, where several were looked at
@@ -185,7 +185,7 @@ def phasors(time: np.ndarray, signal: np.ndarray, frequencies: list[float]) -> n
 
     Notes
     -----
-    Frequencies closer than half a line of the window to another one or to zero cannot be told apart and must not be given.
+    Frequencies closer than half a line of the window to another one or to zero cannot be separated and must not be given.
     """
     wt = 2.0 * np.pi * time[:, None] * np.asarray(frequencies)
     span = time - time.mean()
@@ -200,7 +200,7 @@ def lines(time: np.ndarray, displacement: np.ndarray, frequencies: dict[str, flo
 
     Notes
     -----
-    Of frequencies that the window (time span T) cannot tell apart, |f1 - f2| < 0.5 / T, the first one is kept; those
+    Of frequencies that the window (time span T) cannot separate, |f1 - f2| < 0.5 / T, the first one remains; those
     above half the sampling rate are left out.
     """
     most = 0.5 * (len(time) - 1) / (time[-1] - time[0])

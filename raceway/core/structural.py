@@ -275,7 +275,7 @@ class _Calibration:
 def calibrated(
     body: RingBody, ball: Solid, ellipses: tuple[Ellipse, Ellipse], load: float, radius: float, balls: int, angle: float
 ) -> _Calibration | None:
-    """Of contacts on a ring, at the free contact angle and some way up the groove; None where points tell nothing.
+    """Of contacts on a ring, at the free contact angle and some way up the groove; None where points determine nothing.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ def calibrated(
     contact that is long against the wall below it is their mean over its length, which is less; nor is a groove a
     paraboloid. One ball on one race, solved at its surface points, has both effects: (approach - Hertz's) / load as a
     function of the load. Its error falls with the square of the distance of points, so that two distances give the limit; a
-    mean over loads removes the scatter of points that come and go.
+    mean over loads removes the ripple of points that come and go.
     """
     profile = coarse_profile(body.shape, body.solid.bulk, body.solid.bulk)
     inputs: Tables = {
@@ -420,7 +420,7 @@ class ElasticBodies:
 
         Notes
         -----
-        The rings' tables tell how it changes over the groove, calibrations how large it is.
+        The rings' tables give its change over the groove, calibrations its size.
         """
         return self._matched(race, angles) + self.beyond(race, angles)
 

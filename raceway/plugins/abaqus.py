@@ -31,7 +31,7 @@ _ENTRIES = 16
 
 @attrs.frozen
 class Abaqus:
-    """Hexahedral meshes as .inp; facet sets are element surfaces, faces S1 to S6. Sets of whole elements are not kept.
+    """Hexahedral meshes as .inp; facet sets are element surfaces, faces S1 to S6. Sets of elements are not stored.
 
     Coordinates are written with eleven significant figures, and every element belongs to the set EALL, which a section needs.
     """

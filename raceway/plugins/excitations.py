@@ -26,20 +26,20 @@ class Amplitude:
     speed_rpm: float = option(unit="r/min", help="whirl speed = spin speed", rule=inside(0.0, 1e9))
     amplitude: str = option(
         "unbalance",
-        help="'unbalance': load_share * unbalance * w^2; 'constant': the same force at every speed",
+        help="'unbalance': load_share * unbalance * w^2; 'constant': at every speed",
         rule=one_of("unbalance", "constant"),
     )
     unbalance: float | None = option(
-        None, unit="kg m", help="mass times eccentricity of the whole rotor", rule=optional(at_least(0.0))
+        None, unit="kg m", help="mass times eccentricity of the rotor", rule=optional(at_least(0.0))
     )
     load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
     force: float | None = option(
-        None, unit="N", help="amplitude = 'constant': the force on this bearing", rule=optional(at_least(0.0))
+        None, unit="N", help="amplitude 'constant': force on this bearing", rule=optional(at_least(0.0))
     )
     reference_speed_rpm: float | None = option(
         None,
         unit="r/min",
-        help="amplitude = 'constant' without force: the unbalance force at this speed",
+        help="amplitude 'constant' without force: unbalance force at this speed",
         rule=optional(positive()),
     )
     phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
@@ -173,7 +173,7 @@ class RunUp:
     first_speed_rpm: float = option(unit="r/min", help="speed at the beginning", rule=inside(0.0, 1e9))
     speed_rpm: float = option(unit="r/min", help="speed at the end", rule=inside(0.0, 1e9))
     duration_s: float = option(unit="s", help="time between the two", rule=positive())
-    unbalance: float = option(unit="kg m", help="mass times eccentricity of the whole rotor", rule=at_least(0.0))
+    unbalance: float = option(unit="kg m", help="mass times eccentricity of the rotor", rule=at_least(0.0))
     load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
     phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
     whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))

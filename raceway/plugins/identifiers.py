@@ -47,7 +47,7 @@ def _spread(record: Record, z: complex, of_turn: Callable[[slice], complex]) -> 
 
 @attrs.frozen
 class Fft1x:
-    """Detrended 1x line of force and displacement over all whole turns; its spread over single turns is reported."""
+    """Synchronous (1x) component of detrended force and displacement over full turns, with its spread over single turns."""
 
     name: ClassVar[str] = "fft_1x"
     needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
@@ -149,7 +149,7 @@ class Tangent:
 #: and is seen as a misfit of e times that share: where the time step's error is as large, K is off by 1 / 0.05 = 20 times that error.
 _APART = 0.05
 _RULE = (
-    f"at least two speeds greater than 0, the largest {100.0 * _APART:g} % or more above the smallest: closer ones hide a K that is off by "
+    f"at least two speeds greater than 0, the largest {100.0 * _APART:g} % or more above the smallest: closer ones make K wrong by "
     f"{1.0 / _APART:g} times the time step's error"
 )
 
@@ -161,14 +161,14 @@ def _speeds(_instance: object, _attribute: object, value: tuple[float, ...]) -> 
 
 @attrs.frozen
 class ImpedanceFit:
-    """K and C of Z(w) = K - m w^2 + j w C by least squares over whirl speeds, at the scene's spin speed and force; m is known.
+    """K and C of Z(w) = K - m w^2 + j w C by least squares over whirl speeds, with known m.
 
     Notes
     -----
     K changes with the spin speed of the balls and with the amplitude: a fitted m would take what K loses over the speeds.  So
     spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, as in every K of this program.
     Free tilts lean with a shape that changes with w, and gyroscopic moments are linear in w: Z is of another form then, and the
-    misfit tells.  ``window`` is the largest misfit over the whirl speeds, over |Z| there.
+    misfit shows it.  ``window`` is the largest misfit over the whirl speeds, over |Z| there.
     """
 
     name: ClassVar[str] = "impedance_fit"
@@ -179,7 +179,7 @@ class ImpedanceFit:
 
     speeds_rpm: tuple[float, ...] = option(
         unit="r/min",
-        help="whirl speeds of the force that are run at the scene's spin speed, at least two; best around the scene's own",
+        help="whirl speeds of the force at the scene's spin speed, best around the scene's own",
         rule=worded(_speeds, _RULE),
     )
 

@@ -34,8 +34,8 @@ class Measured:
     name: ClassVar[str] = "measured"
 
     file: str = option(help="CSV file with a header line, relative to the scene file", path=True)
-    speed_rpm: float = option(unit="r/min", help="speed whose 1x line is identified", rule=inside(0.0, 1e9))
-    repeats: bool = option(False, help="the record is repeated for as long as the scene runs")
+    speed_rpm: float = option(unit="r/min", help="speed of the synchronous (1x) component", rule=inside(0.0, 1e9))
+    repeats: bool = option(False, help="repeat the record")
 
     def __attrs_post_init__(self) -> None:
         _read(self.file)

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @attrs.frozen
 class OrderTracking:
-    """Least squares of the 1x line in windows of a few turns of the excitation's own phase; a series over speed, each with its error.
+    """Least squares of the synchronous (1x) component in windows of some turns of the excitation's phase: a series over speed with errors.
 
     Notes
     -----
     Samples have Hann's weights.  Within a window the complex amplitude A may change linearly in time; the line is taken at its
     middle.  While speed and amplitude change, M q'' of q = Re A e^{j phase} is M (-w^2 A + 2 j w A' + j w' A), and of a known
-    damping C that is C (j w A + A'): what is beyond the steady terms would be told as damping m (w' + 2 w A' / A) / w and is
+    damping C that is C (j w A + A'): what is beyond the steady terms would appear as damping m (w' + 2 w A' / A) / w and is
     subtracted.  A curvature of A would let more noise in than it takes error out: what it would change, with its own m A'', and the
     square of the change's share of the force, which steady terms of first order leave out, are the error of a window.
     """

@@ -86,7 +86,7 @@ class Attractor:
         if self.undamped:
             half_range += " (without the contacts' dashpots, with which grazing balls have no equilibrium)"
         if self.kind == REPEATS:
-            after = "every turn: it settles on another orbit" if self.period == 1 else f"after {self.period} turns"
+            after = "every turn: another orbit" if self.period == 1 else f"after {self.period} turns"
             return f"repeats {after}, {half_range}"
         if self.kind == QUASI:
             return f"quasi-periodic, second frequency {self.second:.5g} a turn of the force, {half_range}"
@@ -97,7 +97,7 @@ class Attractor:
 
 
 def attractor_beside(point: Point, turns: int, on_progress: OnProgress | None = None) -> Attractor:
-    """Integrate from beside an unstable orbit of a branch."""
+    """Integrate from near an unstable orbit of a branch."""
     return _beside(point.solved, point.transfer, float(point.parameter), turns, on_progress)
 
 

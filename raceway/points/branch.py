@@ -132,7 +132,7 @@ class Followed(Answer):
     rows : orbits in the order of the branch;  labels : special points and peaks
     end : why it ends before ``last``; "" where it reaches it
     notes : what a user should know;  worst : the most unstable orbit of each unstable stretch
-    doubled : branches of twice the period;  attractors : motions that a ring settles on from beside the orbits ``worst``
+    doubled : branches of twice the period;  attractors : motions reached from beside the orbits ``worst``
 
     Examples
     --------
@@ -285,7 +285,7 @@ def swing(solved: Solved) -> float:
 
 
 def growth_of_swing(branch: Branch, point: Point) -> float:
-    """Derivative of the swing along the branch [m], by a difference quotient along its tangent."""
+    """Derivative of the amplitude along the branch [m], by a difference quotient along its tangent."""
     solved = point.solved
     path, problem = solved.path, solved.problem
     change = Change(*(np.zeros_like(part) for part in (path.q, path.v, path.a)))
@@ -307,7 +307,7 @@ def resonance(solved: Solved) -> str:
     if order == 1.0:
         return ""
     return (
-        f"; its {order:g}x harmonic outweighs the 1x line, an internal resonance with a vibration near "
+        f"; its {order:g}x harmonic outweighs the synchronous (1x) component, an internal resonance with a vibration near "
         f"{order * solved.problem.speed * 30.0 / np.pi:.5g} r/min"
     )
 

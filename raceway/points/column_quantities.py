@@ -136,12 +136,12 @@ class Computed:
 
     @cached_property
     def line(self) -> np.ndarray:
-        """(n, 5) 1x line of the displacement."""
+        """(n, 5) synchronous (1x) component of the displacement."""
         return self._complex("line")
 
     @cached_property
     def force(self) -> np.ndarray:
-        """(n, 5) 1x line of the force."""
+        """(n, 5) synchronous (1x) component of the force."""
         return self._complex("force")
 
     @property
@@ -260,7 +260,7 @@ def stated_columns(scene: Scene, registry: Registry) -> dict[str, Quantity]:
 
 @attrs.frozen(eq=False)
 class SteadyLines:
-    """1x lines of the steady orbits of one bearing under one load after another."""
+    """Synchronous (1x) components of the steady orbits of one bearing under one load after another."""
 
     _built: dict[float, ColumnBearing] = attrs.field(factory=dict, init=False)
 

@@ -46,7 +46,7 @@ class Comparison(Answer, Findings):
     title : of the scene;  axes : keys that were varied, with their values
     rows : one a run, ``point`` and ``result`` (content of result.json, or status and reason), the last axis running fastest
     effects, trends : of each key and of two together on K and |Z|;  words : all of it in sentences
-    fault : why finished runs could not be kept
+    fault : why finished runs could not be stored
 
     Examples
     --------
@@ -63,7 +63,7 @@ class Comparison(Answer, Findings):
     fault: RacewayError | None = None
 
     def failure(self) -> RacewayError | None:
-        """Why finished runs could not be kept."""
+        """Why finished runs could not be stored."""
         return self.fault
 
     @cached_property
@@ -288,7 +288,7 @@ def compare(
     ----------
     scene : Scene, path, TOML text or dict of tables
     vary : key of the scene -> its values (list, array (n,), or the text "a,b,c" or "start:stop:count"); every combination is run
-    out : folder in which finished runs are kept and reused, and compare.json is written; None: nothing is written
+    out : folder in which finished runs are stored and reused, and compare.json is written; None: nothing is written
     kept : folder of the finished runs instead of ``out``
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
@@ -309,7 +309,7 @@ def compare(
 
     Notes
     -----
-    A run that is refused or fails is kept with its reason, and the others go on.
+    A run that is refused or fails has a row with its reason, and the others go on.
 
     Examples
     --------

@@ -173,7 +173,7 @@ def work_through(
     on_progress: OnProgress | None = None,
     lost: Callable[[Item, str], Tables] | None = None,
 ) -> tuple[list[Tables], int]:
-    """Rows of all items, in their order, and how many of them were kept from before.
+    """Rows of all items, in their order, and how many of them were stored before.
 
     Parameters
     ----------
@@ -181,12 +181,12 @@ def work_through(
     store : of finished rows, read and added to;  executor : follows ``raceway.framework.contracts.Executor``
     plugins : one-off plug-in files, which each process loads
     on_progress : called as ``on_progress(name, done, total)`` after each item; an exception stops the study
-    lost : row of an item that took its process down, which is not kept, from the item and the reason
+    lost : row of an item that took its process down, which is not stored, from the item and the reason
 
     Raises
     ------
     RacewayError
-        An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: what is finished is kept.
+        An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
     stored = [store.get(item.key) for item in items]
     rows = {index: row.content for index, row in enumerate(stored) if row.state != "waiting"}
@@ -218,7 +218,7 @@ def _put(store: Store, row: Row) -> None:
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
         raise RacewayError(
-            f"{item.name}: {answer.reason}, perhaps for want of memory; what is finished is kept: run the command again, with "
+            f"{item.name}: {answer.reason}, perhaps for want of memory; finished points are stored: run the command again, with "
             "--processes 1"
         )
     return lost(item, answer.reason)
@@ -274,7 +274,7 @@ def quantities(result: Tables) -> dict[str, float]:
 
 
 def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: Store) -> tuple[Tables, bool]:
-    """``measured``, and whether it was kept from before; ``extra`` is a part of the row's key.
+    """``measured``, and whether it was stored before; ``extra`` is a part of the row's key.
 
     In this process, with nothing beside it: times are what is asked for.
     """
@@ -294,7 +294,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
     Notes
     -----
     Times are the least of the repeats.  Compiling is apart: a first run that compiled is not among the repeats, because its
-    processor time cannot be told from the compiler's.  ``time_s``, by which settings are compared, is the time of the processor,
+    processor time cannot be separated from the compiler's.  ``time_s``, by which settings are compared, is the time of the processor,
     or with several threads the wall time.
     The peak of memory is the process's, counted anew for each setting where the system lets a process do so.
     """
@@ -348,7 +348,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
 
 
 def without_mesh(error: ReadTables) -> float | None:
-    """The run's own estimate, less its bodies': rows on one mesh are held against a reference on the same."""
+    """The run's own estimate, less its bodies': rows on one mesh are compared with a reference on the same."""
     return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
 
 

@@ -72,7 +72,7 @@ def follow(
     -------
     Followed
         ``rows`` with K [N/m], C [N s/m], amplitude [m] and verdict; ``labels``: folds, period doublings, Neimark-Sacker points,
-        branch points and peaks; ``unstable`` stretches, ``attractors``: motions that a ring settles on there; ``doubled`` branches;
+        branch points and peaks; ``unstable`` stretches, ``attractors``: motions that a ring reaches there; ``doubled`` branches;
         ``end``: why the branch ends before the last value, "" where it does not
 
     Raises

@@ -487,7 +487,7 @@ def function(
     inputs : continuous keys, such as "load.axial", "excitation.speed_rpm", "bearing.contact_angle_deg"
     outputs : quantities by their names, such as "kyy", "stiffness", "contact_angle", or symbols, "K", "C"
     plugins : files of one-off plug-ins that the scene uses
-    tolerance : of the 1x line of steady orbits, relative
+    tolerance : of the synchronous (1x) component of steady orbits, relative
     force : also run, one after another, points that a compiled loop cannot do, however long that takes
     threads : that share the points; None: as many as there are cores
 

@@ -235,7 +235,7 @@ class LawCurves(Answer):
             [
                 ("load, approach", f"{c.load:.4g} N", f"{1e6 * c.approach:.4g} µm"),
                 ("K, C", f"{1e-6 * loop.stiffness:.4g} N/µm", f"{loop.damping:.4g} N s/m, {loop.frequency:.4g} Hz"),
-                ("energy a cycle", f"{1e6 * loop.energy:.3g} µJ", self.damping_origin),
+                ("energy per cycle", f"{1e6 * loop.energy:.3g} µJ", self.damping_origin),
             ],
         )
 

@@ -70,7 +70,7 @@ class Precision(Answer):
     rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
     references : by physics; ``base`` is the physics that the front and the other models refer to
     left_out : (family, values, reason) of the default design
-    fault : why rows could not be kept on disk;  named_reference : whether the user named the reference
+    fault : why rows could not be stored on disk;  named_reference : whether the user named the reference
 
     Examples
     --------
@@ -330,7 +330,7 @@ class Precision(Answer):
         yield from self.words
 
     def failure(self) -> RacewayError | None:
-        """Rows that could not be kept, a reference that is no better than they are, or no row that converged."""
+        """Rows that could not be stored, a reference that is no better than they are, or no row that converged."""
         if self.fault is not None:
             return self.fault
         rows = self.judged
@@ -515,7 +515,7 @@ def precision(
     reference : key -> value of the reference; found by itself without
     repeats : runs of each setting, of which the fastest counts
     limit_s : settings that are predicted to take longer are left out [s]
-    out : folder in which finished rows are kept and reused, and precision.json and .md are written; None: nothing is written
+    out : folder in which finished rows are stored and reused, and precision.json and .md are written; None: nothing is written
     kept : folder of the finished rows instead of ``out``
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``

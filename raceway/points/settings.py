@@ -76,7 +76,7 @@ class Setting:
 
 @attrs.frozen
 class Design:
-    """Settings to run; what was left out with its reason; the physics that other models are held against."""
+    """Settings to run; what was left out with its reason; the physics that other models are compared with."""
 
     settings: tuple[Setting, ...]
     left_out: tuple[tuple[str, Tables, str], ...]
@@ -258,7 +258,7 @@ def minus(a: Mapping[str, float], b: Mapping[str, float]) -> Values:
 
 @attrs.frozen(eq=False)
 class Runner:
-    """Runs reference settings, each once and kept like rows."""
+    """Runs reference settings, each once and stored like rows."""
 
     registry: Registry
     store: Store

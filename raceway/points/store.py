@@ -318,7 +318,7 @@ def told(folder: Path) -> Iterator[None]:
     except (sqlite3.DatabaseError, UnicodeDecodeError) as why:
         if isinstance(why, sqlite3.OperationalError):
             raise RacewayError(
-                f"`{folder}` cannot be written or read: {why}. What is finished is kept: free some space, and run the "
+                f"`{folder}` cannot be written or read: {why}. Finished points are stored: free some space, and run the "
                 "command again, a sweep with --resume."
             ) from None
         raise RacewayError(f"`{folder / POINTS}` is not a store ({why}): choose another folder.") from None

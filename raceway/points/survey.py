@@ -47,7 +47,7 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
     ------
     SceneError
         The scene's mistakes, and those of the values: an unknown key, a wrong type.  What only two values together make
-        impossible is kept as a failed point.
+        impossible is a failed point.
     """
     notes: list[str] = []
     first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)

@@ -266,7 +266,7 @@ def fill_store(
     PluginError
         An executor that cannot work, or a worker that is not fit for it.
     RacewayError
-        A disk that takes no more.  Whatever is raised, Ctrl-C too: what is finished is kept.
+        A disk that takes no more.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
     design, length = prepared.design, int(prepared.facts["block"])
     edges = block_edges(design.size, length)
@@ -374,7 +374,7 @@ def sweep(
         or a list of points, each key -> value; with ``design`` key -> range (low, high)
     executor : "serial", "processes", "dask" or a plug-in's name, or an executor
     workers : processes of these, by default 2
-    store : folder in which every finished point is kept; None: a temporary one, removed when the results are loaded
+    store : folder of all finished points; None: a temporary one, removed when the results are loaded
     resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
     design : "sobol:N", of a power of 2, or "lhs:N": N points that fill the ranges;  seed : of its random numbers
     force : also where runs are predicted to take longer than a day

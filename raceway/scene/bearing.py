@@ -61,80 +61,80 @@ class Bearing:
     conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
     contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
     radial_clearance: float | None = option(
-        None, unit="m", help="internal radial clearance as catalogues give it, on the diameter", rule=optional(at_least(0.0))
+        None, unit="m", help="internal radial clearance, on the diameter, as in catalogues", rule=optional(at_least(0.0))
     )
     bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
     outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
     width: float | None = option(None, unit="m", help="width", rule=optional(length()))
     shoulder_height: float | None = option(
-        None, unit="m", help="depth of the grooves; default 0.2 D, as usual in catalogues", rule=optional(length())
+        None, unit="m", help="depth of the grooves; default 0.2 D", rule=optional(length())
     )
     dynamic_rating: float | None = option(
         None,
         unit="N",
-        help="basic dynamic load rating C of one row; default: the catalogue's, else by ISO 281",
+        help="dynamic load rating C of one row; default: the catalogue's, else ISO 281",
         rule=optional(positive()),
     )
     static_rating: float | None = option(
         None,
         unit="N",
-        help="basic static load rating C0 of one row; default: the catalogue's, else by ISO 76",
+        help="static load rating C0 of one row; default: the catalogue's, else ISO 76",
         rule=optional(positive()),
     )
     inner_profile: tuple[tuple[float, float], ...] | None = option(
-        None, unit="m", help="section of the inner ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+        None, unit="m", help="section of the inner ring without groove, points [x, radius]; x = 0: plane of the balls"
     )
     outer_profile: tuple[tuple[float, float], ...] | None = option(
-        None, unit="m", help="section of the outer ring, groove not cut, as points [x, radius]; x = 0 in the balls' plane"
+        None, unit="m", help="section of the outer ring, likewise"
     )
     first_ball_azimuth_deg: float = option(0.0, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=finite())
     tilt_arm: str = option(
         "groove",
-        help="arm of tilts and moments: 'groove' (radius of the inner groove centres) or 'pitch' (half the pitch diameter)",
+        help="arm of tilts and moments: radius of the inner groove centres, or half the pitch diameter",
         rule=one_of("groove", "pitch"),
     )
     arrangement: str = option(
         "single",
-        help="'single' row, or a set: a pair back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by their makers' names",
+        help="pairs back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by makers' names",
         rule=arrangement(),
     )
     row: tuple[Row, ...] = option(
         (),
-        help="rows one by one, in tables [[bearing.row]]: places, directions, preloads, and what differs from this bearing",
+        help="single rows: position, direction, preload, and keys that differ from [bearing]",
     )
     preload: float = option(
         0.0,
         unit="N",
-        help="axial preload of rows that brace each other, before mounting: of the loose set at standstill, without fits",
+        help="axial preload between rows of opposite directions, before mounting, at standstill",
         rule=at_least(0.0),
     )
     second_preload: float | None = option(
         None,
         unit="N",
-        help="of the rows that face the other way than the first, where it is another force: before mounting, under the difference as an axial load",
+        help="preload of the rows opposite to the first, if different: the difference is an axial load before mounting",
         rule=optional(positive()),
     )
     preload_of: str = option(
         "set",
-        help="'set': the force between the rows of either direction; 'row': each row was ground flush under it, as makers do",
+        help="'set': force between the rows of either direction; 'row': each row was ground flush under it",
         rule=one_of("set", "row"),
     )
     preload_kind: str = option(
         "rigid",
-        help="'rigid': the rows' offset stays; 'spring': the force on the rows that face the other way than the first "
-        "stays, their outer rings slide together",
+        help="'rigid': constant offset of the rows; 'spring': constant force on the rows opposite to the first, "
+        "whose outer rings slide together",
         rule=one_of("rigid", "spring"),
     )
     spring_travel: float | None = option(
         None,
         unit="m",
-        help="by which those rings can slide against the spring from where the preload sets them before mounting, either way; default: any",
+        help="travel of these rings against the spring from the position before mounting, either way; default: unlimited",
         rule=optional(travel()),
     )
     row_distance: float | None = option(
         None,
         unit="m",
-        help="axial distance of neighbouring rows, between the planes of their inner groove centres; default: the width of one bearing",
+        help="axial distance of neighbouring inner groove centres; default: the width of one bearing",
         rule=optional(length()),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")

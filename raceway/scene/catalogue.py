@@ -44,7 +44,7 @@ _OFFERED = 5
 
 @attrs.frozen
 class Fact:
-    """One number of a preset: key of the [bearing] table, value, where it comes from; relative scatter of what is inferred."""
+    """One number of a preset: key of the [bearing] table, value, where it comes from; relative uncertainty of what is inferred."""
 
     key: str
     value: object
@@ -156,7 +156,7 @@ def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
     facts = {fact.key: fact for fact in entry.facts}
     if designation.clearance and "radial_clearance" in facts:
         limits = clearance_range("ball", float(str(facts["bore"].value)), designation.clearance) or (0.0, 0.0)
-        source = f"ISO 5753-1, class {designation.clearance}, middle of the range; scatter: the range"
+        source = f"ISO 5753-1, class {designation.clearance}, middle of the range; uncertainty: the range"
         scatter = (limits[1] - limits[0]) / sum(limits)
         facts["radial_clearance"] = Fact("radial_clearance", 0.5 * sum(limits), source, True, scatter)
     if designation.ceramic:

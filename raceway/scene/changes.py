@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
-    """The tables with a title that says what was changed, in its second line: the first one tells of the file.
+    """The tables with a title that says what was changed, in its second line: the first one names the file.
 
     Parameters
     ----------

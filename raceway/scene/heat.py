@@ -33,15 +33,15 @@ class Heat:
     oil_inlet_c: float = option(unit="°C", help="of the oil that is supplied", rule=between(-273.15, 1e3))
     oil_flow: float | str = option(
         unit="m3/s",
-        help="oil through all rows; 'infinite': it stays at its inlet's temperature",
+        help="flow through all rows; 'infinite': constant oil temperature",
         rule=word_or(positive(), "infinite"),
     )
     ambient_c: float = option(20.0, unit="°C", help="around shaft and housing", rule=between(-273.15, 1e3))
-    oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; most have 1900 to 2300", rule=positive())
+    oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=positive())
     inner_wetting: float | str = option(
         "auto",
-        help="share of the inner rings that oil wets, a factor of inner_oil 'auto'; 'auto': the gaps between the balls, 1 - Z D / (pi d_m); "
-        "under-race lubrication has 1",
+        help="wetted share of the inner rings, a factor of inner_oil 'auto'; 'auto': 1 - Z D / (pi d_m), the gaps between the balls; "
+        "under-race lubrication: 1",
         rule=word_or(between(1e-3, 1.0), "auto"),
     )
     inner_balls: float | str = _conductance("inner rings and balls")
@@ -54,5 +54,5 @@ class Heat:
     shaft_ambient: float | str = _to_ambient("shaft")
     housing_ambient: float | str = _to_ambient("housing")
     conductance_band: float = option(
-        0.5, help="r: conductances by correlations are known within 1/(1 + r) to 1 + r times", rule=at_least(0.0)
+        0.5, help="r: uncertainty of 'auto' conductances, 1/(1 + r) to 1 + r times", rule=at_least(0.0)
     )

@@ -76,7 +76,7 @@ class Given:
         return merged
 
     def plain(self, registry: Registry) -> Tables:
-        """The tables with all changes, numbers in the keys' units, the title that tells it, and files that start at the folder.
+        """The tables with all changes, numbers in the keys' units, the title that states it, and files that start at the folder.
 
         Keys that the changes take their effect from are left out.
         """

@@ -95,7 +95,7 @@ class Oil:
     )
     viscosity_100: float | None = option(None, unit="m2/s", help="kinematic, at 100 C", rule=optional(positive()))
     viscosity: float | None = option(
-        None, unit="Pa s", help="dynamic, at the running temperature, instead of an oil", rule=optional(positive())
+        None, unit="Pa s", help="dynamic, at the running temperature; excludes oil", rule=optional(positive())
     )
     temperature_c: float | None = option(
         None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.15, 1e3))
@@ -110,7 +110,7 @@ class Oil:
     temperature_viscosity: float | None = option(
         None, unit="1/K", help="beta = -d ln(viscosity)/dT; default: the oil's, or mineral oils'", rule=optional(positive())
     )
-    conductivity: float = option(0.14, unit="W/m/K", help="of the oil; mineral oils have 0.12 to 0.15", rule=positive())
+    conductivity: float = option(0.14, unit="W/m/K", help="of the oil; mineral oils: 0.12 to 0.15", rule=positive())
 
     def __attrs_post_init__(self) -> None:
         pair = self.viscosity_40 is not None or self.viscosity_100 is not None
@@ -222,18 +222,18 @@ class Lubricant(Oil):
 
     traction_limit: float = option(
         0.05,
-        help="largest traction coefficient of its films; 0.05 mineral, 0.04 synthetic oils (SKF)",
+        help="largest traction coefficient; 0.05 mineral, 0.04 synthetic oils (SKF)",
         rule=between(0.0, 0.3),
     )
-    eyring_stress: float = option(5e6, unit="Pa", help="shear stress from which its films thin by shear", rule=positive())
+    eyring_stress: float = option(5e6, unit="Pa", help="onset of shear thinning", rule=positive())
     oil_fraction: float | str = option(
         "auto",
-        help="volume of oil over that of the space around the balls, 0: dry air, 1: flooded; 'auto': by the flow in [heat], else 0.01",
+        help="share of oil in the space around the balls, 0: dry air, 1: flooded; 'auto': from the flow in [heat], else 0.01",
         rule=word_or(between(0.0, 1.0), "auto"),
     )
     drag_coefficient: float = option(
         0.25,
-        help="of a ball in the mixture of oil and air; 0.44: of a sphere alone; 0.25: that with Harris's power 1.95 of the speed",
+        help="of a ball in oil and air; 0.44: a free sphere; 0.25: with Harris's power 1.95 of the speed",
         rule=at_least(0.0),
     )
 

@@ -104,7 +104,7 @@ class Row:
 
     direction: str | None = option(
         None,
-        help="'+': a positive axial motion of the inner ring seats it; '-'; default: as the arrangement says",
+        help="'+': a positive axial motion of the inner ring loads it; default: from the arrangement",
         rule=optional(one_of("+", "-")),
     )
     position: float | None = option(

@@ -146,7 +146,7 @@ def _without(unit: str, value: object) -> object:
 
 
 def table_without_units(table: Tables, cls: type) -> Tables:
-    """A copy of a table with all numbers in the keys' own units; what is wrong stays, to be told where it is checked."""
+    """A copy of a table with all numbers in the keys' own units; what is wrong stays, to be reported where it is checked."""
     attrs.resolve_types(cls)
     fields, result = attrs.fields_dict(cls), dict(table)
     for key, value in table.items():

@@ -41,18 +41,18 @@ def _each(low: float, words: str) -> Rule:
 class Signals:
     """Signals of the simulated rig's sensors."""
 
-    sampling_hz: float = option(10_000.0, unit="Hz", help="samples a second", rule=between(100.0, 1e7))
+    sampling_hz: float = option(10_000.0, unit="Hz", help="sampling rate", rule=between(100.0, 1e7))
     duration: float = option(1.0, unit="s", help="length of a record", rule=between(0.01, 3600.0))
     noise_db: float = option(
         40.0, unit="dB", help="rms of the response at the speed over rms of the white noise", rule=between(0.0, 300.0)
     )
     mark_noise: float = option(
-        0.0, help="rms of the white noise on the once-per-turn probe's voltage, over its range", rule=between(0.0, 1.0)
+        0.0, help="rms of the white noise on the keyphasor's voltage, over its range", rule=between(0.0, 1.0)
     )
     drift: float = option(
-        5e-6, unit="m", help="slow wandering of the gap over a record: half straight, half a half-wave", rule=at_least(0.0)
+        5e-6, unit="m", help="drift of the gap over a record: half linear, half a half-wave", rule=at_least(0.0)
     )
-    run_out: float = option(5e-6, unit="m", help="run-out of the measured track, once a turn", rule=at_least(0.0))
+    run_out: float = option(5e-6, unit="m", help="run-out of the measured track, 1x", rule=at_least(0.0))
     run_out_angle_deg: float = option(70.0, unit="deg", help="angle of the run-out from the mark", rule=finite())
     slow_roll_rpm: float = option(300.0, unit="r/min", help="speed of the slow-roll record", rule=positive())
     speed_drift: float = option(0.0, help="change of speed over a record, relative", rule=between(-0.5, 0.5))
@@ -69,14 +69,14 @@ class Rig:
     """
 
     shaft_length: float = option(0.426, unit="m", help="end to end", rule=positive())
-    shaft_diameter: float = option(0.030, unit="m", help="of the whole shaft", rule=positive())
+    shaft_diameter: float = option(0.030, unit="m", help="diameter of the shaft", rule=positive())
     span: float = option(0.175, unit="m", help="distance of the bearings' centres", rule=positive())
     disc_radius: float = option(0.090, unit="m", help="radius of the disc", rule=positive())
     disc_thickness: float = option(0.020, unit="m", help="width of the disc", rule=positive())
     hub_diameter: float | None = option(
         None,
         unit="m",
-        help="diameter that bends within the disc, where the disc stiffens the shaft; default: the shaft's",
+        help="bending diameter within the disc; default: the shaft's",
         rule=optional(positive()),
     )
     young: float = option(212e9, unit="Pa", help="Young's modulus of the shaft", rule=positive())
@@ -87,7 +87,7 @@ class Rig:
     unbalance_angle_deg: float = option(0.0, unit="deg", help="angle of that mass from the mark", rule=finite())
     arrangement: str = option(
         "DB",
-        help="'DB': a force on the shaft towards the disc seats a bearing; 'DF': a force away from it",
+        help="a force on the shaft towards the disc ('DB') or away from it ('DF') preloads a bearing",
         rule=one_of("DB", "DF"),
     )
     sensor_distance: float = option(0.025, unit="m", help="from the tested bearing's centre", rule=at_least(0.0))
@@ -95,14 +95,14 @@ class Rig:
         "inside", help="'inside': between bearing and disc; 'outside': towards the shaft's end", rule=one_of("inside", "outside")
     )  # fmt: skip
     speeds_rpm: tuple[float, ...] = option(
-        (11_000.0, 13_000.0, 15_000.0), unit="r/min", help="that the study runs at",
+        (11_000.0, 13_000.0, 15_000.0), unit="r/min", help="speeds of the study",
         rule=_each(0.0, "a list of speeds greater than 0"),
     )  # fmt: skip
     axial_loads: tuple[float, ...] = option(
-        (400.0, 2000.0), unit="N", help="that the study runs under",
+        (400.0, 2000.0), unit="N", help="loads of the study",
         rule=_each(0.0, "a list of loads greater than 0"),
     )  # fmt: skip
-    signals: Signals = attrs.field(factory=Signals, metadata={"help": "what the sensors write down"})
+    signals: Signals = attrs.field(factory=Signals, metadata={"help": "signals of the sensors"})
 
     def __attrs_post_init__(self) -> None:
         if self.span >= self.shaft_length:
@@ -177,41 +177,43 @@ class Supports:
     tilt: float | str = option(
         "locked",
         unit="N m/rad",
-        help="'locked', 'free' (massless shaft), or the shaft's stiffness against tilts",
+        help="'free': massless shaft; a number: tilt stiffness of the shaft",
         rule=word_or(positive(), "locked", "free"),
     )
     axial: str = option(
         "force",
-        help="'force': load.axial acts; 'displacement': what load.axial alone gives before mounting is held",
+        help="'force': load.axial acts; 'displacement': constant displacement, that of load.axial alone before mounting",
         rule=one_of("force", "displacement"),
     )
     outer_seat: float | str = option(
         "rigid",
         unit="N/m3",
-        help="outer cylinder: 'rigid' or the bed's stiffness",
+        help="outer cylinder: 'rigid' or stiffness of an elastic foundation",
         rule=word_or(positive(), "rigid"),
         no_list=_AROUND,
     )
     inner_seat: float | str = option(
-        "rigid", unit="N/m3", help="bore: 'rigid' or the bed's stiffness", rule=word_or(positive(), "rigid"), no_list=_AROUND
+        "rigid",
+        unit="N/m3",
+        help="bore: 'rigid' or stiffness of an elastic foundation",
+        rule=word_or(positive(), "rigid"),
+        no_list=_AROUND,
     )
 
 
 @attrs.frozen
 class Rotor:
-    mass: float = option(0.0, unit="kg", help="carried by this bearing, added to the inner ring's own", rule=at_least(0.0))
+    mass: float = option(0.0, unit="kg", help="supported by this bearing, beside the inner ring's", rule=at_least(0.0))
     transverse_inertia: float = option(
-        0.0, unit="kg m2", help="about the reference point, added to the ring's own", rule=at_least(0.0)
+        0.0, unit="kg m2", help="about the reference point, beside the ring's", rule=at_least(0.0)
     )
-    polar_inertia: float = option(
-        0.0, unit="kg m2", help="gyroscopic moments on the tilts, beside those of the inner ring", rule=at_least(0.0)
-    )
+    polar_inertia: float = option(0.0, unit="kg m2", help="for gyroscopic moments, beside the ring's", rule=at_least(0.0))
     damping: float = option(0.0, unit="N s/m", help="viscous, on the translations", rule=at_least(0.0))
 
 
 @attrs.frozen
 class Load:
-    axial: float = option(0.0, unit="N", help="positive seats the bearing", rule=finite())
+    axial: float = option(0.0, unit="N", help="positive preloads the bearing", rule=finite())
     radial: tuple[float, float] = option((0.0, 0.0), unit="N", help="along y, z")
     moment: tuple[float, float] = option((0.0, 0.0), unit="N m", help="about y, z")
 
@@ -221,7 +223,7 @@ class Kinematics:
     orbiting: bool = option(False, help="balls travel at cage speed")
     ball_inertia: bool = option(True, help="centrifugal force of the balls at cage speed")
     gyroscopic: str = option(
-        "none", help="gyroscopic moment of the balls: the hypothesis", rule=one_of("none", "outer_race", "shared")
+        "none", help="hypothesis of the balls' gyroscopic moment", rule=one_of("none", "outer_race", "shared")
     )
     spin_speed_rpm: float | None = option(
         None,
@@ -240,18 +242,16 @@ _WARMER = between(-293.15, 1e3)
 
 @attrs.frozen
 class Mounting:
-    inner_temperature: float = option(0.0, unit="K", help="of inner rings and shaft above mounting's 20 °C", rule=_WARMER)
-    outer_temperature: float = option(0.0, unit="K", help="of outer rings and housing above mounting's 20 °C", rule=_WARMER)
-    ball_temperature: float = option(0.0, unit="K", help="of the balls above mounting's 20 °C", rule=_WARMER)
+    inner_temperature: float = option(0.0, unit="K", help="of inner rings and shaft, above 20 °C", rule=_WARMER)
+    outer_temperature: float = option(0.0, unit="K", help="of outer rings and housing, above 20 °C", rule=_WARMER)
+    ball_temperature: float = option(0.0, unit="K", help="of the balls, above 20 °C", rule=_WARMER)
     shaft_interference: float = option(
-        0.0, unit="m", help="by which the shaft is larger than the bore, on the diameter, at standstill", rule=at_least(0.0)
+        0.0, unit="m", help="shaft less bore, on the diameter, at standstill", rule=at_least(0.0)
     )
     shaft_bore: float = option(0.0, unit="m", help="diameter of the hole in the shaft; 0: solid", rule=at_least(0.0))
-    housing_interference: float = option(
-        0.0, unit="m", help="by which the housing is smaller than the outer ring, on the diameter", rule=at_least(0.0)
-    )
+    housing_interference: float = option(0.0, unit="m", help="outer ring less housing, on the diameter", rule=at_least(0.0))
     housing_diameter: float | None = option(
-        None, unit="m", help="outer diameter of the housing; default: much larger than the bearing", rule=optional(length())
+        None, unit="m", help="outer diameter of the housing; default: large", rule=optional(length())
     )
     shaft_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
     housing_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
@@ -280,26 +280,26 @@ TIME_CONSTANTS = (0.25e-5, 2.5e-5)
 class Contact:
     kind: str = option("hertz", help="contact law")
     discretisation: str = option(
-        "resultant", help="one force a ball-race pair, or pressure at points", rule=one_of("resultant", "nodal")
+        "resultant", help="one force per contact, or pressure at points", rule=one_of("resultant", "nodal")
     )
     friction: float = option(0.0, help="Coulomb coefficient", rule=at_least(0.0))
     stick_stiffness: float | None = option(
         None,
         unit="N/m",
-        help="of a sticking contact; default: of the contact ellipse along its major axis (Mindlin), at the ball load under the axial load",
+        help="of a sticking contact; default: Mindlin's along the major axis, at the ball load under the axial load",
         rule=optional(positive()),
     )
     damping: float | str = option(
         0.0,
         unit="N s/m",
-        help="normal, each contact; 'band': runs both ends of the band of time constants of rolling bearings",
+        help="normal, per contact; 'band': both ends of the band of time constants of rolling bearings",
         rule=word_or(at_least(0.0), "band"),
     )
     time_constant: float | None = option(
-        None, unit="s", help="tau of a dashpot c = tau k at each contact, k its stiffness", rule=optional(positive())
+        None, unit="s", help="tau of a dashpot c = tau k per contact, k its stiffness", rule=optional(positive())
     )
     loss_factor: float | None = option(
-        None, help="eta of a dashpot c = eta k / w at each contact, w the excitation's frequency", rule=optional(positive())
+        None, help="eta of a dashpot c = eta k / w per contact, w the excitation's frequency", rule=optional(positive())
     )
     law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
 
@@ -341,7 +341,7 @@ class Integration:
     )
     start: str = option(
         "orbit",
-        help="'orbit': on the steady orbit; 'ramp': the force grows smoothly; 'static': a sudden load",
+        help="'orbit': the steady orbit; 'ramp': smoothly growing force; 'static': sudden force",
         rule=one_of("orbit", "ramp", "static"),
     )
     method: Any = attrs.field(default=None, metadata={"plugin": "integrator"})

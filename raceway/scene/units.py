@@ -21,7 +21,7 @@ _Dimension = tuple[int, int, int, int, int]
 
 @attrs.frozen
 class Unit:
-    """``factor`` times pi to the power ``pi`` of the SI unit of this dimension: products of decimals are exact, pi is kept apart."""
+    """``factor`` times pi to the power ``pi`` of the SI unit of this dimension: products of decimals are exact, pi is separate."""
 
     dimension: _Dimension
     factor: Fraction = Fraction(1)

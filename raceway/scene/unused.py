@@ -27,7 +27,7 @@ def without_inherited(base: ReadTables, changed: ReadTables, changed_keys: Colle
 
     Parameters
     ----------
-    base : tables of a file;  changed : the same with some keys changed;  changed_keys : those keys, which stay and are told of
+    base : tables of a file;  changed : the same with some keys changed;  changed_keys : those keys, which stay and are reported
 
     Notes
     -----

@@ -134,7 +134,7 @@ class _Row:
     ) -> tuple[np.ndarray, LinearisedBalls]:
         """Balls in equilibrium between grooves at ``centre`` (Z, 2): places (Z, 2) and state; ``where`` is the first guess.
 
-        Near the last solution its linearisation tells places and forces better than any guess.
+        Near the last solution its linearisation predicts places and forces better than any guess.
         """
         force = self.force
         if self.last is not None and np.abs(centre - self.centre).max() < STEP * np.abs(self.where).max():

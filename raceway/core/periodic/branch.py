@@ -74,7 +74,7 @@ class Branch:
     ----------
     problem_at : parameter -> Problem; unknown coordinates, span and balls' numbers stay the same
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
-    tolerance : error of the motion over its size that meshes are kept fit for;  most_intervals : that they may have
+    tolerance : error of the motion over its size that meshes are refined for;  most_intervals : that they may have
     slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
     fastest : parameter -> highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
     aim : deviation that steps are chosen for; None: by the number of corrections
@@ -385,7 +385,7 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
     Neimark-Sacker     |mu| - 1 of the pair that crosses the unit circle; the multipliers outside change by two at once
 
     Found between two neighbours and located by Brent's method on the length of the step from the first one. Without damping
-    multipliers lie on the circle: a pair leaves it where two of them meet (a Krein collision), which is told as the last
+    multipliers lie on the circle: a pair leaves it where two of them meet (a Krein collision), which is reported as the last
     kind.
 
     References

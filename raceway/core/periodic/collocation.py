@@ -279,7 +279,7 @@ class Problem:
         return (nodes[:-1, None] + np.diff(nodes)[:, None] * self.rule.points).ravel()
 
     def force(self, angles: np.ndarray) -> np.ndarray:
-        """The whole excitation at angles (n,): (n, 5)."""
+        """The excitation at angles (n,): (n, 5)."""
         force = np.empty((len(angles), 5))
         forces(self.system.force, self.system.force_params, angles / self.clock, force)
         return force

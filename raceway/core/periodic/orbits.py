@@ -63,7 +63,7 @@ class Turning(NamedTuple):
     ``force`` (a ``FORCE``) with ``params`` (n, k), ``speed`` (n,) [rad/s], ``damping`` (n, 5, 5) of rotor and gyroscopic moments, ``mass``
     (n, 5); ``sense`` +1 or -1 of the turning frame, 0 where it stands; ``span`` [rad]; ``order`` (Z,) see
     ``raceway.core.periodic.collocation.Symmetry``; ``samples`` the least and the largest number of a span, powers of 2; ``tolerance`` of
-    the 1x line.
+    the 1x component.
     """
 
     force: Any
@@ -80,8 +80,8 @@ class Turning(NamedTuple):
 
 
 class Orbits(NamedTuple):
-    """What is computed: 1x lines of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
-    of the radial 1x line by the last doubling, over the line (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
+    """What is computed: 1x components of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
+    of the radial 1x component by the last doubling, over the component (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
     least contact forces (n, 2 Z), and those at T equidistant times of a turn (n, T, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
     unknowns and their derivatives by the angle over a span, in the frame (n, 2 d, 2 d), else (n, 0, 0)."""
 

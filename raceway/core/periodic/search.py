@@ -211,7 +211,7 @@ class _Neighbour:
 
 @attrs.frozen(eq=False)
 class Recorded:
-    """A turn of a motion that was integrated, to be followed to the periodic one that it settles on.
+    """A turn of a motion that was integrated, to be followed to the periodic one that it converges to.
 
     Attributes
     ----------
@@ -476,7 +476,7 @@ class PeriodicMotion:
     how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load", "from no
         damping" or "by Fourier collocation"
     floquet : its multipliers
-    fold : share of the force at which the branch from rest turns back for good; None where it leads to the whole force
+    fold : share of the force at which the branch from rest turns back for good; None where it leads to the full force
     coexisting : further motions under the same force that were met in the search
     """
 
@@ -520,9 +520,9 @@ def find(
     -----
     Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
-    branch that leads from the resting ring is followed round its folds, and every place where it meets the whole force is a
+    branch that leads from the resting ring is followed round its folds, and every place where it meets the full force is a
     motion.  The first one along the branch that is not unstable is taken; where all are, motions that the undamped ring's branch
-    leads to are tried, and else the one is taken that is left slowest.  Where the branch never reaches the whole force and all
+    leads to are tried, and else the one is taken that is left slowest.  Where the branch never reaches the full force and all
     found so far are unstable, motions at other speeds and loads are followed to this one.
 
     Raises

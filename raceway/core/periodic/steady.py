@@ -62,7 +62,7 @@ def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
 
 
 def synchronous_response(solved: Solved) -> tuple[complex, float]:
-    """Z [N/m] along the force and the major semi-axis [m] of the radial motion's 1x line."""
+    """Z [N/m] along the force and the major semi-axis [m] of the radial motion's synchronous (1x) component."""
     problem = solved.problem
     angles = 2.0 * np.pi * np.arange(_TABLE_SAMPLES) / _TABLE_SAMPLES
     push = np.empty((_TABLE_SAMPLES, 5))

@@ -313,7 +313,7 @@ class Revolution:
 
     @property
     def mass(self) -> float:
-        """Of the whole body [kg]."""
+        """Of the full body [kg]."""
         return float(self.sector.mass.sum() * self.divisions)
 
     @property

@@ -133,7 +133,7 @@ def graded_profile(
 
 
 def coarse_profile(shape: RingShape, bulk: float = BULK, surface: float = SURFACE, growth: float = GROWTH) -> Profile:
-    """A section with elements of ``surface`` [m] on the whole groove, growing to ``bulk`` [m]; ``race`` is the whole groove."""
+    """A section with elements of ``surface`` [m] all over the groove, growing to ``bulk`` [m]; ``race`` is the full groove."""
     low, high = _contact_edges(shape)
     cells = max(ceil((high - low) * shape.groove / min(surface, bulk) - 1e-9), 2)
     angles = np.linspace(low, high, cells + 1)

@@ -94,7 +94,7 @@ def eliminate(matrix):
 
 @jit(boolean(MATRIX))
 def solve(matrix):
-    """The same one right side after the other, which rounds otherwise: chaotic motions tell both apart."""
+    """The same one right side after the other, which rounds otherwise: chaotic motions differ."""
     if not _triangulate(matrix):
         return False
     n, width = matrix.shape

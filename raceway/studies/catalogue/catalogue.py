@@ -173,7 +173,7 @@ class _Listing(Answer):
 
 
 def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bool = False) -> _Listing:
-    """List bearings whose name matches PATTERN; of a single one, all numbers with source and scatter, and its frequencies.
+    """List bearings whose name matches PATTERN; of a single one, all numbers with source and uncertainty, and its frequencies.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def infer(
     Returns
     -------
     Inferred
-        Each number with its scatter and reason; ``bearing()`` is the [bearing] table of a scene
+        Each number with its uncertainty and reason; ``bearing()`` is the [bearing] table of a scene
 
     Raises
     ------
@@ -270,7 +270,7 @@ def infer_texts(
     maker: str | None = None,
     conformity: float | None = None,
 ) -> Inferred | _InferredTable:
-    """Infer ball count, ball diameter, pitch diameter and conformity, each with its scatter and reason.
+    """Infer ball count, ball diameter, pitch diameter and conformity, each with its uncertainty and reason.
 
     ISO 281 and ISO 76 say how ratings follow from balls; all angles of a size are met together, with a whole number of balls of a
     usual size. TABLE is a CSV file of many bearings with the columns name, bore_mm, outer_diameter_mm, width_mm,
@@ -286,7 +286,7 @@ def infer_texts(
     width : with a unit: "20 mm"
     ratings : contact angle [deg], dynamic and static rating: "15:47 kN:43 kN"
     pairs : axial stiffness of a preloaded pair: "15:145 N:51 N/µm"
-    maker : whose practice of rating it is: NSK, NMB, GMN; None: what explains the numbers better
+    maker : rating conventions of NSK, NMB or GMN; None: those that fit better
     conformity : of both grooves, above 0.5 and at most 0.6; None: from --pair, else 0.522
     """
     if conformity is not None and not 0.5 < conformity <= 0.6:

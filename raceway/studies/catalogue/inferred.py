@@ -119,7 +119,7 @@ class Inferred(Answer):
         return {**table, "rings": dict(steel), "balls": dict(steel)}
 
     def to_dict(self) -> Tables:
-        """Plain tables: numbers with scatter and reason, checks, the table [bearing]."""
+        """Plain tables: numbers with uncertainty and reason, checks, the table [bearing]."""
         return {
             "names": list(self.printed.names),
             "practice": self.practice,
@@ -217,7 +217,7 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         ball_diameter=_Number(
             best.ball_diameter,
             max(map(abs, best.dynamic_errors)) / 1.8,
-            f"usual size, {size_words(best.ball_diameter)}; C alone leaves the scatter",
+            f"usual size, {size_words(best.ball_diameter)}; C alone leaves the uncertainty",
         ),
         pitch_diameter=_Number(best.pitch_factor * size.mean_diameter, _PITCH, _why_pitch(best.pitch_factor)),
         conformity_inner=inner,

@@ -116,7 +116,7 @@ class Fitted(Answer):
         answer = self.estimate
         out = [_sentence(combination, self._numbers) for combination in answer.undetermined]
         if answer.freedom == 0 and not np.isfinite(answer.half).all() and not answer.undetermined:
-            out.append("as many data as free numbers, and no stated errors: nothing tells how well the numbers are known")
+            out.append("as many data as free numbers, and no stated errors: nothing measures how well the numbers are known")
         out += [
             f"{name} lies at the end of its range: the data ask for more than the scene's rules allow"
             for name in answer.at_limit
@@ -211,7 +211,7 @@ def _sentence(combination: Combination, numbers: Mapping[str, tuple[float, float
     names, moves = " and ".join(combination.changes), f"moves them by {combination.moves:.2g} standard errors"
     if len(parts) == 1:
         return f"the data do not determine {names}: {parts[0]} {moves}. Do not free it"
-    remedy = "Free one of them less, or measure what tells them apart"
+    remedy = "Free one of them less, or measure what separates them"
     return f"the data do not determine {names} together: {' with '.join(parts)} {moves}. {remedy}"
 
 

@@ -179,7 +179,7 @@ class Identified(Answer):
                 },
                 "identification": self._identification(),
                 "uncertainty": {
-                    "how": "half-widths at 95 %: scatter of the blocks of turns, slow roll, marks between samples, least squares against "
+                    "how": "half-widths at 95 %: spread of the blocks of turns, slow roll, marks between samples, least squares against "
                     "whole-turn Fourier, the tilt stiffness that is assumed; what is taken as known of the rig is in `sensitivities`",
                     "parts": {
                         name: {"stiffness": part[0], "damping": part[1] if marked else None}

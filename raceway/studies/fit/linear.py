@@ -144,7 +144,7 @@ def _spectra_of(signals: Signals) -> _Spectra:
         raise SceneError.at(source, None, text)
     for name in (*(force for _, force in pairs), *(moved for moved, _ in pairs)):
         if np.ptp(columns[name]) <= 1e-12 * np.abs(columns[name]).max():
-            raise SceneError.at(source, None, f"'{name}' is constant: it tells nothing. Is it connected?")
+            raise SceneError.at(source, None, f"'{name}' is constant. Is it connected?")
     displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
     count, interval = len(force), float(steps.mean())
     omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)

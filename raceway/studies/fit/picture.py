@@ -154,7 +154,7 @@ def draw_orbits(answer: Identified, axes: Axes) -> None:
     axes.plot(plane.real, plane.imag, color="#d3dae1", linewidth=0.5, label="as measured")
     circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
     circles: list[tuple[str, complex, str, str]] = [
-        ("1x line", answer.component.forward, _GREY, "--"),
+        ("1x", answer.component.forward, _GREY, "--"),
         ("less the run-out", state.sensor, _BLUE, "-"),
         ("shaft's bow", state.sensor - state.deflection, _RED, ":"),
         ("bearing", state.deflection, _GREEN, "-"),

@@ -351,7 +351,7 @@ def kind_of(kind: str | None, path: str | Path | None) -> str:
     if kind is None and path is not None:
         kind = _ENDINGS.get(Path(path).suffix.lower())
         if kind is None:
-            raise SceneError.at("path", str(path), f"tells its kind by the ending: one of {', '.join(_ENDINGS)}")
+            raise SceneError.at("path", str(path), f"states its kind by the ending: one of {', '.join(_ENDINGS)}")
     if kind not in PROGRAMS:
         raise SceneError.at("kind", kind, f"must be one of {', '.join(PROGRAMS)}")
     return kind

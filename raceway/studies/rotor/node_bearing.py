@@ -205,7 +205,7 @@ def node_bearing(
     if not damping >= 0.0 or not np.isfinite(damping):
         raise SceneError.at("damping", damping, "must be a finite damping of at least 0 N s/m")
     if scene.contact.friction > 0.0:
-        rule = "takes work from every motion, which a stiffness does not tell: set it to 0 and give `damping` instead"
+        rule = "takes work from every motion, which a stiffness does not contain: set it to 0 and give `damping` instead"
         raise SceneError.at("contact.friction", scene.contact.friction, rule)
     find = default_registry().find
     scene = attrs.evolve(

@@ -120,7 +120,7 @@ def check_name(path: Path) -> None:
         For an ending other than .toml and .json.
     """
     if path.suffix.lower() not in (".toml", ".json"):
-        raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and tells them by the ending: choose one of them")
+        raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and distinguishes them by the ending: choose one of them")
 
 
 def _smoothing(table: Coefficients) -> Mapping[str, float]:

@@ -38,7 +38,7 @@ def _rotating(selection: Selection) -> Matrices:
     kind = selection.value("excitation.kind")
     if kind == "unidirectional":
         raise RacewayError(
-            "a force along one direction does not tell whether the bearing is the same in the other one. Sweep with "
+            "a force along one direction does not show whether the bearing is the same in the other one. Sweep with "
             f"excitation.kind = bidirectional, over several directions with --grid {DIRECTION}=0,45,90, or take the tangent "
             "of the equilibrium with --from tangent"
         )
@@ -48,7 +48,7 @@ def _rotating(selection: Selection) -> Matrices:
     if share > _MOST_ANISOTROPY:
         raise RacewayError(
             f"the bearing is not isotropic: the orbit's counter-rotating part reaches {share:.1%} of the rotating one (at most "
-            f"{_MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not tell them. Take the tangent of the "
+            f"{_MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not determine them. Take the tangent of the "
             "equilibrium with --from tangent, or sweep a fixed force over both directions with excitation.kind = unidirectional "
             f"and --grid {DIRECTION}=0,45,90"
         )
@@ -102,7 +102,7 @@ def _directions(selection: Selection) -> Matrices:
         if widest > _MOST_ANISOTROPY:
             raise RacewayError(
                 f"a force along y moves the ring along z by {widest:.1%} of its motion along y: cross terms are there, and two "
-                f"directions do not tell them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
+                f"directions do not determine them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
             )
         cross = np.zeros_like(h[0])
         note = f"no cross terms: a force along one direction moves the ring across by at most {widest:.1e} of its motion"

@@ -197,8 +197,8 @@ _REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
 #: name, changes, words of the warning, what it is about.
 _WARNINGS: tuple[tuple[str, Tables, str, str], ...] = (
     (
-        "axial load that unseats the bearing", {"load.axial": -1000.0, **STATIC, "excitation": None},
-        "the bearing unseats", "grooves without an end would hold the ring on the other side",
+        "axial load that opens the bearing", {"load.axial": -1000.0, **STATIC, "excitation": None},
+        "the bearing loses axial contact", "grooves without an end would hold the ring on the other side",
     ),
     (
         "contact ellipse beyond the groove's edge", {"load.axial": 1e5, "excitation": None},
@@ -258,7 +258,7 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
 
     Parameters
     ----------
-    tables : plain tables of a user's scene; the base scene and the whole catalogue when None
+    tables : plain tables of a user's scene; the base scene and the full catalogue when None
 
     Raises
     ------

@@ -45,7 +45,7 @@ _STEPS, _TURNS = 400, 50
 _SMALL = 1e-6
 #: Growth of a bounded motion, and of one that grows.
 _BOUNDED, _GROWING = 20.0, 1e3
-_SWINGS = "at 0.98 of the limit a bounded motion swings to 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up"
+_SWINGS = "at 0.98 of the limit a bounded motion reaches 1 / sqrt(1 - 0.98^2) = 5 times its start, and modes add up"
 _GROWS = "1.49 a step at 1.02 of the limit; a nonlinear contact stops the growth where it opens"
 
 
@@ -64,7 +64,7 @@ def many_steps(rows: Rows, bench: Bench, integrator: str, steps: int, factor: fl
         raise ConvergenceError("contacts open or stay closed, unlike what this case is for: change its amplitude")
     slope, worst = _trend(at, record)
     if opens:
-        bound, why = 1e-3, "where contacts open the force is not smooth, and the near energy is kept to some order only"
+        bound, why = 1e-3, "where contacts open the force is not smooth, and the near energy is conserved to some order only"
     elif loses:
         bound, why = 1e-6, "a dissipative method or law may lose energy, not gain it"
     else:
@@ -123,7 +123,7 @@ def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) 
     setting = {"speed [m/s]": speed, "steps a contact": steps}
     why = "one step lies up to a hundredth of the contact's time from the peak"
     rows.check("greatest force [N]", (float(record.contact_force.max()), energy), why, Limit.equal(force, 0.02), at=setting)
-    within, why = 0.01, "the energy swings by the square of the phase a step; what is left of it when the contact opens"
+    within, why = 0.01, "the energy varies by the square of the phase a step; what is left of it when the contact opens"
     if method.dissipative:
         within, why = 0.1, "a dissipative method takes part of an impact that few steps resolve"
     rows.check("speed of the rebound [m/s]", (departure, energy), why, Limit.equal(rebound, within), at=setting)
@@ -154,7 +154,7 @@ def _solved_impact(system: System, mass: float, speed: float, depth: float) -> t
 
 
 def deep_penetration(rows: Rows, bench: Bench, integrator: str, depth: float) -> None:
-    """The ring let go far inside the balls: it flies out, and no energy is made; by a law that loses none, none is lost."""
+    """The ring released far inside the balls: it flies out, and no energy is made; by a law that loses none, none is lost."""
     at = bench.over(UNDAMPED).still()
     start = at.displaced(np.array([depth, 0.3 * depth, 0.0, 0.0, 0.0]))
     first = at.system.evaluate(start.q, ball=start.ball)
@@ -165,7 +165,7 @@ def deep_penetration(rows: Rows, bench: Bench, integrator: str, depth: float) ->
     if at.dissipative:
         energy = balance.kinetic + balance.stored - balance.work
         drift, words = float((energy - energy[0]).max() / np.abs(energy).max()), "largest gain of energy over the motion's"
-    why = "the energy of so coarse a motion swings by (w dt)^2 / 4 = 0.3 % where smooth, more where contacts open"
+    why = "the energy of so coarse a motion varies by (w dt)^2 / 4 = 0.3 % where smooth, more where contacts open"
     rows.check(words, (drift, drift), why, Limit.at_most(0.03), at={"depth [m]": depth, "step/limit there": 0.05})
 
 

@@ -311,7 +311,7 @@ def refusal(rows: Rows, bench: Bench, words: str, reason: str) -> None:
 
 
 def warning(rows: Rows, bench: Bench, words: str, reason: str) -> None:
-    """A scene that has an answer, and something that a user must be told about it."""
+    """A scene that has an answer, and something that a user must know about it."""
     rows.warned(words, reason, bench.result().warnings)
 
 

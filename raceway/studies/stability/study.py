@@ -215,7 +215,7 @@ class Stability(Answer):
         """The study as Markdown: what failed first, then a table for each case."""
         bad = [attrs.asdict(row) for row in self.failed]
         counts = (
-            f"{self._counted}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} cases kept from before); "
+            f"{self._counted}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} stored cases); "
             f"{self.left_out} cases not asked for."
         )
         lines = [f"# {self.title}", "", counts, *(["", "## Failed", "", *_table(bad)] if bad else [])]
@@ -248,7 +248,7 @@ class Stability(Answer):
         for row in self.failed:
             cells = ", ".join(cell for name, cell in _cells(row).items() if cell and name != "verdict")
             yield Words(f"failed: {cells}. {row.note or row.reason}", "red")
-        yield f"{self._counted}{f', {self.reused} kept from before' if self.reused else ''}, {self.seconds:.0f} s"
+        yield f"{self._counted}{f', {self.reused} stored' if self.reused else ''}, {self.seconds:.0f} s"
         if self.left_out and not self.by_row:
             yield f"left out: {self.left_out} cases that take longer; --all runs them"
 
@@ -270,11 +270,11 @@ def stability(
     """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
 
     Without --only or --all a set of quick cases is run. With SCENE, that scene is put through the cases that suit any scene.
-    Writes stability.json and stability.md. Finished cases are kept in DIR/points.sqlite and reused.
+    Writes stability.json and stability.md. Finished cases are stored in DIR/points.sqlite and reused.
 
     Parameters
     ----------
-    scene : plain tables; the whole catalogue when None
+    scene : plain tables; the full catalogue when None
     only : cases whose name holds these words, row by row
     every : all cases, not only those of a minute: some ten minutes
     processes : that work at a time; 0: in this one, without guard against a hang
@@ -309,7 +309,7 @@ def measured(
     cases: Sequence[Case], processes: int, registry: Registry, store: Store, plugins: Sequence[Path] = (),
     on_progress: OnProgress | None = None, patience: float = _PATIENCE_S,
 ) -> tuple[list[_Row], int]:  # fmt: skip
-    """Rows of all cases, and how many cases were kept from before; none can stop the others by hanging or dying.
+    """Rows of all cases, and how many cases were stored before; none can stop the others by hanging or dying.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Row:
 
     Attributes
     ----------
-    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is kept
+    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is met
     note : why there is no computed number (then computed and error are None, and ok is False), or ""
     """
 

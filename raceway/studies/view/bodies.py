@@ -177,7 +177,7 @@ class Part:
 
     Attributes
     ----------
-    colour : of the whole; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
+    colour : of the surface; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
     load : of a ball [N], for its colour; None for others
     ball : number of the ball; None for others
     """

@@ -330,7 +330,7 @@ def view(
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables, which is run first; or the Result of a run
-    out : folder of the pictures; None: they are kept in memory
+    out : folder of the pictures; None: they stay in memory
     page : also write view.html: the bearing to turn about, tables, all pictures; it opens without a network
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``

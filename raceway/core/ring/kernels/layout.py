@@ -116,7 +116,7 @@ def ring_tangent(table, arm, work, direction, row, K):
     Notes
     -----
     Each ball's tangent is taken to the three coordinates x, rho and u first; all entries are then sums times 1, cos, sin
-    and their products, kept in registers: three times as fast as adding each ball to K in memory.
+    and their products, held in registers: three times as fast as adding each ball to K in memory.
     """
     xx, xr_c, xr_s, rx_c, rx_s = 0.0, 0.0, 0.0, 0.0, 0.0
     xu_c, xu_s, ux_c, ux_s = 0.0, 0.0, 0.0, 0.0
