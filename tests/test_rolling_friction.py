@@ -6,51 +6,34 @@ import pytest
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ellipe
 
-from raceway.core.contact.hertz import ellipse
 from raceway.core.contact.losses import _mean_slip
 from raceway.core.elementary import exponential, logarithm
-from raceway.core.rolling_friction import Lubrication, _spin_shape, losses
+from raceway.core.rolling_friction import _spin_shape, losses
 from validation.rolling_friction import (
+    INLET_MOMENT,
+    OIL,
+    PITCH,
+    SPEED,
+    D,
     LoadedContacts,
     ball_rates,
-    drag_force,
+    brain,
+    contacts,
+    drag_over_sphere,
     hydrodynamic_force,
-    hysteresis_moment,
+    hysteresis_loss,
+    inlet_moment,
+    rolling_without_oil,
     torques,
     traction_coefficient,
 )
-
-OIL = Lubrication(0.03, 2e-8, 0.04, 0.14, 870.0, 0.05, 5e6, 0.01, 0.44)
-#: A ball of 4.365 mm between grooves as the open program D-BRAIN tests it: 136 N, 10 000 r/min, angle 0.
-D, RACE, GROOVE = 4.3650e-3, 40.635e-3, 2.3571e-3
-PITCH = 2.0 * RACE + D
-SPEED = 0.25 * (PITCH**2 - D**2) / PITCH * 10_000.0 * np.pi / 30.0
-
-
-def contacts(load=(200.0, 200.0), angle=(0.26, 0.26), diameter=9.525e-3, pitch=46e-3, conformity=0.52, modulus=2.26e11):
-    """One ball."""
-    sign, g = np.array([-1.0, 1.0]), diameter * np.cos(angle) / pitch
-    along, across = 2.0 / (diameter * (1.0 + sign * g)), (2.0 - 1.0 / conformity) / diameter
-    axes = [
-        ellipse(rx + across, (rx - across) / (rx + across), 0.5 * modulus).semi_axes(q)
-        for rx, q in zip(along, load, strict=True)
-    ]
-    major, minor = np.array(axes).T[:, None, :, None]
-    column = np.array([load, angle])[:, None, :, None]
-    return LoadedContacts(*column, major, minor, diameter, pitch, conformity, modulus, 0.0)
-
-
-def brain():
-    """That ball's contact with the inner race, at both places."""
-    axes = (np.full((1, 2, 1), half) for half in (429.5e-6, 76.762e-6))
-    return LoadedContacts(np.full((1, 2, 1), 136.0), np.zeros((1, 2, 1)), *axes, D, PITCH, GROOVE / D, 207e9 / 0.91, 0.0)
 
 
 def test_rolling_resistance_has_the_printed_moment():
     """``RollingResistance0`` of D-BRAIN's tests; it states pi and lengths to other digits than 1.3e-5."""
     oil = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30)
     moment = hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
-    assert moment == pytest.approx(0.7780845243544707e-3, rel=2e-5)
+    assert moment == pytest.approx(INLET_MOMENT, rel=2e-5)
 
 
 def shear_of_the_inlet(minor, along, viscous, alpha):
@@ -89,12 +72,8 @@ def test_heat_of_the_inlet_takes_a_part_of_the_rolling_resistance():
 
 
 def test_hysteresis_is_that_of_a_loss_of_two_percent():
-    """Johnson, Contact Mechanics, 9.2: M = 3/16 c a Q of a ball on a plane; 1 to 3 % of the elastic work were measured on steel."""
-    radius, e = 4.7625e-3, 226.4e9
     for load in (1.0, 100.0):
-        a = np.cbrt(1.5 * load * radius / e)
-        ball = LoadedContacts(*(np.full((1, 2, 1), v) for v in (load, 0.0, a, a)), 2.0 * radius, 1.0, 0.52, e, 0.0)
-        assert 0.02 < hysteresis_moment(ball)[0, 0, 0] / (3.0 / 16.0 * a * load) < 0.026
+        assert 0.02 < hysteresis_loss(load) < 0.026
 
 
 @pytest.mark.parametrize(("spin", "curvature"), [(1.0, 0.0), (0.0, 1.0), (0.2, 1.0), (0.5, 1.0), (0.8, 1.0), (1.0, 1.0)])
@@ -158,9 +137,7 @@ def test_traction_follows_eyring_up_to_its_limit():
 
 
 def test_drag_is_that_of_a_sphere():
-    """By hand: mixture 0.01 * 870 + 0.99 * 1.2 = 9.888 kg/m3, 0.5 * 9.888 * 0.44 * pi/4 * 0.009525^2 * (0.023 * 500)^2 N."""
-    force = drag_force(contacts(), OIL, np.array([[[500.0]]]))
-    assert float(force[0, 0, 0]) == pytest.approx(0.5 * 9.888 * 0.44 * 0.25 * np.pi * 9.525e-3**2 * 11.5**2, rel=1e-12)
+    assert drag_over_sphere() == pytest.approx(1.0, rel=1e-9)
 
 
 def test_limits_of_the_torque():
@@ -168,13 +145,7 @@ def test_limits_of_the_torque():
     ball = contacts()
     at_rest = losses(ball.compiled(), OIL, still)
     assert at_rest.contact_power.sum() == at_rest.drag_power[0] == at_rest.seal_power[0] == 0.0
-    # Pure rolling at angle 0 without oil on bodies that do not deform: nothing is lost.
-    rolling = attrs.evolve(
-        contacts(angle=(0.0, 0.0)), semi_major=np.full((1, 2, 1), 1e-12), semi_minor=np.full((1, 2, 1), 1e-12)
-    )
-    dry = attrs.evolve(OIL, viscosity=1e-30, oil_fraction=0.0, drag_coefficient=0.0)
-    none = losses(rolling.compiled(), dry, speed)
-    assert (none.rolling + none.sliding + none.drag.sum()).max() < 1e-12
+    assert rolling_without_oil() < 1e-12
     half = attrs.evolve(ball, load=np.array([[[0.0], [200.0]]]), angle=np.array([[[np.nan], [0.26]]]))
     opened = losses(half.compiled(), OIL, speed)
     assert opened.contacts[0, 0, 0] == 0.0 and opened.contacts[0, 1, 0] > 0.0
@@ -221,10 +192,7 @@ def test_the_compiled_loop_sums_the_terms(sizes, outer_race):
 
 
 def test_the_compiled_loop_has_the_printed_moment():
-    """As above, from the torque on the shaft: moment over radius is that force."""
-    oil, turns = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30), 10_000.0 * np.pi / 30.0
-    force = losses(brain().compiled(), oil, np.array([turns])).rolling[0, 0, 0] * turns / SPEED
-    assert force * 0.5 * D * (1.0 - D / PITCH) == pytest.approx(0.7780845243544707e-3, rel=2e-5)
+    assert inlet_moment() == pytest.approx(INLET_MOMENT, rel=2e-5)
 
 
 def test_exponential_and_logarithm_are_exact():

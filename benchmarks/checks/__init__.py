@@ -9,6 +9,7 @@ words                 length of the documents, terms that the field does not kno
 pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
 points                time of a point of ``raceway.function``, and equality with runs
+quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 
