@@ -168,7 +168,7 @@ def test_a_folder_that_others_may_write_is_not_used(folder, mode):
     folder.parent.chmod(0o755)
     array_cache._warn_refused.cache_clear()
     make = Maker()
-    with pytest.warns(RuntimeWarning, match="is not kept: others may write in"):
+    with pytest.warns(RuntimeWarning, match="is not stored: others may write in"):
         get(make), get(make)
     assert make.calls == 2
 

@@ -69,7 +69,7 @@ def test_balls_that_unload_during_a_turn_are_told():
 
 def test_a_bearing_that_unseats_during_a_turn_is_told():
     """On free tilts a force of twenty times the axial load tilts the ring until balls run below 0 deg; loaded, at rest, none does."""
-    words = "the bearing unseats during a turn"
+    words = "the bearing loses axial contact during a turn"
     for force, said in ((2000.0, True), (100.0, False)):
         excitation = {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": force}
         free = {"supports": {"tilt": "free"}, "integrator": {"kind": "quasi_static"}, "load": {"axial": 100.0}}
@@ -148,7 +148,7 @@ def test_a_row_that_lifts_off_is_told():
 
 @pytest.mark.parametrize(("axial", "angle"), [(0.0, 0.0), (1.0, 0.03), (100.0, 2.56)])
 def test_a_row_that_the_radial_load_unseats_is_told(axial, angle):
-    text = of_one_kind(static(load={"axial": axial, "radial": [2000.0, 0.0]}), "the bearing unseats")
+    text = of_one_kind(static(load={"axial": axial, "radial": [2000.0, 0.0]}), "the bearing loses axial contact")
     assert f"loaded ball is {angle:.2f} deg, 15 deg without loads" in text
     # At least one ball stands at atan(F_a / F_r) or below.
     assert angle <= np.degrees(np.arctan2(axial, 2000.0)) + 0.005
@@ -241,7 +241,7 @@ def test_an_error_that_is_not_known_is_a_warning_with_its_reason():
     (text,) = [w for w in computed(integrator={"turns": 1}).warnings if "the error of Z" in w]
     assert (
         text
-        == "the error of Z is not estimated: that of the transient is not known (a single turn tells nothing of a transient)"
+        == "the error of Z is not estimated: that of the transient is not known (a single turn contains no measure of a transient)"
     )
     assert not computed(integrator={"turns": 3}).warnings
 

@@ -267,7 +267,7 @@ class ElasticSystem:
 
     @contextmanager
     def without_friction(self) -> Iterator[None]:
-        """Contacts carry no friction inside; its history is kept."""
+        """Contacts carry no friction inside; its history is unchanged."""
         contact = self.contact
         if contact is None:
             yield

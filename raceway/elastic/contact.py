@@ -266,7 +266,7 @@ class Contact(ABC):
 
     @property
     def near(self) -> Near:
-        """The displacements that the places hang on; another object when B was made anew."""
+        """The displacements that the places depend on; another object when B was made anew."""
         if self._near is None or self._near[0] is not self.move:
             self._near = self.move, Near.of(self.move)
         return self._near[1]

@@ -173,7 +173,7 @@ class _Front:
 
 
 class Fronts:
-    """Factors of A with kept unknowns, of ``factored`` or of what it gave before.
+    """Factors of A with retained unknowns, of ``factored`` or of what it gave before.
 
     Attributes
     ----------
@@ -220,7 +220,7 @@ class Fronts:
         return sum(front.lower.nbytes + front.across.nbytes for front in self.fronts)
 
     def forward(self, right: np.ndarray) -> None:
-        """Eliminate in place: of right sides (3 n, k) float32, what is left acts on the kept unknowns."""
+        """Eliminate in place: of right sides (3 n, k) float32, what is left acts on the retained unknowns."""
         from scipy.linalg.blas import strsm
 
         for front in self.fronts:
@@ -230,7 +230,7 @@ class Fronts:
                 right[front.border] -= front.across.T @ part
 
     def backward(self, values: np.ndarray) -> None:
-        """In place: ``values`` (3 n, k) float32 holds what ``forward`` left, with the solution at the kept unknowns."""
+        """In place: ``values`` (3 n, k) float32 holds what ``forward`` left, with the solution at the retained unknowns."""
         from scipy.linalg.blas import strsm
 
         for front in reversed(self.fronts):
@@ -247,7 +247,7 @@ def factored(
     free: np.ndarray,
     on_front: Callable[[int, int], None] | None = None,
 ) -> Fronts:
-    """Eliminate all unknowns but those that are kept.
+    """Eliminate all unknowns but those retained.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ def factored(
     Raises
     ------
     ConvergenceError
-        A singular matrix: a motion that neither the kept nodes nor supports hold.
+        A singular matrix: a motion that neither the retained nodes nor supports hold.
     """
     position = np.full(len(free), -1, dtype=np.int64)
     waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}

@@ -253,7 +253,7 @@ class LinearSolver:
 
     Notes
     -----
-    A frame that moves drags the whole system along: with Phi = the free nodes' displacement under a unit motion of each
+    A frame that moves drags the system along: with Phi = the free nodes' displacement under a unit motion of each
     frame, solved for whenever the multigrid is made, y = (q, Phi q + w) splits the matrix into two blocks that hardly know of
     each other: Phi^T A Phi, a few numbers, and multigrid for w (bodies, contacts, masses).
     """

@@ -30,7 +30,7 @@ def searched(slope: float, at: Callable[[float], tuple[T, float, bool]]) -> T:
     Notes
     -----
     -phi'(s) = step . rest falls from one side of the minimum to the other by as much as points that close are stiffer than the
-    bodies.  The minimum is kept between the longest part s that falls short of it and the shortest one beyond: a part that is
+    bodies.  The minimum is bracketed between the longest part s that falls short of it and the shortest one beyond: a part that is
     only cut, and never lengthened, stops short of where points close, in this iteration and in all that follow.
     """
     part, short, beyond, at_short, at_beyond = 1.0, 0.0, np.inf, slope, 0.0

@@ -142,7 +142,7 @@ class ResultantContact(Contact):
     -----
     The centres of ball and groove approach by -g, the law's own approach by -h: h = g - m Q(h) with the compliance m of the
     meshes below the contact, which Q compresses already.  From dQ = (dg - m dQ) dQ/dh follows dQ/dg = Q' / (1 + m Q'),
-    stiffer than the law's Q' = dQ/dh < 0.  A law that is told the rate of the gap is told that of g.
+    stiffer than the law's Q' = dQ/dh < 0.  A law that depends on the rate of the gap gets that of g.
 
     Where a law has less compliance than that, the force goes on along its tangent: iterations may pass there, but what ends
     there is refused by ``refuse``.

@@ -211,7 +211,7 @@ def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
     Notes
     -----
     The contacts carry the excitation less the inertia of ring and rotor.  Equilibria under these forces a little before and
-    after tell velocity and acceleration: of a displacement at the excitation's frequency exactly.  Elastic bodies move
+    after give velocity and acceleration: of a displacement at the excitation's frequency exactly.  Elastic bodies move
     further than rigid ones; the inertia is scaled by how much further, found by a first equilibrium.
     """
     speed = 2.0 * np.pi / orbit.period

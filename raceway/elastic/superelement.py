@@ -157,7 +157,7 @@ class Part:
     Parameters
     ----------
     copies : Copies
-    contact : (k,) nodes of the first copy that are kept beside its cut planes
+    contact : (k,) nodes of the first copy that are retained beside its cut planes
     fronts : Fronts
 
     Attributes
@@ -221,16 +221,16 @@ class Part:
 
     @property
     def schur(self) -> np.ndarray:
-        """(kept, kept) of the kept unknowns, just after they were factored."""
+        """(k, k) of the retained unknowns, just after they were factored."""
         assert self.fronts.schur is not None
         return self.fronts.schur
 
     def places(self, nodes: np.ndarray) -> np.ndarray:
-        """Where the unknowns of kept nodes stand among the kept ones, (3 nodes,)."""
+        """Where the unknowns of retained nodes stand among the retained ones, (3 nodes,)."""
         unknowns = of_nodes(nodes)
         position = np.searchsorted(self.fronts.kept, unknowns)
         assert np.array_equal(self.fronts.kept[np.minimum(position, len(self.fronts.kept) - 1)], unknowns), (
-            "a held node is kept"
+            "a held node is retained"
         )
         return np.asarray(position)
 

@@ -45,7 +45,7 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     3. ``build(pairs)``: parameters, an array (n, k) of float64, from ``ContactPairs``.
     4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
        approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
-    5. A law for both discretisations tells them apart by ``pairs.area``, which is None for resultants.
+    5. A law for both discretisations distinguishes them by ``pairs.area``, which is None for resultants.
     6. May be left out, as the rest, with the defaults of ``raceway.framework.duties``: ``constraint`` = True says that the law stands for
        no penetration at all: condensed bodies then hold the gap exactly and do not call the kernel.
     7. ``foundation`` = True says that a resultant is the integral of a pressure that follows from the overlap at each place: results
@@ -82,7 +82,7 @@ class ContactPairs:
     reference_load : load of a ball under the axial load alone [N]
     area : area of a surface point [m2], None for resultants; each row then stands for the points of a contact
     length : of a line contact [m], which has A = 0 and no Hertz factor (nan); None where contacts are ellipses
-    ring_young, ring_poisson, ball_young, ball_poisson : materials [Pa]; None where bodies do not tell them
+    ring_young, ring_poisson, ball_young, ball_poisson : materials [Pa]; None where bodies have none
     running_angle : of the running direction against the minor semi-axis [rad]; 0 in ball bearings
     entraining_speed : mean speed of both surfaces against the contact, along the running direction [m/s], from the kinematics at
         the running speed and the loaded contact angles; None at standstill
@@ -141,7 +141,7 @@ class ContactPairs:
 
 @attrs.frozen(eq=False)
 class LawReport:
-    """What a law tells of the contacts in the running equilibrium.
+    """What a law reports of the contacts in the running equilibrium.
 
     Attributes
     ----------
@@ -230,7 +230,7 @@ class Identifier(attrs.AttrsInstance, Protocol):
     4. Where ``series`` holds several speeds of one record, ``series_error`` may hold the relative error of each Z; of a changing
        speed it is replaced by the distance from the steady motion where that can be solved for.
     5. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
-       refuses more than the samples of a turn tell.
+       refuses more than the samples of a turn determine.
     """
 
     name: ClassVar[str]
@@ -251,7 +251,7 @@ class Mesher(attrs.AttrsInstance, Protocol):
     3. The same bearing gives the same mesh.
     4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
     5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
-       ``raceway.core.mesh.quality.Prediction``; None: it cannot tell); what cannot be meshed raises ``MeshError`` here
+       ``raceway.core.mesh.quality.Prediction``; None: unknown); what cannot be meshed raises ``MeshError`` here
        already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
     """
 
@@ -441,10 +441,10 @@ class Cost:
 
     Attributes
     ----------
-    seconds : of processor time, kernels compiled, of the bodies nothing kept from before
+    seconds : of processor time, kernels compiled, of the bodies nothing cached
     once : seconds of it that a second run on the same bodies does not take again
     unknowns : None for those of the ring and the balls alone
-    mesh : ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+    mesh : ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or predicted
     scales : whether a slower machine takes longer in proportion
     at_least : whether it may be any number of times more: a mesh whose size is not known before it is read
     bytes : resident memory of the process at the peak; 0 where it is small, or not known
@@ -466,9 +466,9 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
         ``Problem`` of ``raceway.planning.resolve`` has the tables of the scene, and what follows from them.
     2. ``traits(problem)``: ``Traits``.
     3. ``stable_step(problem)``: rough stable limit of explicit steps [s]; None where nothing is known.
-    4. ``decide(problem, parts)``: the bodies' own parts, each kept or left out with its reason (``raceway.planning.parts``).
+    4. ``decide(problem, parts)``: the bodies' own parts, each included or left out with its reason (``raceway.planning.parts``).
     5. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    6. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, nothing settled yet.
+    6. ``build(problem, plan)``: a ``raceway.bodies.model.Bearing``: arrays and kernels, no equilibrium yet.
     7. The fields of the class are the keys of the table [bodies] beside ``kind``.
     8. May be left out: ``unused(tables)``: (key, reason) for each key of a scene's tables that changes nothing with these bodies.
     9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,

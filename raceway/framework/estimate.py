@@ -117,7 +117,7 @@ class Estimate(Enum):
         "largest deviation of a single turn from all turns that are used",
         "how far single turns differ",
     )
-    SINGLE_TURN = ("a single turn tells nothing of a transient",)
+    SINGLE_TURN = ("a single turn contains no measure of a transient",)
     LEAKAGE = (
         "free vibration: its leakage, a plain against Hann's window over all turns that are used, and its shift of Z",
         "free vibration that has not died out",
@@ -140,7 +140,7 @@ class Estimate(Enum):
     )
 
     # The identification.
-    TWO_FITS = ("Fourier line against least squares", "two ways to fit the 1x line")
+    TWO_FITS = ("Fourier line against least squares", "two ways to fit the 1x component")
     MISFIT = (
         "largest misfit of K - m w^2 + j w C, over |Z| there: at {rpm:.6g} r/min",
         "K, C do not fit all speeds: worst at {rpm:.6g} r/min",
@@ -204,9 +204,9 @@ class Estimate(Enum):
         "what law '{kind}' adds to Hertz at the running speed is no error",
     )
     LAW_UNKNOWN = (
-        "law '{kind}' is calibrated to Hertz on elastic bodies, and nothing in a run tells how well: compare with "
+        "law '{kind}' is calibrated to Hertz on elastic bodies, and nothing in a run measures how well: compare with "
         "contact.discretisation = 'nodal' (docs/condensed.md has both for B7206C)",
-        "nothing tells how well '{kind}' keeps to Hertz",
+        "nothing measures how well '{kind}' keeps to Hertz",
     )
     OVERLAP = (
         "largest share of a contact's approach that the law lets the surfaces overlap; not part of the total",

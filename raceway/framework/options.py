@@ -38,7 +38,7 @@ def option(
     help : one sentence
     rule : validator, called as ``rule(None, attribute, value)``
     path : the value names a file, relative to the folder of the scene file
-    no_list : what to tell who gives a list or a table where one value is wanted
+    no_list : message for a list or a table where one value is wanted
 
     Examples
     --------
@@ -76,7 +76,7 @@ def worded(check: Rule, words: str, facts: ReadTables | None = None) -> Rule:
 
     Parameters
     ----------
-    check : called as ``check(None, attribute, value)``, value in the unit of the option; raises ValueError with the whole sentence
+    check : called as ``check(None, attribute, value)``, value in the unit of the option; raises ValueError with the full sentence
     words : what follows "must be"
     facts : keywords of the JSON schema, such as ``{"minimum": 0}``
 

@@ -88,7 +88,7 @@ class Registry:
         return self.manager.hook
 
     def add(self, plugin: object, source: str = "", distribution: str = "", version: str = "") -> None:
-        """Register a module or object with hook implementations; a fault is kept, not raised."""
+        """Register a module or object with hook implementations; a fault is recorded, not raised."""
         source = source or str(getattr(plugin, "__name__", type(plugin).__qualname__))
         self._register(plugin, source, distribution or source, version)
 

@@ -114,8 +114,8 @@ class Periodic:
 
     Notes
     -----
-    No transient, so ``integrator.turns`` and ``start`` count for nothing; ``steps_per_turn`` is the number of samples of the
-    answer, not of the method.  A force that turns over equal balls is solved over one ball pitch.  result.json tells the
+    No transient, so ``integrator.turns`` and ``start`` have no effect; ``steps_per_turn`` is the number of samples of the
+    answer, not of the method.  A force that turns over equal balls is solved over one ball pitch.  result.json has the
     Floquet multipliers in ``stability``.
     """
 

@@ -131,7 +131,7 @@ class Page:
         self._blocks.append(html)
 
     def html(self) -> str:
-        """The whole page."""
+        """The page."""
         style = files("raceway").joinpath("data/page.css").read_text(encoding="utf-8")
         links = "".join(f'<li><a href="#{anchor}">{_inline(heading)}</a></li>' for anchor, heading in self._sections)
         head = f"<h1>{_inline(self.title)}</h1>"

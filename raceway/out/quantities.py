@@ -143,7 +143,7 @@ def nested(quantities: Iterable[Quantity], result: object) -> Tables:
 # Of the 1x line.
 _ID = "identification"
 SPEED = Quantity("speed_rpm", "r/min", "speed of the excitation", f"{_ID}.speed_rpm")
-_FREQUENCY = Quantity("frequency", "Hz", "of the 1x line", f"{_ID}.frequency_hz", f"{_ID}.frequency_hz")
+_FREQUENCY = Quantity("frequency", "Hz", "of the synchronous (1x) component", f"{_ID}.frequency_hz", f"{_ID}.frequency_hz")
 FORCE_AMPLITUDE = Quantity("force_amplitude", "N", "amplitude of the 1x force", f"{_ID}.force_amplitude_n", f"{_ID}.force_amplitude", label="force")
 _Z = f"{_ID}.dynamic_stiffness"
 Z = Quantity("dynamic_stiffness", "N/m", "size of Z = F/x", f"{_Z}.abs", symbol="|Z|", label="|Z|")

@@ -104,7 +104,7 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:
             angles = f"{np.degrees(least):.2f} deg, {np.degrees(free):.3g} deg without loads"
             warnings.append(
-                f"{name} unseats: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
+                f"{name} loses axial contact: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
             )
     return warnings
 

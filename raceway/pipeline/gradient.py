@@ -425,7 +425,7 @@ def refuse_points(problem: Problem) -> None:
 
 
 def other_meshes(problem: Problem, changed: Problem) -> str:
-    """Why a changed problem tells no derivative: its bodies have other meshes; empty where they have the same."""
+    """Why a changed problem gives no derivative: its bodies have other meshes; empty where they have the same."""
     if problem.body_kind.same_bodies(changed):
         return ""
     return "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. bodies.kind = 'rigid' has one"

@@ -118,7 +118,9 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
             beyond.setdefault(text.split(" reaches ")[0], text)
     b = model.problem.bearing
     if b.radial_clearance is None and b.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
-        warnings.append("the bearing unseats during a turn: the contact angle of a loaded ball is zero or negative")
+        warnings.append(
+            "the bearing loses axial contact during a turn: the contact angle of a loaded ball is zero or negative"
+        )
     return (*warnings, *(f"during a turn {text}" for text in beyond.values()))
 
 

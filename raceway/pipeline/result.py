@@ -60,7 +60,7 @@ class Result(Answer):
     error, cost, stability, environment : the tables of result.json
     bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
     stated : numbers, tables and warnings of plug-ins of quantities
-    lines : spectral lines of the motion, empty where it was not recorded or its speed changes
+    lines : spectral components of the motion, empty where it was not recorded or its speed changes
     warnings : tuple of str, the weightiest first
     band : numbers [low, high] at both ends of the band of time constants, for ``contact.damping`` = "band"; all else is the low end's
     reports : what ``save`` writes beside result.json
@@ -452,7 +452,11 @@ def _identified_facts(result: Result) -> list[Fact]:
         K.fact(result, speed),
         damping,
         Z.fact(result),
-        ("orbit", f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm", "semi-axes of the 1x line"),
+        (
+            "orbit",
+            f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm",
+            "semi-axes of the synchronous (1x) component",
+        ),
     ]
     rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
     spread = K_MODEL.of(result)

@@ -327,7 +327,7 @@ def steady_record(
 
     Parameters
     ----------
-    motion : that settles on it: where several exist, the one near its last turn is taken
+    motion : that converges to it: where several exist, the one near its last turn is taken
     on_progress : called in the search, which what it raises ends
     """
     period = model.excitation.period_s

@@ -109,7 +109,7 @@ def settled_value(run: Identified) -> complex | None:
     -------
     complex or None
         None where a steady motion cannot be solved for (friction, laws with memory, bodies that are stepped from Python), is
-        not found, or is another one than the transient settles on.  Of a speed that changes, that at the speed of the stated Z.
+        not found, or is another one than the transient converges to.  Of a speed that changes, that at the speed of the stated Z.
     """
     if run.model.excitation.period_s is None:
         # The windows before lead to that one's motion, where several exist.
@@ -213,7 +213,7 @@ def _lasting(motion: Simulation, record: Record, value: complex) -> complex:
 
 @attrs.frozen
 class Run:
-    """Z [N/m] of a run without what its free vibration leaks into the 1x line, and its steps a turn."""
+    """Z [N/m] of a run without what its free vibration leaks into the 1x component, and its steps a turn."""
 
     value: complex
     steps: int

@@ -11,7 +11,7 @@ from raceway.planning.resolve import Problem, recorded_per_turn
 
 @attrs.frozen
 class Part:
-    """One part, and why it is kept or left out."""
+    """One part, and why it is included or left out."""
 
     part: str
     why: str
@@ -22,7 +22,7 @@ class Decisions:
 
     Parameters
     ----------
-    force : parts that are kept although the scene does not need them
+    force : parts that are included although the scene does not need them
     """
 
     def __init__(self, force: Collection[str] = ()) -> None:
@@ -31,13 +31,13 @@ class Decisions:
         self.left_out: list[Part] = []
 
     def decide(self, needed: bool, part: str, why: str, why_not: str = "") -> bool:
-        """Keep a part or leave it out, with ``why`` for both unless ``why_not`` differs; whether it is kept."""
+        """Keep a part or leave it out, with ``why`` for both unless ``why_not`` differs; whether it is included."""
         stays = needed or part in self.force
         (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not or why))
         return stays
 
     def keeps(self, name: str) -> bool:
-        """Whether a part was kept, by its name."""
+        """Whether a part was included, by its name."""
         return any(part.part == name for part in self.kept)
 
     def keep(self, part: str, why: str) -> None:

@@ -41,7 +41,7 @@ class ScenePlan(Shown):
     predicted_bytes : resident memory at the peak; 0 where it is small, or not known
     at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
     predicted_once_s : seconds of that which a second run on the same bodies does not take again
-    mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or can be told
+    mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or predicted
 
     Examples
     --------
@@ -70,7 +70,7 @@ class ScenePlan(Shown):
     at_least: bool = False
 
     def keeps(self, name: str) -> bool:
-        """Whether a part is kept, by its name."""
+        """Whether a part is included, by its name."""
         return any(part.part == name for part in self.kept)
 
     def to_dict(self) -> Tables:
@@ -107,7 +107,7 @@ def make_plan(scene: Scene, force: Collection[str] = ()) -> ScenePlan:
 
     Parameters
     ----------
-    force : parts that are kept although the scene does not need them: to measure what leaving them out saves
+    force : parts that are included although the scene does not need them: to measure what leaving them out saves
 
     Raises
     ------

@@ -127,7 +127,7 @@ class Problem(SceneTables):
 
     @property
     def force_alone_directs(self) -> bool:
-        """Whether nothing but the force tells one direction from another."""
+        """Whether nothing but the force distinguishes directions."""
         return self.excitation.sense != 0 and not any(self.load.radial) and not (any(self.load.moment) and self.tilts)
 
     @cached_property
@@ -305,12 +305,12 @@ class Problem(SceneTables):
 
     @Derived
     def depends_on_start(self) -> tuple[bool, str]:
-        """Whether the answer depends on how the motion began, and a second run tells how far.
+        """Whether the answer depends on how the motion began, and a second run measures how far.
 
         Notes
         -----
         With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
-        fits over several speeds no transient is estimated: a second run of them would tell nothing more.
+        fits over several speeds no transient is estimated: a second run of them would add nothing.
         """
         if self.contact.friction == 0.0:
             return False, "contact.friction is 0"

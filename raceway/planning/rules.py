@@ -188,7 +188,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
         "identifier.kind",
         lambda p: p.excitation is not None and "phase" in p.identifier.method.needs and not has_phase(p.excitation),
-        lambda p: f"needs the phase of the excitation, which '{p.excitation.name}' does not tell: use 'sine_fit'",
+        lambda p: f"needs the phase of the excitation, which '{p.excitation.name}' does not define: use 'sine_fit'",
     ),
     Rule(
         "identifier.kind", lambda p: p.several_speeds and not _runs_speeds(p),

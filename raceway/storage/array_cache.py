@@ -273,7 +273,7 @@ def _trim(newest: Path) -> None:
 @cache
 def _warn_unwritable(folder: str, why: str) -> None:
     warnings.warn(
-        f"what was computed of the bodies cannot be kept in {folder} ({why}); the next run computes it again. Set "
+        f"what was computed of the bodies cannot be stored in {folder} ({why}); the next run computes it again. Set "
         "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway dev cache --clear.",
         RuntimeWarning,
         stacklevel=4,
@@ -283,5 +283,5 @@ def _warn_unwritable(folder: str, why: str) -> None:
 @cache
 def _warn_refused(fault: str) -> None:
     warnings.warn(
-        f"what is computed of the bodies is not kept: {fault}. Every run computes it again.", RuntimeWarning, stacklevel=4
+        f"what is computed of the bodies is not stored: {fault}. Every run computes it again.", RuntimeWarning, stacklevel=4
     )

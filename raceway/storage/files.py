@@ -122,7 +122,7 @@ def memory_for(size: int) -> Iterator[None]:
     Notes
     -----
     A limit of the operating system on address space: what C libraries inflate or allocate counts, too.  Where the system does
-    not tell how much is taken (it is no Linux), there is no limit.
+    not report how much is taken (it is no Linux), there is no limit.
     """
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
@@ -161,7 +161,7 @@ def without_nan(value: Any) -> Any:
 
 
 def write_json(content: object, path: Path) -> Path:
-    """Write JSON so that a reader sees the old file or the whole new one.
+    """Write JSON so that a reader sees the old file or the complete new one.
 
     Raises
     ------

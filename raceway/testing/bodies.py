@@ -230,7 +230,7 @@ class BodiesSuite(Suite):
             balls = decide_balls(problem, parts)
             motion = decide_motion(problem, parts, decide_tilts(problem, parts), balls.friction)
             decide: Callable[..., object] = bodies.decide
-            require(decide(problem, parts) is None, "decide() returns something: parts are kept or left out")
+            require(decide(problem, parts) is None, "decide() returns something: parts are included or left out")
             for part in (*parts.kept, *parts.left_out):
                 good = all(isinstance(word, str) and word for word in (part.part, part.why))
                 require(good, f"{part} needs a name and a reason in words")

@@ -61,7 +61,7 @@ def along_path(law, gaps, rates, params, dt, state_old, state_new, scratch, forc
 
 @jit(void(int64, FORCE_POINTER, VECTOR, VECTOR, MATRIX))
 def sample_force(repeats, force, params, times, out):
-    """out (n, 5): the force at times (n,); the whole row of samples is taken ``repeats`` times."""
+    """out (n, 5): the force at times (n,); the row of samples is taken ``repeats`` times."""
     for _ in range(repeats):
         for i in range(times.size):
             force(times[i], params, out[i])
