@@ -114,7 +114,7 @@ _READERS: dict[str, Reader] = {
         "int": _count(0),
         "float": _FINITE,
         "keys free force changes names": _TEXTS,
-        "points repeats frames workers ball number": _count(1),
+        "points repeats frames workers number": _count(1),
         "aim amplitude frequency conformity": _number("a finite number above 0", lambda v: 0.0 < v < math.inf),
         "patience limit_s": _number("a number from 0, or inf", lambda v: v >= 0.0),
         "vary at reference tolerances": ("a mapping of keys to values, or texts KEY=VALUE", _table),

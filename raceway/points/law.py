@@ -63,7 +63,7 @@ class Contact:
 
     Attributes
     ----------
-    race : "inner" or "outer";  ball : its number, from 1
+    race : "inner" or "outer";  ball : its number, from 0
     load : normal force [N];  approach : minus the gap between the undeformed surfaces [m]
     reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
     hertz_factor : K of Hertz' force K delta^1.5 [N/m^1.5]
@@ -258,7 +258,7 @@ def law(
     name : of the law
     scene : Scene, path, TOML text or dict of tables with rigid bodies; None: B7206C under 1 kN axial load
     changes : of the scene, as ``raceway.evolve`` takes them, for instance ``"contact.damping=300"``
-    race : "inner" or "outer";  ball : its number, from 1 over all rows; None: the most loaded one
+    race : "inner" or "outer";  ball : its number, from 0 over all rows; None: the most loaded one
     amplitude : of the cycle over the elastic approach of the equilibrium
     frequency : of the cycle [Hz]; None: of the scene's excitation, without one 200 Hz
     plugins : files of one-off plug-ins that hold the law
@@ -320,18 +320,18 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     assert ring is not None, "rings of rigid bodies are compiled"
     count = ring.ball_count
     loads = still.contact_force.reshape(2, count)[RACES.index(race)]
-    number = int(np.argmax(loads)) + 1 if ball is None else ball
-    if not 1 <= number <= count:
-        raise SceneError.at("ball", ball, f"must be from 1 to {count}")
-    index, load = RACES.index(race) * count + number - 1, float(loads[number - 1])
+    number = int(np.argmax(loads)) if ball is None else ball
+    if not 0 <= number < count:
+        raise SceneError.at("ball", ball, f"must be from 0 to {count - 1}")
+    index, load = RACES.index(race) * count + number, float(loads[number])
     if load <= 0.0:
-        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads)) + 1}"
+        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads))}"
         raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
     ellipse = model.inner if race == "inner" else model.outer
     factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
     reach = 0.0 if ring.reach is None else float(ring.reach[index])
     approach = -float(still.gap[index]) - reach
-    return Contact(race, number, load, approach, reach, float(factors[number - 1]), single_contact(ring, index))
+    return Contact(race, number, load, approach, reach, float(factors[number]), single_contact(ring, index))
 
 
 def cycle(contact: Contact, amplitude: float, frequency: float) -> _Cycle:
@@ -359,37 +359,38 @@ def _ratio(value: float | None) -> str:
 
 
 def _draw(curves: LawCurves) -> Figure:
-    """Four panels over the approach: force, the loop of the cycle, stiffness and damping."""
+    """Force and stiffness over the approach; of a law that loses energy the loop of the cycle and the damping, too."""
     from raceway.out.picture import new_figure
 
-    figure = new_figure(9.6, 7.2)
-    (force, loop), (stiffness, damping) = figure.subplots(2, 2)
+    damped = curves.cycle.energy != 0.0 or bool(curves.damping.any())
+    figure = new_figure(9.6, 7.2 if damped else 3.9)
+    panels = figure.subplots(2 if damped else 1, 2, squeeze=False)
     micro, contact, motion = 1e6 * curves.approach, curves.contact, curves.cycle
+    (force, stiffness), further = panels[0], panels[1:]
     for panel, still, hertz, unit in (
         (force, curves.force, curves.hertz_force, 1.0),
         (stiffness, curves.stiffness, curves.hertz_stiffness, 1e-6),
     ):
         panel.plot(micro, unit * still[0], color=_LAW, label=f"{curves.law} at rest")
         panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
-    damped = bool((curves.force != curves.force[0]).any())
-    for k, word, style in ((1, "closing", "-"), (2, "opening", ":")) if damped else ():
-        label = f"{word} at {1e3 * abs(curves.rate[k]):.3g} mm/s"
-        for panel, values in ((force, curves.force), (damping, curves.damping)):
-            panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
-    damping.plot(micro, curves.damping[0], color=_LAW, label="at rest" if damped else curves.damping_origin)
-    if not damped:
-        damping.set_ylim(0.0, 1.0)
-    force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
-    loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
-    force.set(ylabel="force [N]", title="Force")
+    force.set(ylabel="force [N]", title="Force" if damped else f"Force; {curves.damping_origin}")
     stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
-    damping.set(ylabel="damping [N s/m]", title="Damping, the force's derivative by the rate")
-    title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.4g} N s/m"
-    loop.set(ylabel="force [N]", title=title)
-    for panel in (force, stiffness, damping, loop):
+    for loop, damping in further:
+        damping.plot(micro, curves.damping[0], color=_LAW, label="at rest")
+        for k, word, style in ((1, "closing", "-"), (2, "opening", ":")):
+            label = f"{word} at {1e3 * abs(curves.rate[k]):.3g} mm/s"
+            for panel, values in ((force, curves.force), (damping, curves.damping)):
+                panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
+        loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
+        damping.set(ylabel="damping [N s/m]", title="Damping, the force's derivative by the rate")
+        title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.4g} N s/m"
+        loop.set(ylabel="force [N]", title=title)
+        damping.legend(frameon=False, fontsize=8.5)
+    force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
+    for panel in panels.flat:
         panel.set_xlabel("approach [µm]")
-        if panel is not loop:
-            panel.legend(frameon=False, fontsize=8.5)
+    for panel in (force, stiffness):
+        panel.legend(frameon=False, fontsize=8.5)
     title = f"{curves.law}, {contact.race} contact of ball {contact.ball}: {curves.title.partition(chr(10))[0]}"
     figure.suptitle(title, fontsize=10.5)
     return figure
