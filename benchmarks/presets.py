@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterable
 from contextlib import suppress
+from math import pi
 from pathlib import Path
 
 import attrs
@@ -37,7 +39,7 @@ class _Kind:
     title: str
     uncertainty: tuple[object, ...]
     columns: dict[str, tuple[str, bool, str | None]]
-    constants: dict[str, tuple[float, str, float | None]]
+    constants: dict[str, tuple[object, str, float | None]]
 
 
 def _columns(printed: str, angle: str, how: str, pitch: str) -> dict[str, tuple[str, bool, str | None]]:
@@ -121,8 +123,101 @@ def _deep_groove(series: str) -> _Kind:
 _ERRORS = ("dynamic_rating_error", "static_rating_error")
 
 
-def text(kind: _Kind, sizes: list[Inferred]) -> str:
-    """The TOML file of a series."""
+#: Rollers over the pitch circle in bearings with cages, and its spread; of shorter ones the effective length is a whole number of mm.
+_FILL, _SPREAD, _WHOLE, _SHORT = 0.82, 0.025, 0.1, 14e-3
+
+
+def rolling_rating(count: int, diameter: float, pitch: float, length: float) -> tuple[float, float]:
+    """C of ISO 281, C0 of ISO 76 [N] of one row of cylindrical rollers; lengths in m.
+
+    References
+    ----------
+    ISO 281:2007, b_m = 1.1; f_c by the closed form of ISO/TR 1281-1 with reduction factor 0.83; ISO 76:2006: C0 = 44 (1 - g) Z L D.
+    """
+    g, z, d, long = diameter / pitch, count, 1e3 * diameter, 1e3 * length
+    ratio = (1.04 * ((1.0 - g) / (1.0 + g)) ** (143 / 108)) ** 4.5
+    factor = 0.377 * 0.83 * 551.13373 * g ** (2 / 9) * (1.0 - g) ** (29 / 27) / (1.0 + g) ** 0.25 * (1.0 + ratio) ** (-2 / 9)
+    return 1.1 * factor * long ** (7 / 9) * z**0.75 * d ** (29 / 27), 44.0 * (1.0 - g) * z * long * d
+
+
+def _rollers(cells: dict[str, str]) -> list[float]:
+    """Bearing numbers of one size of cylindrical rollers in the order of ``_roller_kind``'s columns, scatters and errors."""
+    bore, outside, width, inner, outer = (1e-3 * float(cells[f"{key}_mm"]) for key in _ROLLER_SIZES)
+    dynamic, static = float(cells["dynamic_rating_n"]), float(cells["static_rating_n"])
+    diameter, pitch = round(0.5 * (outer - inner), 9), round(0.5 * (outer + inner), 9)
+
+    def unlikely(count: int) -> float:
+        length = 1e3 * static / rolling_rating(count, diameter, pitch, 1.0)[1]
+        whole = (length - round(length)) / _WHOLE if diameter <= _SHORT and inner / bore > 1.2 else 0.0
+        return float(((count * diameter / (pi * pitch) - _FILL) / _SPREAD) ** 2 + whole**2)
+
+    count = min(range(6, int(pi * pitch / diameter)), key=unlikely)
+    length = static / rolling_rating(count, diameter, pitch, 1.0)[1]
+    errors = [
+        round(x / y - 1.0, 9) for x, y in zip(rolling_rating(count, diameter, pitch, length), (dynamic, static), strict=True)
+    ]
+    low, high = clearance_range("roller", bore) or (0.0, 0.0)
+    sizes = [bore, outside, width, 0.0, dynamic, static, count, diameter, pitch, 0.5 * (low + high), length]
+    return [*sizes, 1.0 / count, (high - low) / (high + low), 1.0 / count, *errors]
+
+
+_ROLLER_SIZES = ("bore", "outer_diameter", "width", "inner_raceway", "outer_raceway")
+_ROLLER_PRINT = "NSK, Rolling bearings, CAT. No. E1102e, tables of single-row cylindrical roller bearings"
+
+
+def _roller_kind(series: str) -> _Kind:
+    races = f"{_ROLLER_PRINT}: raceway diameters F and E" + (
+        "; E of N 2.. EC in SKF, General catalogue" if series == "NU2" else ""
+    )
+    columns = _columns(_ROLLER_PRINT, "cylindrical rollers have none", "", "")
+    columns |= {
+        "ball_count": (
+            "rollers: inferred, that fill the pitch circle as usual; scatter: one more or less",
+            True,
+            "count_scatter",
+        ),
+        "ball_diameter": (f"of the rollers, (E - F) / 2; {races}", False, None),
+        "pitch_diameter": (f"(E + F) / 2; {races}", False, None),
+        "radial_clearance": (
+            "ISO 5753-1, class CN (normal), middle of the range, a default: a suffix C2, C3 or C4 says another",
+            True,
+            "clearance_scatter",
+        ),
+        "bodies.roller_length": (
+            "effective length: inferred from the printed C0 by ISO 76, with the rollers' number",
+            True,
+            "length_scatter",
+        ),
+    }
+    title = f"cylindrical roller bearing of series {series}"
+    basis = "no stiffness is printed: computed for NU206 and NU1010 with the profile of ISO/TS 16281, none and twice it, at 3 to 20 % of C0"
+    needed = "a key of ball bearings, not used"
+    constants = {"conformity_inner": (0.52, needed, None), "conformity_outer": (0.52, needed, None)}
+    scene = {"bodies.kind": "cylindrical_rollers", "contact.kind": "line", "supports.axial": "displacement"}
+    return _Kind(
+        title,
+        (0.35, 0.35, basis),
+        columns,
+        constants | {key: (word, "of cylindrical rollers", None) for key, word in scene.items()},
+    )
+
+
+def _roller_texts() -> dict[str, str]:
+    lines = [
+        line
+        for line in (FOLDER.parent / "printed" / "nsk_cylindrical.csv").read_text("utf-8").splitlines()
+        if line[0] != "#"
+    ]
+    rows = {cells["name"]: _rollers(cells) for cells in csv.DictReader(lines)}
+    kinds = {series: _roller_kind(series) for series in ("NU2", "NU10")}
+    return {
+        series: text(kind, [(name, _cells(row[:11], row[11:])) for name, row in rows.items() if name[:-2] == series])
+        for series, kind in kinds.items()
+    }
+
+
+def text(kind: _Kind, bearings: list[tuple[str, str]]) -> str:
+    """The TOML file of a series, with the rows of its bearings by designation."""
     order = [*kind.columns, *(scatter for *_, scatter in kind.columns.values() if scatter), *_ERRORS]
     lines = [
         "# Written by `python -m benchmarks.presets`; do not edit by hand.  Lengths in m; scatters and errors are relative.",
@@ -133,15 +228,22 @@ def text(kind: _Kind, sizes: list[Inferred]) -> str:
         f"printed = {_list(_ERRORS)}",
     ]
     for key, (source, inferred, scatter) in kind.columns.items():
-        lines += ["", f"[columns.{key}]", f'source = "{source}"']
+        lines += ["", f"[columns.{_quoted(key)}]", f'source = "{source}"']
         lines += ["inferred = true", f'scatter = "{scatter}"'] if inferred else []
     for key, (value, source, spread) in kind.constants.items():
-        lines += ["", f"[constants.{key}]", f"value = {value!r}", f'source = "{source}"', "inferred = true"]
+        lines += ["", f"[constants.{key}]", f"value = {_toml(value)}", f'source = "{source}"', "inferred = true"]
         lines += [] if spread is None else [f"scatter = {spread}"]
     lines += ["", "[bearings]"]
-    for found in sizes:
-        lines += [f"{name} = {row}" for name, row in _rows(found)]
+    lines += [f"{name} = {row}" for name, row in bearings]
     return "\n".join(lines) + "\n"
+
+
+def _quoted(key: str) -> str:
+    return f'"{key}"' if "." in key else key
+
+
+def _cells(numbers: Iterable[float], errors: Iterable[float]) -> str:
+    return f"[{', '.join([f'{x:.10g}' for x in numbers] + [f'{x:.1e}' for x in errors])}]"
 
 
 def _toml(value: object) -> str:
@@ -159,8 +261,7 @@ def _rows(found: Inferred) -> list[tuple[str, str]]:
         if one.deep_groove and (limits := clearance_range("ball", one.bore)):
             numbers.append(0.5 * sum(limits))
             scatters.append((limits[1] - limits[0]) / sum(limits))
-        cells = [f"{x:.10g}" for x in numbers] + [f"{x:.1e}" for x in scatters] + [f"{x:.1e}" for x in errors]
-        rows.append((_key(name), f"[{', '.join(cells)}]"))
+        rows.append((_key(name), _cells(numbers, [*scatters, *errors])))
     return rows
 
 
@@ -179,18 +280,21 @@ def _list(words: Iterable[str]) -> str:
 
 def every() -> dict[str, str]:
     """Text by series."""
+
+    def of(kind: _Kind, sizes: list[Inferred], written: str) -> str:
+        return text(kind, [row for x in sizes if x.printed.names[0].startswith(written) for row in _rows(x)])
+
     sizes = [infer_printed(one, maker="NSK", conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))]
-    texts = {
-        series: text(_angular(series), [x for x in sizes if x.printed.names[0].startswith(series)]) for series in SERIES
-    }
     deep = []
     for one in printed_by("nsk_deep_groove"):
         with suppress(SceneError):  # one of 256 has ratings that no balls explain
             deep.append(infer_printed(one, maker="NSK"))
     deep = [x for x in deep if max(abs(check.error) for check in x.checks) <= _LARGEST]
-    for series, written in DEEP_GROOVE.items():
-        texts[series] = text(_deep_groove(series), [x for x in deep if x.printed.names[0].startswith(written)])
-    return texts
+    return {
+        **{series: of(_angular(series), sizes, series) for series in SERIES},
+        **{series: of(_deep_groove(series), deep, written) for series, written in DEEP_GROOVE.items()},
+        **_roller_texts(),
+    }
 
 
 def main() -> None:

@@ -18,7 +18,6 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 PACKAGES = {
     "third_party_law": "raceway-hunt-crossley",
     "third_party_excitation": "raceway-two-frequency",
-    "cylindrical_rollers": "raceway-cylindrical-rollers",
 }
 
 
@@ -54,7 +53,6 @@ scenes = {
     "restitution": {**law, "contact": {"kind": "hunt_crossley", "restitution": 0.8}},
     "excitation": force,
     "both": {**force, "contact": {"kind": "hunt_crossley"}},
-    "rollers": read_toml("cylindrical_rollers/scene.toml"),
 }
 answers = {}
 for name, tables in scenes.items():
@@ -80,16 +78,13 @@ def test_both_scenes_run_and_say_whose_plugins_they_used(installed):
     # The 2x force moves the 1x line through the contacts' curvature only.
     assert answers["excitation"]["k"] == pytest.approx(answers["hertz"]["k"], rel=0.05)
     assert answers["both"]["c"] > 0.0
-    owners = {p["kind"]: p["distribution"] for p in answers["rollers"]["plugins"]}
-    assert owners["bodies"] == owners["contact_law"] == "raceway-cylindrical-rollers"
-    assert answers["rollers"]["k"] > 0.0
 
 
 def test_installed_plugins_conform(installed):
     code = """
 import json
 from raceway.testing import check_named
-found = [check_named(name).to_dict() for name in ("hunt_crossley", "excitation:two_frequency", "bodies:cylindrical_rollers")]
+found = [check_named(name).to_dict() for name in ("hunt_crossley", "excitation:two_frequency")]
 print(json.dumps(found))
 """
     for conformity in python(installed, code):

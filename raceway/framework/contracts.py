@@ -424,6 +424,7 @@ class Traits:
     calibrated : what the contacts' calibration leaves is part of the total error
     every_node : all nodes are unknowns: a second run to compare with would cost as much as the first
     renews : parameters of contact laws are renewed at the running speed and equilibrium (``ContactLaw``, duty 8)
+    line_contacts : contacts are lines of rollers: numbers of point contacts, as lives, films and friction torques, are not computed
     damps : contacts have dashpots in proportion to their stiffness (``Problem.time_constant``)
     """
 
@@ -433,6 +434,7 @@ class Traits:
     every_node: bool = False
     renews: bool = False
     damps: bool = False
+    line_contacts: bool = False
 
 
 @attrs.frozen

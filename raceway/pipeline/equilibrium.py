@@ -154,7 +154,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         "stiffness_rows_held": None if model.system.sliding is None else equilibrium.stiffness_rows_held.tolist(),
         "damping_rows_held": None if model.system.sliding is None else equilibrium.damping_rows_held.tolist(),
         "kyy_tilts_follow_n_per_m": tilts_follow(equilibrium.stiffness, model.problem.supports.tilt),
-        "free_contact_angle_deg": degrees(model.problem.bearing.contact_angle),
+        "free_contact_angle_deg": degrees(model.geometry.contact_angle),
         **largest_contacts(equilibrium.contact_force, peaks, "largest"),
         "balls": [{**rows[k], **{key: column[k].item() for key, column in columns.items()}} for k in range(z)],
         "law": None if law is None else dict(law.table),

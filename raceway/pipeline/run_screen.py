@@ -158,9 +158,10 @@ def _bearing(result: ReadTables) -> str:
     """Geometry, arrangement and model, one per line."""
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
     b = scene["bearing"]
-    if b.get("radial_clearance") and not b.get("contact_angle_deg"):
+    lines = scene["bodies"]["kind"] == "cylindrical_rollers"
+    if b.get("radial_clearance") and not b.get("contact_angle_deg") and not lines:
         angle += ", from the clearance"
-    balls = f"{b['ball_count']} balls of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    balls = f"{b['ball_count']} {'rollers' if lines else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
         words.append(_set(b))

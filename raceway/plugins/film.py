@@ -46,6 +46,8 @@ class FilmThickness:
         return {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]}, "lubricant": oil}
 
     def why_not(self, problem: Problem) -> str:
+        if problem.traits.line_contacts:
+            return "films of line contacts are not computed"
         if problem.lubricant is None:
             return "a film needs an oil: a table [lubricant] with `oil` and `temperature_c`, or with `viscosity`"
         return "" if problem.points or problem.spin_speed > 0.0 else "a film needs a speed: kinematics.spin_speed_rpm"

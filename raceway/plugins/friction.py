@@ -77,6 +77,8 @@ class Friction:
         return {"bearing": bearing, "load": load, "lubricant": {"oil": "VG 32", "temperature_c": 60.0}}
 
     def why_not(self, problem: Problem) -> str:
+        if problem.traits.line_contacts:
+            return "friction of rollers is not computed"
         if problem.lubricant is None:
             return (
                 "friction needs an oil: a table [lubricant] with `oil` and `temperature_c`, `viscosity_40`, `viscosity_100` and "

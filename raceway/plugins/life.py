@@ -85,6 +85,8 @@ class Life:
     )
 
     def why_not(self, problem: Problem) -> str:
+        if problem.traits.line_contacts:
+            return "lives of roller bearings are not computed"
         return next((ratings.missing for ratings in problem.ratings if ratings.missing), "")
 
     def turn_samples(self, problem: Problem) -> int:

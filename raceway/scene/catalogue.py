@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
@@ -85,21 +85,33 @@ class Preset:
     @property
     def table(self) -> Tables:
         """The [bearing] table that the preset stands for, without the printed ratings."""
-        out: Tables = {}
-        for fact in self.facts:
-            if fact.key in RATINGS:
-                continue
-            table = out
-            *parents, last = fact.key.split(".")
-            for parent in parents:
-                table = table.setdefault(parent, {})
-            table[last] = fact.value
-        return out
+        return _tables(fact for fact in self.facts if fact.key not in RATINGS and _of_bearing(fact.key))
+
+    @property
+    def other_tables(self) -> Tables:
+        """Further tables of a scene with this bearing, such as [bodies] of rollers; empty for ball bearings."""
+        return _tables(fact for fact in self.facts if not _of_bearing(fact.key))
 
     @property
     def ratings(self) -> dict[str, float]:
         """Printed load ratings [N] by their keys, where a document prints them."""
         return {fact.key: float(str(fact.value)) for fact in self.facts if fact.key in RATINGS}
+
+
+def _of_bearing(key: str) -> bool:
+    return key.partition(".")[0] not in ("bodies", "contact", "supports")
+
+
+def _tables(facts: Iterable[Fact]) -> Tables:
+    """Nested tables of facts by their paths."""
+    tables: Tables = {}
+    for fact in facts:
+        table = tables
+        *parents, last = fact.key.split(".")
+        for parent in parents:
+            table = table.setdefault(parent, {})
+        table[last] = fact.value
+    return tables
 
 
 @cache
@@ -155,7 +167,8 @@ def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
     """A bearing of the catalogue with what a designation says of clearance, balls and tolerances."""
     facts = {fact.key: fact for fact in entry.facts}
     if designation.clearance and "radial_clearance" in facts:
-        limits = clearance_range("ball", float(str(facts["bore"].value)), designation.clearance) or (0.0, 0.0)
+        kind = "roller" if "bodies.kind" in facts else "ball"
+        limits = clearance_range(kind, float(str(facts["bore"].value)), designation.clearance) or (0.0, 0.0)
         source = f"ISO 5753-1, class {designation.clearance}, middle of the range; uncertainty: the range"
         scatter = (limits[1] - limits[0]) / sum(limits)
         facts["radial_clearance"] = Fact("radial_clearance", 0.5 * sum(limits), source, True, scatter)
@@ -282,14 +295,15 @@ def _inferred(name: object, tables: ReadTables) -> Tables | None:
     entry = preset_of(name)
     if entry is None or entry.stiffness_error is None:
         return None
-    facts = [fact for fact in entry.facts if fact.inferred and "." not in fact.key and fact.key not in tables]
+    shown = [fact for fact in entry.facts if "." not in fact.key or fact.key == "bodies.roller_length"]
+    facts = [fact for fact in shown if fact.inferred and fact.key not in tables]
     if not facts:
         return None
     return {
         "preset": entry.name,
         **({"designation": entry.designation} if entry.designation else {}),
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
-        "printed": {fact.key: {"value": fact.value, "source": fact.source} for fact in entry.facts if not fact.inferred},
+        "printed": {fact.key: {"value": fact.value, "source": fact.source} for fact in shown if not fact.inferred},
         **{key: getattr(entry, key) for key in _INFERRED},
     }
 

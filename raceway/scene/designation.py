@@ -19,6 +19,7 @@ _SERIES = {"68": "618", "69": "619"}
 _NUMBER = re.compile(
     r"(?P<prefix>[A-Z]*)[ -]?(?P<number>6[0123]/\d{2,3}|61[89]/\d+|61[89]\d\d|6[02389]\d\d?|719\d\d|7[029]\d\d)(?=\D|$)(?P<rest>.*)"
 )
+_ROLLERS = re.compile(r"(?P<prefix>NU|NJ|NUP|N)[ -]?(?P<number>(?:10|2)\d\d)(?=\D|$)(?P<rest>.*)")
 _SEPARATORS = " -/.,_"
 #: Groups of parts that set a number; the others are named as ignored.
 _SETTING = ("clearance", "tolerance", "ceramic", "angle")
@@ -56,16 +57,19 @@ def read_designation(text: str) -> Designation | None:
     for pattern, bearing in _groups()["refused"].items():
         if re.match(rf"(?:{pattern})(?!\d)", word):
             raise SceneError.at("bearing.preset", text, f"is {bearing}, which Raceway does not compute")
-    match = _NUMBER.fullmatch(word)
+    rollers = _ROLLERS.fullmatch(word)
+    match = rollers or _NUMBER.fullmatch(word)
     if match is None:
         return None
     prefix, number, rest = match["prefix"], match["number"], match["rest"]
-    kind = "angular" if number.startswith("7") else "ball"
-    parts = [*_parts(prefix.removesuffix("B"), kind), *_parts(rest, kind)]
+    kind = "roller" if rollers else "angular" if number.startswith("7") else "ball"
+    parts = [*_parts("" if prefix == "NU" else prefix.removesuffix("B"), kind), *_parts(rest, kind)]
     if parts and not parts[-1][1] and rest[:1] not in _SEPARATORS:
         return None
     values = {group: _groups()[group]["parts"][part] for part, group in parts if group in _SETTING}
-    names = _angular_names(number, prefix.endswith("B"), values.get("angle")) if kind == "angular" else (_iso_name(number),)
+    names: tuple[str, ...] = (f"NU{number}" if rollers else _iso_name(number),)
+    if kind == "angular":
+        names = _angular_names(number, prefix.endswith("B"), values.get("angle"))
     words = "; ".join(_words(part, group) for part, group in parts)
     words = f"{text}: {words}" if words else ""
     if not names:

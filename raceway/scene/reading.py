@@ -228,7 +228,7 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
     _start_at_inlet(plain)
-    _class_of_designation(plain)
+    _complete_by_preset(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
@@ -253,13 +253,18 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
     return scene
 
 
-def _class_of_designation(tables: Tables) -> None:
-    """The tolerance class of a maker's designation, where the scene has tolerances and fits that it acts through."""
+def _complete_by_preset(tables: Tables) -> None:
+    """What a preset says beside [bearing]: bodies, contacts and supports of rollers, where the scene has no other kind; the tolerance
+    class of a maker's designation, where the scene has tolerances and fits that it acts through."""
     entry, tolerances, fits = (
         preset_of(tables.get("bearing", {}).get("preset")),
         tables.get("tolerances"),
         tables.get("mounting", {}),
     )
+    for name, table in ({} if entry is None else entry.other_tables).items():
+        own = tables.get(name, {})
+        if isinstance(own, dict) and own.get("kind", table.get("kind")) == table.get("kind"):
+            tables[name] = {**table, **own}
     acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
     if entry is not None and entry.tolerance_class and isinstance(tolerances, dict) and acts:
         tables["tolerances"] = {"class": entry.tolerance_class, **tolerances}

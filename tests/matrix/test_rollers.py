@@ -1,4 +1,4 @@
-"""A foreign kind of bodies with every integrator and excitation: examples/cylindrical_rollers, which knows nothing of them.
+"""Cylindrical rollers with every integrator and excitation.
 
 Tolerances on Z against Newmark under the same force: 0.5 % for methods with inertia, as in ``test_matrix``.  A series of
 equilibria has K of the load F0, not of F0 + m w^2 r: 3 %.
@@ -7,39 +7,23 @@ equilibria has K of the load F0, not of F0 + m w^2 r: 3 %.
 from __future__ import annotations
 
 import json
-import sys
 from functools import cache
-from pathlib import Path
 
 import pytest
 
 from raceway import SceneError, scene_from_dict
-from raceway.testing import Registry, default_registry, run
+from raceway.bodies.rollers import CylindricalRollers
+from raceway.testing import default_registry, run
 from tests.matrix.combinations import crossed, options
-
-PACKAGE = Path(__file__).parents[2] / "examples" / "cylindrical_rollers"
-
-
-@cache
-def rollers():
-    """The package and a registry with it."""
-    sys.path.insert(0, str(PACKAGE))
-    try:
-        import raceway_cylindrical_rollers as package
-    finally:
-        sys.path.remove(str(PACKAGE))
-    registry = Registry(third_party=False)
-    registry.add(package)
-    return package, registry
 
 
 @cache
 def outcome(excitation, integrator):
     """The run's result, or its refusal."""
-    package, registry = rollers()
+    registry = default_registry()
     identifier = "order_tracking" if excitation == "run_up" else "fft_1x"
     method = registry.find("integrator", integrator).plugin
-    tables = package.CylindricalRollers.example_scene() | {
+    tables = CylindricalRollers.example_scene() | {
         # A small negative clearance: all rollers stay loaded, as K of small motions is compared.
         "kinematics": {"ball_inertia": True, "radial_expansion": 12e-6},
         "bodies": {"kind": "cylindrical_rollers", "roller_length": 9e-3},

@@ -60,3 +60,12 @@ def linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate
         force[i] = -slope * gap[i]
         d_gap[i] = -slope
         d_rate[i] = 0.0
+
+
+@jit(LAW)
+def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Line contacts: Q = k delta^(10/9)."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        slope = params[i, 0] * approach ** (1.0 / 9.0)
+        force[i], d_gap[i], d_rate[i] = slope * approach, -10.0 / 9.0 * slope, 0.0

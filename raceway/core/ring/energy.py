@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import attrs
 import numpy as np
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.record import Record
-from raceway.core.ring.kernels import layout
+from raceway.core.ring.kernels import layout, rollers
 from raceway.core.ring.system import System
 
 
@@ -83,6 +85,19 @@ class _EnergyBalance:
     drift: float
 
 
+def _gaps(system: System, record: Record) -> Iterator[tuple[float, np.ndarray]]:
+    """Gaps (n, 2 Z) [m] of a record: of line contacts those of each lamina, with its share of the contact."""
+    table = system.table
+    if table.shape[1] == layout.COLUMNS:
+        yield 1.0, np.ascontiguousarray(record.gap)
+        return
+    count, (length, profile) = int(table[0, rollers.LAMINAE]), table[0, [rollers.LENGTH, rollers.PROFILE]]
+    azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + system.scalars[layout.CAGE] * record.time[:, None]
+    turn = record.displacement[:, 3:4] * np.sin(azimuth) - record.displacement[:, 4:5] * np.cos(azimuth)
+    for x in ((np.arange(count) + 0.5) / count - 0.5) * length:
+        yield 1.0 / count, record.gap + 0.5 * x * np.tile(turn, 2) - profile * np.log(1.0 - (2.0 * x / length) ** 2)
+
+
 def energy_balance(system: System, record: Record) -> _EnergyBalance:
     """Balance of kinetic and stored energy against the work of loads and excitation and the losses in dampers.
 
@@ -93,13 +108,13 @@ def energy_balance(system: System, record: Record) -> _EnergyBalance:
     fourth order, those of friction sums over steps of first order.
     """
     n, pairs = record.gap.shape
-    energy = np.empty(n * pairs)
+    energy, stored = np.empty(n * pairs), np.zeros(n)
     tiled = np.tile(system.law_params, (n, 1))
     memory = np.tile(system.law_state, (n, 1))
-    gap = np.ascontiguousarray(record.gap).reshape(-1)
-    stored_energy(system.law, tiled, memory, memory.copy(), gap, np.empty((6, n * pairs)), energy)
+    for share, gap in _gaps(system, record):
+        stored_energy(system.law, tiled, memory, memory.copy(), gap.reshape(-1), np.empty((6, n * pairs)), energy)
+        stored += share * energy.reshape(n, pairs).sum(axis=1)
     q, v = record.displacement, record.velocity
-    stored = energy.reshape(n, pairs).sum(axis=1)
     stored -= (record.ball[:, :, 1] * system.table[:, layout.CENTRIFUGAL]).sum(axis=1)
     stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
     if system.condensed:

@@ -25,6 +25,7 @@ tangential         the same with gyroscopic moments or friction: no potential
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
 layout             constants of a model, columns of ``ball``, rows of ``work``; vectors of a ball's meridian plane, its seat on the ring
+rollers            cylindrical rollers: line contacts cut into laminae
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 
