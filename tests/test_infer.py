@@ -247,7 +247,7 @@ def test_ratings_of_no_bearing_are_one_message(changes, words):
 
 NO_INPUT = {
     "dimension": (("70", "110 mm", {15: ("47 kN", "43 kN")}), "write a unit"),
-    "unit": (("70 mm", "110 mm", {15: ("47 m", "43 kN")}), "N or kN"),
+    "unit": (("70 mm", "110 mm", {15: ("47 m", "43 kN")}), "N, kN or lbf"),
     "text": (("wide", "110 mm", {15: ("47 kN", "43 kN")}), "bore"),
     "nan": ((float("nan"), "110 mm", {15: ("47 kN", "43 kN")}), "finite"),
     "switched": (("70 mm", "110 mm", {15: ("47 kN", "1 N")}), "contradicts the dynamic rating"),

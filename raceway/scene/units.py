@@ -51,6 +51,11 @@ _TURN = Unit((0, 0, 0, 1, 0), Fraction(2), 1)
 #: As they are.
 _PLAIN = {
     "in": Unit((1, 0, 0, 0, 0), Fraction("0.0254")),
+    # Of the international yard and pound agreement of 1959 and standard gravity, exactly.
+    "lb": Unit((0, 1, 0, 0, 0), Fraction("0.45359237")),
+    "oz": Unit((0, 1, 0, 0, 0), Fraction("0.45359237") / 16),
+    "lbf": Unit((1, 1, -2, 0, 0), Fraction("0.45359237") * Fraction("9.80665")),
+    "psi": Unit((-1, 1, -2, 0, 0), Fraction("0.45359237") * Fraction("9.80665") / Fraction("0.0254") ** 2),
     "K": Unit((0, 0, 0, 0, 1)),
     "min": Unit((0, 0, 1, 0, 0), Fraction(60)),
     "deg": Unit((0, 0, 0, 1, 0), Fraction(1, 180), 1),
@@ -62,15 +67,15 @@ _PLAIN = {
 #: Of each dimension, what a message offers.
 _OFFERED = {
     "m": "m, mm, um or in",
-    "N": "N or kN",
-    "Pa": "Pa, MPa or GPa",
+    "N": "N, kN or lbf",
+    "Pa": "Pa, MPa, GPa or psi",
     "r/min": "r/min, rpm, Hz or rad/s",
     "deg": "deg or rad",
     "Hz": "Hz or kHz",
     "s": "s or ms",
-    "kg": "kg or g",
-    "kg m": "kg m or g mm",
-    "N/m": "N/m or N/um",
+    "kg": "kg, g, lb or oz",
+    "kg m": "kg m, g mm or oz in",
+    "N/m": "N/m, N/um or lbf/in",
 }
 _FACTOR = re.compile(r"([^\W\d_]+|°)(?:(?:\^|\*\*)?([+-]?\d{1,2}))?")
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
