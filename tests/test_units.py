@@ -27,7 +27,7 @@ SAME = {
     "pound-force": ("N", "10 lbf", 44.482216152605),
     "pound": ("kg", "2 lb", 0.90718474),
     "unbalance in ounce inch": ("kg m", "16 oz in", 0.45359237 * 0.0254),
-    "pound-force an inch": ("N/m", "1 lbf/in", 175.12683524647636),
+    "pound-force an inch": ("N/m", "1 lbf/in", 175.1268352464764),
     "pound-force a square inch": ("Pa", "1 psi", 6894.757293168362),
     "kilonewton": ("N", "1 kN", 1000.0),
     "signs and powers of ten": ("N", "-.5e3 mN", -0.5),
