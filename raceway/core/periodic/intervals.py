@@ -100,15 +100,28 @@ IMBALANCE, JUMP, FORCE = range(3)
 
 
 class _Local(NamedTuple):
-    """Of one interval: state q, v (5,) at a point, its linear system (s n, s n + 2 n + 2), and its transfer (2 n, 2 n + 2)."""
+    """Of one interval: state q, v (5,) at a point, its linear system (s n, s n + 2 n + 2), its transfer (2 n, 2 n + 2), and scratch."""
 
     q: np.ndarray
     v: np.ndarray
     block: np.ndarray
     transfer: np.ndarray
+    product: np.ndarray
+    memory: np.ndarray
+    response: Response
 
 
-LOCAL = record(_Local, VECTOR, VECTOR, MATRIX, MATRIX)
+LOCAL = record(_Local, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, RESPONSE)
+
+
+@jit(LOCAL(EQUATIONS, MESH), allocates=True)
+def _room(equations, mesh):
+    constants, n = equations.forces.constants, equations.free.size
+    size, columns = mesh.rule.shape[1] * n, 2 * n + 2
+    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
+    response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
+    block, transfer, product = np.empty((size, size + columns)), np.empty((2 * n, columns)), np.empty((2 * n, columns))
+    return _Local(np.empty(5), np.empty(5), block, transfer, product, equations.memory.copy(), response)
 
 
 @jit(float64(MESH, SAMPLES, int64, int64, float64, VECTOR, VECTOR))
@@ -142,11 +155,11 @@ def _left_over(equations, samples, at, c, q, v, f):
     return total
 
 
-@jit(boolean(EQUATIONS, MESH, SAMPLES, int64, RESPONSE, LOCAL, VECTOR))
-def _linearise(equations, mesh, samples, at, response, local, report):
+@jit(boolean(EQUATIONS, MESH, SAMPLES, int64, LOCAL, VECTOR))
+def _linearise(equations, mesh, samples, at, local, report):
     """Rows of the interval's linear system that belong to Gauss point ``at``; False where a force is no number."""
     linear, free, speed, rule = equations.linear, equations.free, equations.speed, mesh.rule
-    n, s, block = free.size, rule.shape[1], local.block
+    n, s, block, response = free.size, rule.shape[1], local.block, local.response
     k, i = at // s, at % s
     size, h, u = s * n, mesh.nodes[k + 1] - mesh.nodes[k], rule[2 * s + 2, i]
     for r in range(n):
@@ -197,10 +210,11 @@ def _transfer_of(equations, mesh, samples, k, local, report):
         report[JUMP] = max(report[JUMP], max(abs(jump_q), abs(jump_v)) / equations.weight[c])
 
 
-@jit(void(LOCAL, int64, ELIMINATED, MATRIX))
-def _carry_on(local, k, eliminated, product):
-    """Keep what interval k leaves, and multiply the transfer of those before by its own; ``product`` is scratch."""
+@jit(void(LOCAL, int64, ELIMINATED))
+def _carry_on(local, k, eliminated):
+    """Keep what interval k leaves, and multiply the transfer of those before by its own."""
     stages, transfer, span_transfer = eliminated
+    product = local.product
     size = local.block.shape[0]
     states, columns = span_transfer.shape[0], span_transfer.shape[1]
     for i in range(size):
@@ -219,15 +233,15 @@ def _carry_on(local, k, eliminated, product):
 @jit(int64(EQUATIONS, MESH, SAMPLES, ELIMINATED, VECTOR), allocates=True)
 def condense(equations, mesh, samples, eliminated, report):
     """Linearise and eliminate interval by interval; the number of intervals done, less than m at a failure."""
-    forces, span_transfer = equations.forces, eliminated.span_transfer
-    constants = forces.constants
+    return _condense(equations, mesh, samples, eliminated, report, _room(equations, mesh))
+
+
+@jit(int64(EQUATIONS, MESH, SAMPLES, ELIMINATED, VECTOR, LOCAL))
+def _condense(equations, mesh, samples, eliminated, report, local):
+    forces, span_transfer, response = equations.forces, eliminated.span_transfer, local.response
     m, s, n = mesh.nodes.size - 1, mesh.rule.shape[1], equations.free.size
-    size, columns = s * n, 2 * n + 2
-    work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
-    response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
-    contacts = Contacts(forces.law, forces.law_params, equations.memory, equations.memory.copy(), 0.0)
-    local = _Local(np.empty(5), np.empty(5), np.empty((size, size + columns)), np.empty((2 * n, columns)))
-    product = np.empty((2 * n, columns))
+    columns = 2 * n + 2
+    contacts = Contacts(forces.law, forces.law_params, equations.memory, local.memory, 0.0)
     report[IMBALANCE], report[JUMP], report[FORCE] = 0.0, 0.0, 0.0
     for i in range(2 * n):
         for j in range(columns):
@@ -237,14 +251,14 @@ def condense(equations, mesh, samples, eliminated, report):
             at = k * s + i
             t = _state_at(mesh, samples, k, i, equations.speed, local.q, local.v)
             balls = Balls(samples.ball[at], 0.0, samples.rate[at])
-            if forces.system(t, local.q, local.v, balls, contacts, constants, response) != 0:
+            if forces.system(t, local.q, local.v, balls, contacts, forces.constants, response) != 0:
                 return k
-            if not _linearise(equations, mesh, samples, at, response, local, report):
+            if not _linearise(equations, mesh, samples, at, local, report):
                 return k
         if not eliminate(local.block):
             return k
         _transfer_of(equations, mesh, samples, k, local, report)
-        _carry_on(local, k, eliminated, product)
+        _carry_on(local, k, eliminated)
     return m
 
 
@@ -277,35 +291,24 @@ def forces(force, params, times, out):
         force(times[i], params, out[i])
 
 
-@jit(void(INDICES, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX))
-def carry(free, transfer, first, defect, dq, dv):
-    """dq, dv (m + 1, 5) that defects (m, 2 n) at the ends of intervals and a first state (2 n,) make."""
-    n = free.size
-    m = transfer.shape[0] // (2 * n)
-    for r in range(n):
-        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
-    for k in range(m):
-        for i in range(2 * n):
-            total = defect[k, i]
-            for r in range(n):
-                total += transfer[2 * n * k + i, r] * dq[k, free[r]] + transfer[2 * n * k + i, n + r] * dv[k, free[r]]
-            if i < n:
-                dq[k + 1, free[i]] = total
-            else:
-                dv[k + 1, free[i - n]] = total
-
-
-@jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE), allocates=True)
+@jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE))
 def spread(free, eliminated, first, parameter, change):
     """The change of a path that the change first (2 n,) of its first state and that of the parameter make."""
     stages, transfer, _ = eliminated
     dq, dv, da = change
-    n = free.size
-    m = transfer.shape[0] // (2 * n)
-    s, defect = stages.shape[0] // (m * n), np.empty((m, 2 * n))
+    n, m = free.size, dq.shape[0] - 1
+    s = stages.shape[0] // (m * n)
+    for r in range(n):
+        dq[0, free[r]], dv[0, free[r]] = first[r], first[n + r]
     for row in range(transfer.shape[0]):
-        defect[row // (2 * n), row % (2 * n)] = transfer[row, 2 * n] + transfer[row, 2 * n + 1] * parameter
-    carry(free, transfer, first, defect, dq, dv)
+        k, i = row // (2 * n), row % (2 * n)
+        total = transfer[row, 2 * n] + transfer[row, 2 * n + 1] * parameter
+        for r in range(n):
+            total += transfer[row, r] * dq[k, free[r]] + transfer[row, n + r] * dv[k, free[r]]
+        if i < n:
+            dq[k + 1, free[i]] = total
+        else:
+            dv[k + 1, free[i - n]] = total
     for row in range(stages.shape[0]):
         k, i = row // (s * n), row % (s * n)
         total = stages[row, 2 * n] + stages[row, 2 * n + 1] * parameter
@@ -456,11 +459,11 @@ def newton(equations, closure, mesh, samples, limits, eliminated, report):
     m, n = mesh.nodes.size - 1, equations.free.size
     noted, safe = np.zeros(3), samples.ball.copy()
     change = Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
-    close, first = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n)
+    close, first, local = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n), _room(equations, mesh)
     factor, worst, halvings, fine = 1.0, np.inf, 0, 0
     for sweep in range(1, limits.sweeps + 1):
         report[SWEEPS] = sweep
-        condensed = condense(equations, mesh, samples, eliminated, noted)
+        condensed = _condense(equations, mesh, samples, eliminated, noted, local)
         # The accelerations of a first guess are rough: its imbalance tells nothing.
         if condensed < m or (sweep > 2 and noted[IMBALANCE] > 2.0 * worst and noted[IMBALANCE] > 1e-9 * noted[FORCE]):
             report[SHORTENED] = 1.0
