@@ -38,7 +38,7 @@ from raceway.pipeline.plausible import (
     refuse_impossible,
     sliding_warnings,
 )
-from raceway.pipeline.quantities import stated_quantities
+from raceway.pipeline.quantities import StatedQuantities, stated_quantities
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
@@ -166,11 +166,7 @@ def _run(
         "error_s": answer.error_s,
     }
     simulation = answer.motions[-1] if answer.motions else None
-    stated = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
-    if scene.heat is not None:
-        from raceway.pipeline.warm import band_of_heat, friction_band
-
-        stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
+    stated = _stated(scene, model, equilibrium, simulation)
     return Result(
         model=model,
         equilibrium=equilibrium,
@@ -293,6 +289,15 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.problem.spin_speed) / (2.0 * np.pi)
         frequencies |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, frequencies)
+
+
+def _stated(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Simulation | None) -> StatedQuantities:
+    stated = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
+    if scene.heat is not None:
+        from raceway.pipeline.warm import band_of_heat, friction_band
+
+        stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
+    return stated
 
 
 def _work(motions: list[Simulation]) -> Tables:

@@ -515,14 +515,7 @@ def function(
     """
     read = as_scene(scene, plugins=plugins)
     keys, names = tuple(inputs), tuple(_name(output) for output in outputs)
-    if not keys:
-        raise SceneError.at("inputs", None, "are none: a function has at least one, such as 'load.axial'")
-    if doubled := [key for key in keys if keys.count(key) > 1]:
-        raise SceneError.at(doubled[0], None, "is an input twice")
-    for key in keys:
-        key_of(read, key)
-        if read.heat is not None and key.endswith(("_temperature", ".temperature_c")):
-            raise SceneError.at(key, None, "is computed by [heat]: it is no input")
+    _refuse_inputs(read, keys)
     _refuse_missing(read, names)
     result = Function(read, keys, names, tolerance, force, threads or usable_cores())
     if result.moving and read.excitation is None:
@@ -530,6 +523,17 @@ def function(
     if "kyy_tilts_follow" in names and read.supports.tilt == "locked":
         raise SceneError.at("supports.tilt", "locked", "kyy_tilts_follow needs tilts that follow")
     return result
+
+
+def _refuse_inputs(scene: Scene, keys: tuple[str, ...]) -> None:
+    if not keys:
+        raise SceneError.at("inputs", None, "are none: a function has at least one, such as 'load.axial'")
+    if doubled := [key for key in keys if keys.count(key) > 1]:
+        raise SceneError.at(doubled[0], None, "is an input twice")
+    for key in keys:
+        key_of(scene, key)
+        if scene.heat is not None and key.endswith(("_temperature", ".temperature_c")):
+            raise SceneError.at(key, None, "is computed by [heat]: it is no input")
 
 
 def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
