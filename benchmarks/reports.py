@@ -119,11 +119,7 @@ def page(data: dict[str, Any]) -> str:
 
 
 def _origin(data: dict[str, Any]) -> str:
-    m = data["machine"]
-    return (
-        f"Made by `{data['command']}` in {data['seconds']} s at commit {data['commit']}, {data['date']}; "
-        f"{m['cores']} cores {m['processor']}, {m['system']}, Python {m['python']}, numba {m['numba']}."
-    )
+    return f"`{data['command']}`, {data['seconds']} s, commit {data['commit']}, {data['date']}; machine: JSON file."
 
 
 def table(data: dict[str, Any]) -> str:
@@ -140,9 +136,9 @@ def table(data: dict[str, Any]) -> str:
         cells += [_cells(row, f"{subject}: " if shared else "", numbers) for row in claims]
     text = _markdown(("quantity", "value, limit", "basis"), cells)
     if not all(map(holds, rows)):
-        text += "\n\nBold values are outside their limits, for [these reasons](../evidence.md#misses)."
+        text += "\n\nBold: [misses](../evidence.md#misses)."
     for basis, group in itertools.groupby(sources, lambda source: source[0]):
-        lines = [f"{numbers[basis, source]}. {source or '-'}" for _, source in group]
+        lines = [f"{numbers[basis, source]}. {source}" for _, source in group]
         text += "\n\n" + "\n".join([f"Basis {basis}:", "", *lines])
     return text
 

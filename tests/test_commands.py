@@ -431,7 +431,7 @@ SLIPS = {
     "unknown option": (["run", ARTICLE, "--jsn"], "--json", ""),
     "no axis": (["compare", ARTICLE], "--vary", ""),
     "unknown case": (["verify", "--only", "nobody"], "no such case", ""),
-    "unknown bearing": (["dev", "new-scene", "b7206c"], "the nearest: B7206C, ", ""),
+    "unknown bearing": (["dev", "new-scene", "b7206q"], "the nearest: B7206E, B7206C, ", ""),
     "file for a bearing": (["dev", "new-scene", "mine.toml"], "raceway dev new-scene B7206C --out mine.toml", ""),
     "file that is there": (["dev", "new-scene", "--out", MINIMAL], "exists", ""),
     "unknown report": (["run", MINIMAL, "--report", "picturs"], "(did you mean 'pictures'?); installed: pictures", ""),

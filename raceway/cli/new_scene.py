@@ -73,9 +73,11 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
 
 def _scene_text(preset: str, registry: Registry) -> str:
     """The scene; what its comments say of a key is the key's own declaration."""
-    from raceway.scene.catalogue import catalogue
+    from raceway.scene.catalogue import preset_of
 
-    lines = [_HEAD, f'title = "{catalogue()[preset].title}"', "", "[bearing]"]
+    entry = preset_of(preset)
+    assert entry is not None
+    lines = [_HEAD, f'title = "{entry.title}"', "", "[bearing]"]
     lines.append(f'preset = "{preset}"  # other keys of this table override it')
     for table, keys in _KEYS.items():
         lines += [] if table == "bearing" else ["", f"[{table}]"]

@@ -157,7 +157,7 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
         return None
     start, spread = run.motion.start, run.identification.spread
     # A ramp that stands in for an orbit: single turns may be far from where they lead.
-    if not start.settled and start.orbit is None and (spread is None or spread > _REPEATS):
+    if not start.repeats and start.orbit is None and (spread is None or spread > _REPEATS):
         return Estimate.TURNS_DIFFER()
     needed = ("time_step", "transient", *(("identification",) if run.several_speeds else ()))
     unknown = {name.replace("_", " "): parts[name].how for name in needed if parts[name].size is None}
@@ -346,7 +346,7 @@ def _unresolved(model: Model, simulation: Simulation, clean: Clean, leakage: flo
     then the halves of the turns are further apart than the window over all turns accounts for.
     """
     start, problem = simulation.start, model.problem
-    if not start.settled:
+    if not start.repeats:
         return True
     if start.orbit is not None and problem.contact.friction == 0.0 and problem.contact.law.state_size == 0:
         return False

@@ -52,14 +52,14 @@ class Start:
     kind : "orbit", "ramp" or "static"
     orbit : that it begins on
     orbits : ``motion.orbits`` of result.json: the steady motions that were found in the search for it
-    settled : False where turns need not repeat: no orbit was found, or only one that is unstable
+    repeats : False where turns need not repeat: no orbit was found, or only one that is unstable
     warnings : what a user should know
     """
 
     kind: str
     orbit: Orbit | None = None
     orbits: tuple[Tables, ...] = ()
-    settled: bool = True
+    repeats: bool = True
     warnings: tuple[str, ...] = ()
 
 
@@ -171,13 +171,13 @@ def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) ->
         steady = steady_form(excitation)
         if steady is None:
             why = "the excitation does not repeat every turn: started with a ramp instead of on the orbit"
-            return Start("ramp", settled=False, warnings=(why,))
+            return Start("ramp", repeats=False, warnings=(why,))
         excitation = steady
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
         return _searched_start(model, system, excitation.period_s, equilibrium.displacement, watch)
     except ConvergenceError as why:
-        return Start("ramp", settled=False, warnings=(f"{why}: started with a ramp instead",))
+        return Start("ramp", repeats=False, warnings=(f"{why}: started with a ramp instead",))
 
 
 def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, watch: Watch | None) -> Start:

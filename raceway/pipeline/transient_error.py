@@ -240,7 +240,7 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
         No other start gives a motion.
     """
     kinds = (_OTHERS if motion.model.problem.integrator.method.inertial else _SERIES)[motion.start.kind]
-    if not motion.start.settled:
+    if not motion.start.repeats:
         kinds = tuple(kind for kind in kinds if kind != "orbit")  # searched for in vain
     failure: ConvergenceError | StabilityError | None = None
     for kind in kinds:
