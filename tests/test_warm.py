@@ -44,16 +44,37 @@ def test_at_rest_there_is_no_heat():
     assert_allclose(list(heat["temperatures_k"].values()), 313.15, rtol=1e-12)
 
 
-def test_columns_are_what_runs_give():
-    names = ["temperature_inner_k", "temperature_oil_k", "heat_w", "heat_to_housing_w", "kyy"]
-    speeds = np.array([2000.0, 9000.0, 20_000.0])
-    columns = rw.function(warm_pair(), ["kinematics.spin_speed_rpm"], names)(speeds)
-    assert (columns["status"] == rw.PointStatus.COMPUTED).all()
+def test_functions_and_sweeps_are_what_runs_give():
+    names = [
+        "temperature_inner_k",
+        "temperature_oil_k",
+        "heat_w",
+        "heat_to_housing_w",
+        "torque_nm",
+        "l10r_hours",
+        "kyy_tilts_follow",
+    ]
+    scene, speeds = warm_pair(supports={"tilt": "free"}), np.array([2000.0, 9000.0, 20_000.0])
+    columns = rw.function(scene, ["kinematics.spin_speed_rpm"], names)(speeds)
+    swept = rw.sweep(scene, {"kinematics.spin_speed_rpm": speeds})
+    assert (columns["status"] == rw.PointStatus.COMPUTED).all() and (swept["status"] == "computed").all()
     for k, speed in enumerate(speeds):
-        result = rw.run(warm_pair(kinematics={"spin_speed_rpm": float(speed)}))
-        for name in names[:-1]:
-            assert_allclose(columns[name][k], result.quantities[name], rtol=1e-7)
-        assert_allclose(columns["kyy"][k], result.equilibrium.stiffness[1, 1], rtol=1e-7)
+        result = rw.run(warm_pair(supports={"tilt": "free"}, kinematics={"spin_speed_rpm": float(speed)}))
+        stated = result.quantities | {"kyy_tilts_follow": result.to_dict()["equilibrium"]["kyy_tilts_follow_n_per_m"]}
+        for name in names:
+            assert_allclose([columns[name][k], swept[name].values[k]], stated[name], rtol=1e-9)
+
+
+def test_bands_move_with_the_temperatures():
+    """To first order by derivatives in which temperatures follow, and by samples; a key that is no column has none."""
+    numbers, tolerances = ("temperature_inner_k", "torque_nm", "l10r_hours", "kyy"), {"heat.oil_flow": "+-10 %"}
+    sampled = rw.band(warm_pair(), tolerances, count=64)
+    first = rw.run(warm_pair(tolerances={**tolerances, "bearing.width": "+-1 %"})).to_dict()["tolerances"]
+    assert [left_out["key"] for left_out in first["left_out"]] == ["bearing.width"] and sampled.lost == 0
+    for name in numbers:
+        low, high = sampled.low[name], sampled.high[name]
+        assert low < sampled.nominal[name] < high
+        assert_allclose([first["quantities"][name][end] for end in ("low", "high")], [low, high], atol=0.1 * (high - low))
 
 
 def test_more_oil_and_less_speed_are_colder():

@@ -330,11 +330,17 @@ class Gradients:
         columns = {key.path: np.full(1 + 2 * len(keys), key.value) for key in keys}
         for k, (key, step) in enumerate(zip(keys, steps, strict=True)):
             columns[key.path][1 + 2 * k : 3 + 2 * k] += -step, step
+        runaway = np.zeros(1 + 2 * len(keys), dtype=bool)
+        if scene.heat is not None:
+            from raceway.pipeline.warm import warm
+
+            warmth = warm(scene, columns, self.model.plan)
+            columns, runaway = {**columns, **warmth.columns}, warmth.runaway
         bearing = build_columns(column_problem(scene, columns), self.model.plan)
         bearing.points.guess[:] = q
         states = bearing.equilibria()
         values = {"displacement": states.q, "stiffness": states.stiffness, "contact_force": states.force}
-        values["damping"], fine = bearing.damping(states), states.status == 0
+        values["damping"], fine = bearing.damping(states), (states.status == 0) & ~runaway
         values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
             excitations = Excitations.of(scene, columns)
@@ -367,6 +373,10 @@ class Gradients:
         NoDerivative
             There is none, with the reason.
         """
+        if self.model.scene.heat is not None:
+            raise NoDerivative(
+                "moves the steady temperatures, too, which are not solved for here. Sample it, raceway band --samples"
+            )
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)

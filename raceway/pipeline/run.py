@@ -120,6 +120,22 @@ def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:
     return attrs.evolve(low, model=model, cost={**high.cost, **sums}, band=band_table([low, high]), warnings=warnings)
 
 
+def steady_plan(scene: Scene) -> ScenePlan:
+    """The plan of a scene, with [heat] at its steady temperatures.
+
+    Raises
+    ------
+    ConvergenceError
+        There are none.
+    """
+    plan = make_plan(scene)
+    if scene.heat is None:
+        return plan
+    from raceway.pipeline.warm import warm_plan
+
+    return warm_plan(scene)
+
+
 def _run(
     scene: Scene,
     registry: Registry,
@@ -129,11 +145,7 @@ def _run(
     stay: bool,
 ) -> Result:
     started, processor = working_clock(), working_process_time()
-    plan = make_plan(scene)
-    if scene.heat is not None:
-        from raceway.pipeline.warm import warm_plan
-
-        plan = warm_plan(scene)
+    plan = steady_plan(scene)
     allowance = _Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)

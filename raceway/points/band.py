@@ -23,8 +23,7 @@ from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
 from raceway.pipeline.quantities import stated_quantities
-from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
+from raceway.pipeline.run import run, steady_plan
 from raceway.points.column_quantities import stated_columns
 from raceway.points.engine import Item, local, work_through
 from raceway.points.function import function
@@ -304,7 +303,7 @@ def _row(scene: Scene, paths: Sequence[str], point: list[float]) -> Tables:
 
 def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     """Numbers, and what they are; of plug-ins of quantities those with one number a point."""
-    model = build_model(scene, make_plan(scene))
+    model = build_model(scene, steady_plan(scene))
     equilibrium = solve_equilibrium(model)
     numbers, words = values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
     columns = stated_columns(scene, default_registry())

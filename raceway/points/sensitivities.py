@@ -34,7 +34,7 @@ from raceway.pipeline.gradient import (
     tolerance_rows,
     values,
 )
-from raceway.planning.plan import make_plan
+from raceway.pipeline.run import steady_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import without_nan
@@ -312,7 +312,7 @@ def sensitivities(
     asked = [key_of(read, path) for path in keys]
     chosen_keys = asked or continuous_keys(read)
     with telling(progress) as report:
-        begun, model = working_processor_time(), build_model(read, make_plan(read))
+        begun, model = working_processor_time(), build_model(read, steady_plan(read))
         gradients = Gradients(model, equilibrium := solve_equilibrium(model))
         now = values(model, equilibrium, gradients.orbit)
         run_s, begun = working_processor_time() - begun, working_processor_time()
