@@ -311,10 +311,16 @@ class Gradients:
                 return str(why)
             return ""
 
+        def ends(keys: list[Key], side: float) -> dict[str, str]:
+            """By halves: several at once take as long as one, and few are refused."""
+            why, half = refused(keys, side), len(keys) // 2
+            if not why or half == 0:
+                return {key.path: why for key in keys if why}
+            return ends(keys[:half], side) | ends(keys[half:], side)
+
         why = {key.path: refused([key], -1.0) for key in keys if key.value == 0.0}
         inside = [key for key in keys if not why.get(key.path)]
-        if refused(inside, -1.0) or refused(inside, 1.0):  # several at once take as long as one
-            why |= {key.path: refused([key], -1.0) or refused([key], 1.0) for key in inside}
+        why |= ends(inside, 1.0) | ends(inside, -1.0)
         zero = "is 0, the end of its range: it switches a part on, which is no small change"
         return {
             key.path: NoDerivative(f"is at the end of its range: {why[key.path]}" if key.value else zero)
