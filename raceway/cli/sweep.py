@@ -197,11 +197,10 @@ def sweep(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Answer:
-    """Compute a scene at the points of a grid or a list, and keep every point in a store; draw one quantity of them.
+    """Compute a scene at the points of a grid or a list, store every point, draw one quantity.
 
-    STORE holds points.sqlite (states and values, written as points finish) and results.nc (an xarray data set). Ctrl-C, a
-    kill or a full disk lose what was being computed; --resume goes on. A finished STORE in place of SCENE is drawn: one more
-    axis becomes panels, what is left over is chosen with --at, and points without a result leave gaps, which are counted.
+    STORE holds points.sqlite, written as points finish, and results.nc, an xarray data set; --resume continues an interrupted
+    sweep. A STORE in place of SCENE is drawn: a third axis becomes panels, further ones need --at.
 
     Parameters
     ----------

@@ -435,8 +435,8 @@ def uncertainty(
 ) -> Band | Sensitivities:
     """How much the numbers and tolerances of a scene change its answer: K, C, stiffness, displacement and ball loads.
 
-    First-order derivatives by every number, and from them the 95 % band over the tolerances, without solving the scene again. With
-    --samples the band of samples and its Sobol indices instead, which see large tolerances, interactions and contacts that open.
+    First-order derivatives by every number and the 95 % band over the tolerances. With --samples the band of samples and its Sobol
+    indices, for large tolerances, interactions and contacts that open.
 
     Parameters
     ----------

@@ -37,14 +37,14 @@ def article(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Answer:
-    """Compute the article's figures 9 to 12 and say which of its claims hold, and where.
+    """Compute the article's figures 9 to 12, with a verdict on each of its claims.
 
-    SCENE is the bearing; the article's B7206C without it. Excitation, speed, axial load, tilt, ball inertia, bodies,
-    friction and integrator are set by the study. Writes article.html, which opens from a file without a network, its figures as PNG,
-    article.json and CSV tables. Finished curves are stored in DIR/points.sqlite and reused.
+    SCENE is the bearing, by default the article's B7206C; the study sets excitation, speed, axial load, tilt, ball inertia, bodies,
+    friction and integrator. Writes article.html, figures, article.json and CSV tables. Finished curves are reused from
+    DIR/points.sqlite.
 
-    With --bodies elastic every node of rings and balls moves, on the article's mesh without SCENE: four load cases at rest and one
-    operating point under both excitations, beside condensed and rigid bodies. It takes gigabytes, and writes article-elastic.html.
+    --bodies elastic: the article's mesh without SCENE, four load cases at rest and one operating point under both excitations,
+    beside condensed and rigid bodies; takes gigabytes, writes article-elastic.html.
 
     Parameters
     ----------

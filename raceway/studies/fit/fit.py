@@ -118,11 +118,10 @@ def fit_texts(
 ) -> Fitted | Identified:
     """Fit numbers of a scene to measured data, or identify K and C of a bearing from the signals of its rig; intervals at 95 %.
 
-    DATA is a CSV file: a table of measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]; errors are
-    half-widths at 95 %); the signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm; or as other programs
-    do, Time (s), X [um], Y [um]); or, without a scene, a record of force and displacement (time_s, force_n, x_um), to which K, C and
-    mass are fitted. Semicolons, tabs and decimal commas are read. With --free writes fit.json and fit.png. Without, SCENE has a table
-    [rig], and K and C of its bearing are identified from the sensor beside it: identify.json. `raceway identify` is the same command.
+    DATA is a CSV file: measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %);
+    signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, a record of force and
+    displacement (time_s, force_n, x_um) for K, C and mass. With --free writes fit.json and fit.png; without, identifies K and C of
+    the bearing in the scene's table [rig]: identify.json. `raceway identify` is the same command.
 
     Parameters
     ----------

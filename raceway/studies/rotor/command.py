@@ -67,10 +67,9 @@ def export(
 ) -> Exports:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for a rotor program.
 
-    For ROSS, whose axes X, Y, Z are y, z, x here, for Nastran or Ansys, or as a table of all numbers. The sweep has at
-    least 5 values of excitation.speed_rpm, 2 where ROSS is not asked for; over kinematics.spin_speed_rpm as well it becomes
-    a table over speed and frequency, which ROSS 3 and --table take. Other axes are chosen with --at. What a program cannot
-    carry is said here and in the head of its file.
+    For ROSS (axes X, Y, Z are y, z, x here), Nastran, Ansys, or as a table. The sweep has at least 5 values of
+    excitation.speed_rpm, 2 without ROSS; with kinematics.spin_speed_rpm it is a table over speed and frequency, for ROSS 3 and
+    --table. Other axes need --at. What a program cannot represent is reported here and in its file.
 
     Parameters
     ----------
