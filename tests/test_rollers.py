@@ -203,6 +203,32 @@ def test_energy_of_laminae_balances_along_a_motion():
     assert rw.run(tables).stability["energy_drift"] < 4e-4
 
 
+# --- many points
+
+
+def test_columns_are_the_runs_to_rounding():
+    scene = {
+        "bearing": {"preset": "NU206"},
+        "supports": {"tilt": "free"},
+        "load": {"radial": [2000.0, 0.0], "moment": [0.0, 0.5]},
+        "kinematics": {"spin_speed_rpm": 6000.0},
+    }
+    keys = ("load.radial[0]", "bearing.radial_clearance", "kinematics.spin_speed_rpm", "bearing.ball_diameter")
+    columns = np.linspace((500.0, 5e-6, 0.0, 8.9e-3), (9000.0, 60e-6, 15e3, 9e-3), 5).T
+    many = rw.function(scene, keys, ["kyy", "displacement", "ball_load", "p0_inner", "p0_outer"])(*columns)
+    assert not many["status"].any()  # all by the compiled loop
+    for k, point in enumerate(columns.T):
+        result = rw.run(rw.evolve(scene, dict(zip(keys, map(float, point), strict=True))))
+        assert many["kyy"][k] == pytest.approx(result.stiffness[1, 1], rel=1e-9)
+        assert many["displacement"][k] == pytest.approx(result.equilibrium.displacement, rel=1e-9, abs=1e-14)
+        assert many["ball_load"][k].ravel() == pytest.approx(result.equilibrium.contact_force, rel=1e-7, abs=1e-7)
+        pressure = [
+            result.model.bearing.contact_ellipse(result.model, race, q)[0].max()
+            for race, q in enumerate(many["ball_load"][k])
+        ]
+        assert (many["p0_inner"][k], many["p0_outer"][k]) == pytest.approx(tuple(pressure), rel=1e-12)
+
+
 # --- by number
 
 

@@ -7,7 +7,7 @@ running      contact laws at the running speed: entraining speeds, loads, parame
 contacts     angles, ellipses and pressures of contact resultants, edges of grooves, error of a contact law
 mesh         meshes of a scene, their size before they are made, whether they fit the bearing
 rigid        rigid rings and balls: kind and cost;  rigid_bearing: the ring
-rollers      rigid rings on cylindrical rollers: kind and cost;  roller_bearing: the ring
+rollers      rigid rings on cylindrical rollers: kind and cost;  roller_bearing: the ring;  roller_columns: at many points
 columns      rigid bodies at many operating points at once
 condensed    finite elements reduced to contact compliances: kind and cost;  condensed_bearing: the ring
 patch_bearing   condensed bodies with pressures at surface points

@@ -37,6 +37,7 @@ from raceway.scene.bearing import DIMENSIONS
 from raceway.scene.changes import with_columns
 from raceway.scene.growth import groove_edge
 from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
 
 #: Continuous keys whose numbers may be columns; beside them those of the excitation.
 _KEYS = frozenset(
@@ -92,6 +93,7 @@ _SHAPES = frozenset(
     for key in _KEYS
     if key.startswith("bearing.") and not key.endswith(("preload", "density", "expansion", "azimuth_deg"))
 )
+C = TypeVar("C", bound="ColumnBearing")
 R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
 _MOST_SAMPLES = 128
@@ -108,13 +110,14 @@ def why_not(scene: Scene, moving: bool) -> str:
     bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
     deform = scene.bodies.name == "condensed"
     reasons = {
-        "bodies are in full": scene.bodies.name not in ("rigid", "condensed"),
+        "bodies are in full": scene.bodies.name not in ("rigid", "condensed", "cylindrical_rollers"),
+        "rollers move": moving and problem.traits.line_contacts,
         "contacts have surface points": deform and scene.contact.discretisation != "resultant",
         "balls act on each other through elastic rings": deform and scene.bodies.balls_meet(problem),
         "the contact law has a memory": law.state_size > 0,
         "contacts rub": scene.contact.friction > 0.0,
         "dashpots are given as a band": scene.contact.in_a_band,
-        "an axial displacement is held": scene.supports.axial == "displacement",
+        "an axial displacement is held": scene.supports.axial == "displacement" and not problem.traits.line_contacts,
         "rows are on a spring, or ground one by one": bearing.preloaded
         and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
         "balls orbit": moving and scene.kinematics.orbiting,
@@ -345,6 +348,12 @@ class ColumnBearing:
         pairs = zip(self.ellipses, halves, strict=True)
         return np.any([(e.semi_axes(half)[0] / radius).max(axis=1) >= 0.5 * np.pi for e, half in pairs], axis=0)
 
+    def contact_ellipse(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Peak pressure [Pa] and semi-axes [m] of contacts under loads (n, 2, Z) [N]."""
+        halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(self.ellipses)]
+        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
+        return pressure, major, minor
+
     @property
     def ellipses(self) -> tuple[Ellipse, Ellipse]:
         """Of the inner and outer contacts, with numbers that spread over points and balls."""
@@ -368,11 +377,24 @@ def _running(bearing: ColumnBearing) -> ColumnBearing:
 @np.errstate(all="ignore")
 def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     """The same with the contact law as at standstill."""
-    n, basis = problem.points[0], make_basis(problem)
-    parts = contact_parts(problem, plan, basis)
+    if problem.traits.line_contacts:
+        from raceway.bodies.roller_columns import roller_columns
+
+        return roller_columns(problem, plan)
+    basis = make_basis(problem)
+    bearing = assembled_columns(ColumnBearing, problem, plan, basis, contact_parts(problem, plan, basis))
+    if some(problem.bearing.preload):
+        return bearing._preloaded()
+    bearing.points.guess[:] = first_guess(problem, basis)
+    return bearing
+
+
+def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Basis, parts: Tables) -> C:
+    """A bearing at n points of its kernels and their numbers, at standstill and without a guess."""
+    n = problem.points[0]
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     faults = np.zeros(n, dtype=np.int64)
-    if problem.bodies.name != "rigid":
+    if problem.bodies.name == "condensed":
         parts, too_stiff = elastic_parts(problem, basis, parts)
         faults[too_stiff] = LOOSE
     columns = 2 + elastic_columns(parts["scalars"][0])
@@ -383,21 +405,12 @@ def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     none = np.zeros((5, 5))
     linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
     points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
-    bearing = ColumnBearing(problem, plan, basis, linear, points, kernels, faults)
-    if some(problem.bearing.preload):
-        return bearing._preloaded()
-    points.guess[:] = first_guess(problem, basis)
-    return bearing
+    return cls(problem, plan, basis, linear, points, kernels, faults)
 
 
 def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:
     """n points of a compiled loop as quantities see them; ``turn`` : of ``SolvedPoints``."""
     problem, n, z = bearing.problem, len(states.status), states.force.shape[1] // 2
-
-    def ellipse(load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(bearing.ellipses)]
-        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
-        return pressure, major, minor
 
     return SolvedPoints(
         problem=problem,
@@ -409,7 +422,7 @@ def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int],
         displacement=states.q,
         stiffness=states.stiffness,
         running_contacts=lambda: running_pairs(problem, bearing.basis, states.force, bearing.contact_angles(states)),
-        ellipse=ellipse,
+        ellipse=bearing.contact_ellipse,
         turn=turn,
     )
 

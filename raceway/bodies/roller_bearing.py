@@ -52,16 +52,8 @@ class RollerBearing(Bearing):
         return inner, outer
 
     def contact_ellipse(self, model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Hertz's line contact: p0 = 2 Q / (pi b L), semi-axes L / 2 and b = sqrt(4 Q R / (pi L E*)).
-
-        References
-        ----------
-        Johnson, Contact Mechanics (1985), section 4.2(c), with E* of both bodies.
-        """
-        load = np.asarray(load, dtype=float)
-        half = np.sqrt(4.0 * load * self.radii[race] / (pi * self.length * self.basis.modulus))
-        pressure = 2.0 * load / (pi * np.maximum(half, 1e-300) * self.length)
-        return pressure, np.where(load > 0.0, 0.5 * self.length, 0.0), half
+        """Hertz's line contact; see ``line_contact``."""
+        return line_contact(np.asarray(load, dtype=float), self.radii[race], self.length, self.basis.modulus)
 
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
         """A contact as wide as half a roller."""
@@ -94,6 +86,37 @@ class RollerBearing(Bearing):
         return None, f"law '{model.problem.contact.kind}' was found by experiment: what it is off by is not estimated"
 
 
+def _clearance(problem: Problem) -> Number:
+    """Radial, on the diameter [m]; 0 where none is given."""
+    return 0.0 if problem.bearing.radial_clearance is None else problem.bearing.radial_clearance
+
+
+def line_contact(
+    load: np.ndarray, radius: Number, length: float, modulus: Number
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Hertz's line contact: p0 = 2 Q / (pi b L) [Pa], semi-axes L / 2 and b = sqrt(4 Q R / (pi L E*)) [m].
+
+    Notes
+    -----
+    Mean over the length: the profile raises the pressure in the middle.
+
+    References
+    ----------
+    Johnson, Contact Mechanics (1985), section 4.2(c), with E* of both bodies.
+    """
+    half = np.sqrt(4.0 * load * radius / (pi * length * modulus))
+    pressure = 2.0 * load / (pi * np.maximum(half, 1e-300) * length)
+    return pressure, np.where(load > 0.0, 0.5 * length, 0.0), half
+
+
+def first_roller_guess(problem: Problem) -> np.ndarray:
+    """(..., 5) displacement to look for the equilibrium from [m, rad]: along the radial load, beyond the clearance."""
+    b, size, guess = problem.bearing, np.hypot(*problem.load.radial), np.zeros((*problem.points, 5))
+    for axis, force in enumerate(problem.load.radial):
+        guess[..., 1 + axis] = (0.5 * _clearance(problem) + 1e-3 * b.ball_diameter) * force / np.maximum(size, 1e-300)
+    return guess
+
+
 def build(problem: Problem, plan: ScenePlan, kind: CylindricalRollers) -> RollerBearing:
     """The bearing of a scene."""
     b, (basis, radii) = problem.bearing, roller_basis(problem)
@@ -110,10 +133,7 @@ def build(problem: Problem, plan: ScenePlan, kind: CylindricalRollers) -> Roller
     probe_law(problem.contact.law, system.law, system.law_params, system.law_state)
     if problem.excitation is not None:
         probe_excitation(problem.excitation, system.force, system.force_params)
-    clearance, force = b.radial_clearance or 0.0, np.array(problem.load.radial)
-    guess = np.zeros(5)
-    guess[1:3] = (0.5 * clearance + 1e-3 * b.ball_diameter) * force / max(float(np.hypot(*force)), 1e-300)
-    return RollerBearing(basis, system, guess, kind.roller_length, radii, clearance)
+    return RollerBearing(basis, system, first_roller_guess(problem), kind.roller_length, radii, b.radial_clearance or 0.0)
 
 
 def roller_basis(problem: Problem) -> tuple[Basis, tuple[Number, Number]]:
@@ -162,7 +182,7 @@ def _law_params(problem: Problem, basis: Basis, length: float, radii: tuple[Numb
 
 def _scalars(problem: Problem, basis: Basis) -> np.ndarray:
     out = np.zeros((*problem.points, ring.SCALARS))
-    out[..., ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * (problem.bearing.radial_clearance or 0.0)
+    out[..., ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * _clearance(problem)
     out[..., ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
     out[..., ring.DAMPING] = problem.contact.dashpot
     if problem.kinematics.orbiting:

@@ -9,6 +9,7 @@ import attrs
 
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.duties import line_contact
 from raceway.framework.options import at_least, option, positive
 from raceway.planning.cost import START_S, Times, compiled_motion
 from raceway.storage.tables import Tables
@@ -85,7 +86,7 @@ class CylindricalRollers:
             "cylindrical rollers carry no axial load: leave it out",
         )
         why = "is no law of line contacts: use 'line'"
-        refuse(not getattr(contact.law, "line_contact", False), "contact.kind", contact.kind, why)
+        refuse(not line_contact(contact.law), "contact.kind", contact.kind, why)
         refuse(
             contact.discretisation != "resultant",
             "contact.discretisation",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -58,11 +59,16 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     from rich.text import Text
 
     from raceway.scene.catalogue import preset as known
+    from raceway.scene.catalogue import preset_of
 
     if Path(preset).suffix == ".toml":
         raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway dev new-scene B7206C --out {preset}")
     known(preset)
-    file = Path(f"{preset}.toml") if out is None else out
+    if (entry := preset_of(preset)) is not None and entry.other_tables:
+        raise RacewayError(
+            f"`{preset}` carries no axial load: bearing.preset and load.radial are a complete scene (examples/cylindrical_rollers.toml)"
+        )
+    file = Path(f"{re.sub(r'[^A-Za-z0-9-]+', '-', preset)}.toml") if out is None else out
     if file.exists():
         raise RacewayError(f"`{file}` exists: choose another file with --out, or remove it")
     write_whole(_scene_text(preset, default_registry()).encode(), file)

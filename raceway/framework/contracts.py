@@ -59,6 +59,7 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     10. ``report(pairs)``, with ``renewed``: a ``LawReport`` at the running equilibrium.
     11. ``elementwise`` = True says that options may be arrays (n,), one number for each contact: many operating points whose
         options differ are then built at once, else once for each value.
+    12. ``line_contact`` = True says that it is a law of line contacts, of rollers: ``pairs.length`` is their length.
     """
 
     name: ClassVar[str]

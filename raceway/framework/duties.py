@@ -146,6 +146,11 @@ def renews(law: ContactLaw) -> bool:
     return bool(getattr(law, "renewed", False))
 
 
+def line_contact(law: ContactLaw | type[ContactLaw]) -> bool:
+    """Whether a contact law is one of lines, of rollers; not unless it says so."""
+    return bool(getattr(law, "line_contact", False))
+
+
 def is_constraint(law: ContactLaw) -> bool:
     """Whether a contact law stands for no penetration at all; not unless it says so."""
     return bool(getattr(law, "constraint", False))

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 import attrs
 
 from raceway.errors import SceneError
+from raceway.framework.duties import line_contact
 from raceway.framework.registry import Entry, Registry
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.stability.study import Case
@@ -234,8 +235,8 @@ def transient(registry: Registry) -> list[str]:
 
 
 def _laws_with(registry: Registry, *discretisations: str) -> list[str]:
-    """Names of the laws that know these discretisations."""
-    laws = [entry for entry in registry.all() if entry.kind == "contact_law"]
+    """Names of the laws of ball contacts that know these discretisations."""
+    laws = [entry for entry in registry.all() if entry.kind == "contact_law" and not line_contact(entry.plugin)]
     return [law.name for law in laws if set(discretisations) <= set(law.plugin.discretisations)]
 
 
