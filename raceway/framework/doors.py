@@ -107,7 +107,8 @@ _FINITE = _number("a finite number", math.isfinite)
 _READERS: dict[str, Reader] = {
     name: reader
     for names, reader in {
-        "out kept store folder path": _PATH,
+        "out store folder path": _PATH,
+        "kept": _PATH,
         "plugins": _several(_PATH),
         "str": _TEXT,
         "bool": _reader("True or False", lambda v: type(v).__name__ in ("bool", "bool_"), bool),
