@@ -191,3 +191,16 @@ def test_a_fit_takes_them_as_measured(loads):
     measured = rw.function(steep, ["load.axial"], ["mean_load"])(axial)["mean_load"]
     fitted = rw.fit({"load.axial [N]": axial, "mean_load [N]": measured}, SCENE, free=["bearing.contact_angle_deg"])
     assert fitted.estimate.values[0] == pytest.approx(angle, rel=1e-6)
+
+
+def test_sweeps_and_tables_of_coefficients_have_them(tmp_path):
+    """Of a one-off file; in CSV and JSON: files for rotor programs hold stiffness and damping alone."""
+    lines = ["from raceway import hookimpl", "from tests.test_quantities import Loads", "", "@hookimpl"]
+    (tmp_path / "loads.py").write_text("\n".join([*lines, "def raceway_quantities():", "    return [Loads]", ""]))
+    speeds = {"kinematics.spin_speed_rpm": [3000.0, 6000.0, 9000.0]}
+    swept = rw.sweep(SCENE, speeds, plugins=[tmp_path / "loads.py"])
+    table, content = (rw.export_coefficients(swept, source="tangent", kind=kind).text for kind in ("csv", "json"))
+    expected = swept["mean_load"].values.tolist()
+    assert json.loads(content)["quantities"]["mean_load [N]"] == expected and swept["mean_load"].units == "N"
+    head, *rows = [line.split(",") for line in table.splitlines() if not line.startswith("#")]
+    assert [float(row[head.index("mean_load [N]")]) for row in rows] == expected

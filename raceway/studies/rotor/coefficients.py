@@ -20,6 +20,7 @@ import numpy as np
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.doors import member
 from raceway.out.damping import dry_damping_words
+from raceway.out.quantities import COLUMNS
 from raceway.points.axes import shown
 from raceway.points.plot import LIST, Selection, listed, only_axes
 from raceway.scene.tables import TIME_CONSTANTS
@@ -47,6 +48,7 @@ class Coefficients:
     notes : what the reader of the table has to know, a sentence each
     tangent, tangent_damping : (..., 5, 5) of the contacts at the equilibrium, over x, y, z, tilt_y, tilt_z; no motion is condensed
     tilt : how the tilt was held, ``supports.tilt``
+    stated : numbers of plug-ins of quantities (...,) by name and unit, those that all points have, such as "torque_nm [N m]"
     """
 
     speed: np.ndarray | None
@@ -60,6 +62,7 @@ class Coefficients:
     tangent: np.ndarray
     tangent_damping: np.ndarray
     tilt: str | float
+    stated: Mapping[str, np.ndarray] = attrs.field(factory=dict)
 
     @property
     def ending(self) -> str:
@@ -147,11 +150,17 @@ def coefficients(
     notes += [*replaced, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, measured, unresolved)]
     tangent, tangent_damping = _at_equilibrium(selection, "stiffness"), _at_equilibrium(selection, "damping")
     axial = _undirected(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
-    speed, frequency, arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping)
-    stiffness, damping, axial, tangent, tangent_damping = arrays
+    data = selection.dataset
+    names = [str(name) for name, column in data.items() if "units" in column.attrs and name not in (*COLUMNS, "warnings")]
+    numbers = (_undirected(selection, np.array(data[name].values, dtype=float)) for name in names)
+    speed, frequency, arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping, *numbers)
+    stiffness, damping, axial, tangent, tangent_damping, *columns = arrays
+    stated = {
+        f"{n} [{data[n].units}]": column for n, column in zip(names, columns, strict=True) if np.isfinite(column).all()
+    }
     tilt = selection.value("supports.tilt", "locked")
     return Coefficients(
-        speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), tangent, tangent_damping, tilt
+        speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), tangent, tangent_damping, tilt, stated
     )
 
 

@@ -257,6 +257,7 @@ def _csv_text(table: Coefficients, head: Sequence[str]) -> str:
     columns = {f"{name} [rad/s]": values for name, values in zip(table.axes, points, strict=True)}
     columns |= {f"{name} [{unit(name)}]": values for name, values in table.columns().items()}
     columns |= dict(_entries("K", table.tangent)) | dict(_entries("C", table.tangent_damping))
+    columns |= table.stated
     text = io.StringIO()
     text.writelines(f"# {sentence}\n" for sentence in head)
     writer = csv.writer(text, lineterminator="\n")
@@ -274,6 +275,7 @@ def _json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:
         "definition": table.definition,
         **{name: {"unit": "rad/s", "values": values.tolist()} for name, values in table.axes.items()},
         "coefficients": {name: {"unit": unit(name), "values": values.tolist()} for name, values in table.columns().items()},
+        "quantities": {name: values.tolist() for name, values in table.stated.items()},
         "coordinates": list(DOF),
         "K": {"unit": [[_entry_unit("K", a, b) for b in DOF] for a in DOF], "values": table.tangent.tolist()},
         "C": {"unit": [[_entry_unit("C", a, b) for b in DOF] for a in DOF], "values": table.tangent_damping.tolist()},
