@@ -204,3 +204,9 @@ def test_sweeps_and_tables_of_coefficients_have_them(tmp_path):
     assert json.loads(content)["quantities"]["mean_load [N]"] == expected and swept["mean_load"].units == "N"
     head, *rows = [line.split(",") for line in table.splitlines() if not line.startswith("#")]
     assert [float(row[head.index("mean_load [N]")]) for row in rows] == expected
+
+
+def test_the_page_of_a_bearing_has_them(loads):
+    page = rw.view(SCENE, page=True).pictures["view.html"].decode()
+    expected = rw.run(SCENE).quantities["mean_load"]
+    assert "Mean load of the inner contacts, and their loads over a turn" in page and f"{expected:.5g}" in page

@@ -37,7 +37,7 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
 
     Parameters
     ----------
-    words : title, subtitle, when (which state is shown), lead (a paragraph), notes (sentences)
+    words : title, subtitle, when (which state is shown), lead (a paragraph), notes (sentences), quantities (name, value, remark)
     pictures : (bytes of a PNG file, what is seen, caption)
     """
     page = Page(words["title"], words["subtitle"], "Made by `raceway view`; opens without a network.")
@@ -54,6 +54,9 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
             _balls(state, inner),
             caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
         )
+    if words["quantities"]:
+        page.section("Life, friction and other quantities")
+        page.table(("quantity", "value", "remark"), words["quantities"])
     page.section("Pictures")
     for picture in pictures:
         page.markup(_picture(*picture))

@@ -27,6 +27,7 @@ from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
+from raceway.pipeline.run_parts import quantity_rows
 from raceway.pipeline.simulate import OnProgress
 from raceway.plugins.pictures import picture
 from raceway.plugins.system_libraries import refuse_pictures
@@ -210,7 +211,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
     if page:
         words = {
             "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, state),
-            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."],
+            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."], "quantities": quantity_rows(result.to_dict()),
         }  # fmt: skip
         pictures = [(image.content, image.alternative, image.caption) for image in images.values()]
         files["view.html"] = view_page(bearing, state, words, pictures).html().encode()
