@@ -1,4 +1,4 @@
-"""Tables of numbers from CSV files: a header line and finite numbers below it, read in parts of some megabytes.
+"""Tables of numbers from CSV files: a heading and finite numbers below it, read in parts of some megabytes.
 
 Commas, semicolons or tabs stand between the columns, whichever the header has; where it is no comma, a comma in a number is its
 decimal sign.
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, TextIO
 import attrs
 
 from raceway.storage.files import size_of
+from raceway.storage.headings import Heading, heading_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -71,28 +72,33 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
     import numpy as np
 
     size_of(path, LARGEST)
+    encoding = _encoding(path)
     try:
-        with open(path, encoding=_encoding(path)) as stream:
-            line, header, sign = _header(stream)
-            judge(header)
+        heading = heading_of(path, encoding)
+        judge(heading.header)
+        with open(path, encoding=encoding) as stream:
+            for _ in range(heading.last):
+                stream.readline()
             most = _lines_of(path)
-            values, lines = np.empty((most, len(header))), np.empty(most, dtype=np.int64)
+            values, lines = np.empty((most, heading.width)), np.empty(most, dtype=np.int64)
             count = 0
             points = False
-            for rows, numbers in _parts(stream, line):
-                if sign != ",":
+            for rows, numbers in _parts(stream, heading.last):
+                if heading.maker:  # instruments end rows with a sign, and leave columns at both ends empty
+                    rows = [text.strip().strip(heading.sign) for text in rows]
+                if heading.sign != ",":
                     points = points or any("." in text for text in rows)
                     rows = _with_points(rows, numbers, points)
                 end = count + len(rows)
-                values[count:end], lines[count:end] = _values(rows, numbers, len(header), sign), numbers
+                values[count:end], lines[count:end] = _values(rows, numbers, heading.width, heading.sign), numbers
                 count = end
     except (UnicodeDecodeError, csv.Error):
         raise ValueError(_NO_TABLE) from None
-    return NumberTable(header, values[:count], lines[:count])
+    return NumberTable(heading.header, heading.with_times(values[:count]), lines[:count])
 
 
-def read_heads(path: Path) -> list[str]:
-    """The header of a file, as ``read_numbers`` reads it.
+def read_heading(path: Path) -> Heading:
+    """The heading of a file, as ``read_numbers`` reads it.
 
     Raises
     ------
@@ -101,8 +107,7 @@ def read_heads(path: Path) -> list[str]:
     """
     size_of(path, LARGEST)
     try:
-        with open(path, encoding=_encoding(path)) as stream:
-            return _header(stream)[1]
+        return heading_of(path, _encoding(path))
     except (UnicodeDecodeError, csv.Error):
         raise ValueError(_NO_TABLE) from None
 
@@ -114,9 +119,9 @@ def _lines_of(path: Path) -> int:
 
 
 def _encoding(path: Path) -> str:
-    """UTF-8, unless the first line is text in Windows' Western letters alone: spreadsheets write a unit's micro sign so."""
+    """UTF-8, unless the first two lines are text in Windows' Western letters alone: spreadsheets write a unit's micro sign so."""
     with open(path, "rb") as stream:
-        first = stream.readline(_SHOWN * 2**8)
+        first = b" ".join(stream.readline(_SHOWN * 2**8).strip() for _ in range(2))
     try:
         first.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -124,23 +129,6 @@ def _encoding(path: Path) -> str:
         if text.isprintable() and "\ufffd" not in text:
             return "cp1252"
     return "utf-8-sig"
-
-
-def _header(stream: TextIO) -> tuple[int, list[str], str]:
-    """Number and words of the first line that is not empty, and the sign between them."""
-    number = 0
-    while text := stream.readline():
-        number += 1
-        if text.strip():
-            sign = _sign(text)
-            return number, [word.strip() for word in next(csv.reader([text], delimiter=sign))], sign
-    raise ValueError("is empty: a header line and samples are needed")
-
-
-def _sign(header: str) -> str:
-    """Tab, semicolon or comma, the first of them that stands outside quotes."""
-    bare = "".join(header.split('"')[::2])
-    return next((sign for sign in "\t;" if sign in bare.strip()), ",")
 
 
 def _with_points(rows: list[str], numbers: np.ndarray, points: bool) -> list[str]:

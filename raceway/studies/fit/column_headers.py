@@ -45,10 +45,14 @@ _FILLING = {*_SENSOR, "shaft"}
 _SPELLINGS = {
     "sec": "s", "second": "s", "seconds": "s", "r/min": "rpm", "1/min": "rpm", "min^-1": "rpm", "min-1": "rpm", "rad/s": "rad_s",
 }  # fmt: skip
-_VOLTS = {"v", "mv", "volt", "volts"}
+_VOLTS = {"v", "mv", "uv", "kv", "volt", "volts"}
 _ALL_UNITS = {unit for units in UNITS.values() for unit in units} | _VOLTS
 _WITH_UNIT = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<a>[^\]]*)\]|\((?P<b>[^)]*)\)|/\s*(?P<c>\S+)|\s(?P<d>rpm))$")
 _AXIS = re.compile(r"(?P<kind>force )?[xyz]")
+#: A name with a factor: of a sensor's sensitivity per volt.
+_SCALED = re.compile(r"(?P<name>.*?)\s*(?P<sign>[*/])\s*(?P<size>[-+]?[\d.]+(?:e[-+]?\d+)?)", re.IGNORECASE)
+_TO_VOLTS = {"mv": 1e-3, "uv": 1e-6, "kv": 1e3}
+_SENSITIVITY = 'as in --map "CH1=force_n*100" (100 N per V) or --map "CH2=x_um/8e-3" (8e-3 V per um)'
 _EXAMPLE = "for instance time_s,y_um,z_um,key"
 
 
@@ -56,13 +60,14 @@ _EXAMPLE = "for instance time_s,y_um,z_um,key"
 class _Header:
     """One column's header; ``name``: what it is read as, in ``COLUMNS``; ``fault``: why it is not; neither for a column left out.
 
-    ``guess``: the quantity that it seems to be.
+    ``guess``: the quantity that it seems to be;  ``scale``: of its numbers, before the unit's.
     """
 
     text: str
     name: str = ""
     fault: str = ""
     guess: str = ""
+    scale: float = 1.0
 
     def __str__(self) -> str:
         return f"'{_shortened(self.text)}' {f'as {self.name}' if self.name else self.fault or 'left out'}"
@@ -75,14 +80,15 @@ def columns_of(
 
     Parameters
     ----------
-    mapping : header -> name in ``COLUMNS``, or "ignore";  where : prefix of messages
+    mapping : header, with its unit or without, -> a header that is understood, perhaps with a factor ("x_um/8e-3": 8e-3 V per um),
+        or "ignore";  where : prefix of messages
 
     Raises
     ------
     ValueError
         Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
     """
-    mapping = {_plain(text): name.strip() for text, name in (mapping or {}).items()}
+    mapping = _mapping(headers, mapping or {})
     if all(_is_number(text) for text in headers):
         raise ValueError(f"{where.rstrip(': ')} must name the columns, {_EXAMPLE}")
     _refuse_mapping(headers, mapping, where)
@@ -97,7 +103,11 @@ def columns_of(
             f"{where}{', '.join(sorted({quantity for quantity, _ in doubled}))} stands there twice. Found: {', '.join(map(str, columns))}. "
             f"Leave one out: {_options([(doubled[-1][1].text, IGNORE)], where)}"
         )
-    return {COLUMNS[header.name][0]: (k, COLUMNS[header.name][1]) for k, header in enumerate(columns) if header.name}
+    return {
+        COLUMNS[header.name][0]: (k, COLUMNS[header.name][1] * header.scale)
+        for k, header in enumerate(columns)
+        if header.name
+    }
 
 
 def _plain(text: str) -> str:
@@ -105,26 +115,63 @@ def _plain(text: str) -> str:
     return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "u").lower().split())
 
 
-def quantity_of(text: str) -> str:
-    """Quantity of a header: "time", "y", "force y", or a word that is none of them."""
-    return _parts(_plain(text))[0]
+def _mapping(headers: Sequence[str], mapping: Mapping[str, str]) -> dict[str, str]:
+    """Plain headers -> names; a header may be named without its unit in brackets, where one header has that name."""
+    names = [re.sub(r"\s*[\[(][^\])]*[\])]$", "", text) for text in map(_plain, headers)]
+    full = {name: _plain(text) for name, text in zip(names, headers, strict=True) if names.count(name) == 1}
+    plain = {_plain(text): name.strip() for text, name in mapping.items()}
+    return {text if text in map(_plain, headers) else full.get(text, text): name for text, name in plain.items()}
+
+
+def over_time(headers: Sequence[str], mapping: Mapping[str, str] | None = None) -> bool:
+    """Whether a column is time."""
+    meant = _mapping(headers, mapping or {})
+    return any(_parts(_unscaled(meant.get(_plain(text), _plain(text)))[0])[0] == "time" for text in headers)
+
+
+def _unscaled(name: str) -> tuple[str, float | None]:
+    """Name and factor of ``NAME*FACTOR`` or ``NAME/FACTOR``; None without one."""
+    if not (match := _SCALED.fullmatch(name)) or not _is_number(match["size"]) or not float(match["size"]):
+        return name, None
+    size = float(match["size"])
+    return match["name"], size if match["sign"] == "*" else 1.0 / size
 
 
 def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
     """Each header by itself, then the axes together: X beside Y is another axis than X beside Z."""
-    parts = [_parts(_plain(text)) for text in headers]
+    meant = {text: _unscaled(name) for text, name in mapping.items()}
+    # Names that say x are read as headers that say x: beside Y it stands across the shaft.
+    renamed = {
+        text: name
+        for text, (name, _) in meant.items()
+        if any(_across(name) for name, _ in meant.values()) and name != IGNORE
+    }
+    parts = [_parts(renamed.get(_plain(text), _plain(text))) for text in headers]
     axes: dict[str | None, set[str]] = {"force ": set(), None: set()}
     for text, (quantity, _) in zip(headers, parts, strict=True):
         if mapping.get(_plain(text)) != IGNORE and (match := _AXIS.fullmatch(quantity)):
             axes[match["kind"]].add(quantity[-1])
     columns = []
     for text, (quantity, unit) in zip(headers, parts, strict=True):
-        if (name := mapping.get(_plain(text))) is not None:
-            columns.append(_Header(text, "" if name == IGNORE else name))
+        plain = _plain(text)
+        name, scale = meant.get(plain, ("", None))
+        if plain in meant and plain not in renamed:
+            header = _Header(text, "" if name == IGNORE else name)
         else:
             match = _AXIS.fullmatch(quantity)
-            columns.append(_header(text, quantity, unit, axes[match["kind"]] if match else set()))
+            header = _header(text, quantity, unit, axes[match["kind"]] if match else set())
+        volts = _TO_VOLTS.get(_parts(plain)[1] or "", 1.0)
+        columns.append(header if scale is None else attrs.evolve(header, scale=scale * volts))
     return columns
+
+
+def _across(name: str) -> bool:
+    """Whether a name is x, or force along x, with a unit."""
+    return name not in COLUMNS and _with_y(name) in COLUMNS
+
+
+def _with_y(name: str) -> str:
+    return re.sub(r"^(force_)?x_", r"\1y_", name)
 
 
 def _parts(text: str) -> tuple[str, str | None]:
@@ -168,7 +215,9 @@ def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Head
     if unit is None:
         return _Header(text, fault="has no unit", guess=name)
     if unit in _VOLTS:
-        return _Header(text, fault="is a voltage: multiply it by the sensor's sensitivity first", guess=name)
+        return _Header(
+            text, fault=f"is a voltage: multiply it by the sensor's sensitivity first, {_SENSITIVITY}", guess=name
+        )
     if unit not in UNITS[name]:
         return _Header(text, fault=f"has the unit '{unit}', known are {', '.join(UNITS[name])}", guess=name)
     return _Header(text, f"{name}_{unit}")
@@ -177,17 +226,24 @@ def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Head
 def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: str) -> None:
     """A map of a column that does not exist, to an unknown name, or to another unit than the header's."""
     texts = {_plain(text): text for text in headers}
-    for header, name in mapping.items():
+    for header, meant in mapping.items():
+        name, scale = _unscaled(meant)
         if header not in texts:
             raise ValueError(
                 f"{where}no column '{_shortened(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
             )
-        if name != IGNORE and name not in COLUMNS:
+        if name != IGNORE and _with_y(name) not in COLUMNS:
             raise ValueError(
                 f'{where}--map "{texts[header]}={name}": unknown name{nearest(name, COLUMNS)}; known: {_names()}'
             )
-        unit, quantity = _parts(header)[1], COLUMNS.get(name, ("key", 0.0))[0]
-        if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != name:
+        unit, quantity = _parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
+        if unit in _VOLTS and quantity != "key":
+            if scale is None:
+                raise ValueError(
+                    f"{where}'{texts[header]}' is a voltage: {name} needs the sensor's sensitivity, {_SENSITIVITY}"
+                )
+            continue
+        if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != _with_y(name):
             remedy = f"{quantity}_{unit} is" if unit in UNITS[quantity] else "values in that unit are"
             raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
 

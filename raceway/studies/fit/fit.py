@@ -12,7 +12,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.out.progress import ShowProgress, telling
 from raceway.scene.inputs import SceneSource, as_scene
-from raceway.studies.fit.column_headers import quantity_of
+from raceway.studies.fit.column_headers import over_time
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.identify import Identified, identify
 from raceway.studies.fit.linear import fit_record
@@ -46,7 +46,7 @@ def fit(
     free : keys such as "bearing.contact_angle_deg", a search begins at the scene's numbers; of a record "K", "C", "mass"
     mass : that moves with a record's displacement, where it is known [kg]; None: it is free
     slow_roll, run_out : of a rig's signals, as ``identify`` takes them
-    columns : header -> the header that is meant, or "ignore"
+    columns : header -> the header that is meant, perhaps with a sensitivity ("force_n*100": 100 N per V), or "ignore"
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
@@ -74,8 +74,7 @@ def fit(
     registry = registry_with(plugins)
     with telling(progress) as report:
         report("reading", 0, 2)
-        over_time = any(quantity_of((columns or {}).get(text, text)) == "time" for text in headers_of(data, "data"))
-        record = signals_of(data, columns) if over_time else None
+        record = signals_of(data, columns) if over_time(headers_of(data, "data"), columns) else None
         forced = record is not None and any(name.startswith("force") for name in record.columns)
         _refuse_foreign(record, forced, scene is not None, mass is not None, slow_roll is not None or run_out is not None)
         if record is not None and forced:
@@ -120,8 +119,8 @@ def fit_texts(
 
     DATA is a CSV file: measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %);
     signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, a record of force and
-    displacement (time_s, force_n, x_um) for K, C and mass. With --free writes fit.json and fit.png; without, identifies K and C of
-    the bearing in the scene's table [rig]: identify.json. `raceway identify` is the same command.
+    displacement (time_s, force_n, x_um) for K, C and mass. Files of oscilloscopes and of LabVIEW are read, too. With --free writes
+    fit.json and fit.png; without, identifies K and C of the bearing in the scene's table [rig]: identify.json. `raceway identify` is the same command.
 
     Parameters
     ----------
@@ -131,7 +130,7 @@ def fit_texts(
     mass : moving mass of a record of force and displacement; else it is free
     slow_roll : signals at a low speed, whose run-out is subtracted
     run_out : the run-out itself: amplitude [µm] and angle from the mark [deg]
-    columns : a column by its header: "Ch 1=K [N/µm]", "X [um]=y_um", or =ignore
+    columns : a column by its header: "Ch 1=K [N/µm]", "X [um]=y_um", "CH1=force_n*100" (100 N per V), or =ignore
     """
     free, meanings, vector = tuple(free), _meanings(columns), _vector(run_out)
     if free:

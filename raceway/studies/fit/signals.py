@@ -17,7 +17,8 @@ import numpy as np
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.storage.files import write_whole
-from raceway.storage.number_table import NumberTable, read_heads, read_numbers
+from raceway.storage.labview import read_tdms
+from raceway.storage.number_table import NumberTable, read_heading, read_numbers
 from raceway.studies.fit.column_headers import IGNORE, columns_of
 
 if TYPE_CHECKING:
@@ -60,10 +61,19 @@ def faults_at(source: str) -> Iterator[None]:
 
 def headers_of(data: Data, name: str) -> list[str]:
     """Column headers of data, without the numbers of a file."""
+    data = _in_memory(data)
     if not isinstance(data, str | Path):
         return list(_arrays(data, name))
     with _reading(Path(data)):
-        return read_heads(Path(data))
+        return read_heading(Path(data)).header
+
+
+def _in_memory(data: Data) -> Data:
+    """Channels of a .tdms file, whose measurements are no text; other data as they are."""
+    if not isinstance(data, str | Path) or Path(data).suffix.lower() != ".tdms":
+        return data
+    with _reading(Path(data)):
+        return read_tdms(Path(data))
 
 
 def table_of(
@@ -82,6 +92,7 @@ def table_of(
     SceneError
         The fault of a file or of arrays, with line or row and column.
     """
+    name, data = str(data) if isinstance(data, str | Path) else name, _in_memory(data)
     if isinstance(data, str | Path):
         with _reading(Path(data)):
             return read_numbers(Path(data), judge), str(data)
@@ -169,7 +180,11 @@ def signals_of(data: Data, columns: Mapping[str, str] | None = None) -> Signals:
     SceneError
         The fault, with line and column.
     """
-    where = "line 1: " if isinstance(data, str | Path) else ""
+    where, path = "", data if isinstance(data, str | Path) else ""
+    data = _in_memory(data)
+    if isinstance(data, str | Path):
+        with _reading(Path(data)):
+            where = f"line {read_heading(Path(data)).line}: "
 
     def recognised(headers: list[str]) -> dict[str, tuple[int, float]]:
         """``columns_of`` with a time and something beside it."""
@@ -179,7 +194,7 @@ def signals_of(data: Data, columns: Mapping[str, str] | None = None) -> Signals:
             raise ValueError(f"{where}{missing}; needed: time, y and z, for instance time_s,y_um,z_um,key")
         return indices
 
-    table, source = table_of(data, "signals", "sample", recognised)
+    table, source = table_of(data, str(path) or "signals", "sample", recognised)
     if len(table.values) < _LEAST:
         raise SceneError.at(source, None, f"{len(table.values)} samples; at least {_LEAST} are needed")
     quantities = {name: table.values[:, k] * factor for name, (k, factor) in recognised(table.header).items()}

@@ -1,0 +1,67 @@
+"""Channels of LabVIEW's binary files of measurements (.tdms), by nptdms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from raceway.errors import RacewayError, extra
+from raceway.storage.files import size_of
+from raceway.storage.number_table import LARGEST
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def read_tdms(path: Path) -> dict[str, np.ndarray]:
+    """Header with unit -> numbers (n,), times first, of the file's one group of channels.
+
+    Notes
+    -----
+    The clock is that of NI's waveform properties, wf_increment [s] and wf_start_offset [s]; channels whose clocks or lengths differ
+    are refused.  A file without the properties has a channel of times.
+
+    Raises
+    ------
+    ValueError
+        The channel's fault and remedy.
+    RacewayError
+        nptdms is not installed.
+    """
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise RacewayError(f"{path}: .tdms files need nptdms: {extra('measurements')}") from None
+    import numpy as np
+
+    size_of(path, LARGEST)
+    try:
+        file = TdmsFile.read(path)
+    except (ValueError, KeyError, IndexError) as why:
+        raise ValueError(f"cannot be read: it is no .tdms file ({why})") from None
+    channels = [channel for group in file.groups() for channel in group.channels()]
+    if not channels:
+        raise ValueError("has no channels: save the signals, too")
+    columns: dict[str, np.ndarray] = {}
+    clocks = {
+        channel.name: (
+            len(channel),
+            channel.properties.get("wf_increment", 0.0),
+            channel.properties.get("wf_start_offset", 0.0),
+        )
+        for channel in channels
+    }
+    if len(clocks) < len(channels):
+        raise ValueError("two groups have channels of one name: save one measurement in a file")
+    if len(set(clocks.values())) > 1:
+        shown = "; ".join(
+            f"{name} {count} samples every {step:g} s from {start:g} s" for name, (count, step, start) in clocks.items()
+        )
+        raise ValueError(f"channels differ in length or clock: {shown}. Save the channels of one task with one rate")
+    count, step, start = next(iter(clocks.values()))
+    if step > 0.0:
+        columns["time (s)"] = start + step * np.arange(count)
+    for channel in channels:
+        unit = str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", ""))).strip()
+        columns[f"{channel.name} ({unit})" if unit else channel.name] = np.asarray(channel[:], dtype=float)
+    return columns

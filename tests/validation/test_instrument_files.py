@@ -1,0 +1,68 @@
+"""Instruments' own files: K lies within its interval, without a script; what cannot be read is refused with line, rule and remedy."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import raceway as rw
+from raceway import SceneError
+from raceway.studies.fit.column_headers import columns_of
+from tests.validation.instrument_files import DAMPING, FILES, MASS, STIFFNESS, write
+from validation.command_line import invoke
+
+
+@pytest.mark.parametrize("instrument", FILES)
+def test_k_of_an_instrument_s_file_lies_within_its_interval(instrument, tmp_path):
+    if instrument == "tdms":
+        pytest.importorskip("nptdms")
+    path, columns = write(instrument, tmp_path)
+    options = [word for header, name in columns.items() for word in ("--map", f"{header}={name}")]
+    answer = invoke("fit", path, "--free", "K,C,mass", *options, "--out", tmp_path / "out", "--no-pictures")
+    assert answer.exit_code == 0, answer.output
+    free = {row["key"]: row for row in json.loads((tmp_path / "out" / "fit.json").read_text())["free"]}
+    for name, truth in {"K": STIFFNESS, "C": DAMPING, "mass": MASS}.items():
+        half = free[name]["error"]
+        assert abs(free[name]["value"] - truth) < half < 0.02 * truth
+
+
+#: First lines of a file, the meaning of its columns, and what the one message says.
+REFUSED = {
+    "a voltage without sensitivity": ("x-axis,1,2\nsecond,Volt,Volt\n", {"1": "force_n", "2": "x_um"}, ["line 1", "is a voltage", "CH1=force_n*100"]),
+    "channels without a meaning": ("Model,MSO54\nVertical Units,V,V\nTIME,CH1,CH2\n", {}, ["line 3", "'CH1 (V)'", "--map"]),
+    "no line of column headers": ("Model,MSO54\nVertical Units,V,V\n", {}, ["line 1 begins a file of Tektronix", "'TIME,'", "time_s,CH1,CH2"]),
+    "one channel of a TDS": ("Record Length,2.5e+03,,-0.5,0.02\n", {}, ["line 1", "one channel", "time_s,CH1,CH2"]),
+    "no interval": ("X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,0\n", {}, ["line 1", "no sample interval (Increment)", "save the times"]),
+    "times of each channel": ("LabVIEW Measurement\nX_Value\tA\tX_Value\tB\n", {}, ["line 2", "save one column of times"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_read_is_refused_with_line_rule_and_remedy(case, tmp_path):
+    text, columns, words = REFUSED[case]
+    path = tmp_path / "file.csv"
+    path.write_text(text + "0,0.5,0.25\n" * 3)
+    with pytest.raises(SceneError) as refusal:
+        rw.fit(path, None, "K", columns=columns)
+    for word in (str(path), *words):
+        assert word in str(refusal.value)
+
+
+def test_channels_of_two_clocks_are_refused_by_name(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    path = tmp_path / "two.tdms"
+    channels = [
+        nptdms.ChannelObject("g", name, [0.0, 1.0], {"wf_increment": step}) for name, step in (("ai0", 1e-3), ("ai1", 2e-3))
+    ]
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment(channels)
+    with pytest.raises(SceneError, match="ai1 2 samples every 0.002 s.*one rate"):
+        rw.fit(path, None, "K")
+
+
+def test_a_sign_and_millivolts_are_part_of_the_sensitivity():
+    forced = {"time (s)": [0.0], "CH1 (mV)": [1.0], "X [um]": [1.0]}
+    columns = columns_of(list(forced), {"CH1": "force_n*100", "X [um]": "x_um*-1"})
+    assert columns["force"] == (1, pytest.approx(0.1)) and columns["y"] == (2, pytest.approx(-1e-6))
+    assert columns_of(["t (s)", "CH1", "CH2"], {"CH1": "x_um", "CH2": "y_um"})["z"] == (2, 1e-6)
