@@ -83,6 +83,37 @@ def test_inferred_of_bearings_whose_balls_are_printed(claim):
     )
 
 
+def test_deep_groove_bearings_and_rollers_by_number(claim):
+    """Printed ratings of the catalogue's designations, and balls beside those that two makers print; what is refused counts as wrong."""
+    deep = [one for one in rw.catalogue("*") if "deep-groove ball bearing of series" in one.title]
+    assert len(deep) == 254
+    errors = [abs(error) for one in deep for error in one.printed.values()]
+    quantity = "printed ratings of 254 deep-groove designations: dynamic and static, largest relative error"
+    claim(
+        quantity,
+        max(errors),
+        at_most=0.01,
+        basis="published",
+        source="ISO 281, ISO 76; NSK, Rolling bearings, CAT. No. E1102e",
+    )
+    nmb, _ = inferred("nmb_deep_groove")
+    right = [nmb["ball_count_right"] * nmb["internals_printed"]]
+    named = {one.name: one.table for one in deep}
+    for one in printed_by("gmn_deep_groove"):
+        if one.bore >= 10e-3:  # below, both makers fill the same number with other balls
+            table, balls = named[one.names[0]], one.internals
+            right.append(
+                table["ball_count"] == balls.ball_count and abs(table["ball_diameter"] / balls.ball_diameter - 1.0) < 0.01
+            )
+    share, among = sum(right) / (nmb["internals_printed"] + len(right) - 1), nmb["internals_printed"] + len(right) - 1
+    quantity = f"{among} deep-groove bearings with printed balls: share with the right number and diameter"
+    source = "NMB, from its ratings; GMN from 10 mm bore, from NSK's ratings"
+    claim(quantity, share, at_least=0.9, basis="published", source=source)
+    rollers = [abs(one.printed["dynamic_rating_error"]) for one in rw.catalogue("NU*")]
+    quantity = f"printed dynamic ratings of {len(rollers)} cylindrical roller designations: largest relative error"
+    claim(quantity, max(rollers), at_most=0.01, basis="published", source="ISO 281, with the length from C0 by ISO 76; NSK")
+
+
 #: Conformities that are tried, of both grooves.
 TRIED = np.linspace(0.505, 0.57, 131)
 
