@@ -218,9 +218,8 @@ COLUMNS = named(
 # fmt: on
 #: Numbers that have derivatives by the keys of a scene, by their symbols; what a scene does not have is left out.
 DIFFERENTIABLE = {number.symbol: number for number in (K, C, AMPLITUDE, KXX, KYY, KYY_TILTS_FOLLOW, X, LARGEST_BALL_LOAD)}
-_BUILT_IN = {"largest_multiplier", "stiffness_change"} | {
-    number.name for number in (*COLUMNS.values(), *IDENTIFIED, *DIFFERENTIABLE.values(), BALL_LOAD, CONTACT_ANGLE)
-}
+#: All that a function or a sweep states, by names.
+KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values(), BALL_LOAD, CONTACT_ANGLE)
 
 
 def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
@@ -234,7 +233,11 @@ def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
     numbers: dict[str, tuple[str, Quantity]] = {}
     for entry in (each for each in registry.all() if each.kind == "quantity"):
         for quantity in entry.plugin.numbers:
-            if quantity.name in numbers or quantity.name in _BUILT_IN:
+            if (
+                quantity.name in numbers
+                or quantity.name in KNOWN
+                or quantity.name in ("largest_multiplier", "stiffness_change")
+            ):
                 raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")
             numbers[quantity.name] = entry.name, quantity
     return numbers

@@ -25,19 +25,7 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.registry import Registry, default_registry
-from raceway.out.quantities import (
-    AMPLITUDE,
-    COLUMNS,
-    DIFFERENTIABLE,
-    IDENTIFIED,
-    Z_IMAG,
-    Z_REAL,
-    C,
-    K,
-    Quantity,
-    named,
-    plugin_quantities,
-)
+from raceway.out.quantities import AMPLITUDE, KNOWN, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
@@ -248,7 +236,6 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
 #: Quantities of a motion; of the motion where there is one; and all that a function has beside those of plug-ins.
 MOVING, EXTREMES = frozenset(_MOVING), frozenset(_EXTREMES)
 QUANTITIES = _STATIC | _EXTREMES | _MOVING
-_KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values())
 
 
 def stated_columns(scene: Scene, registry: Registry) -> dict[str, Quantity]:
@@ -289,4 +276,4 @@ def of_result(name: str, result: Result) -> np.ndarray | float | None:
         return None if floquet is None else floquet["largest"]
     if name == "contact_angle":
         return np.degrees([result.equilibrium.angle_inner, result.equilibrium.angle_outer])
-    return result.quantities.get(name) if name not in _KNOWN else _KNOWN[name].of(result)
+    return result.quantities.get(name) if name not in KNOWN else KNOWN[name].of(result)

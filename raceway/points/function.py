@@ -24,7 +24,7 @@ from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import nearest
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
-from raceway.out.quantities import COLUMNS, IDENTIFIED, Quantity, named, plugin_quantities
+from raceway.out.quantities import KNOWN, Quantity, plugin_quantities
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
@@ -263,8 +263,8 @@ class Function:
         ]
         same = xarray.broadcast(*arrays)
         shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
-        answer, dims, known = self.columns(flat), same[0].dims, _known()
-        known |= {name: quantity for name, (_, quantity) in self._stated.items()}
+        answer, dims = self.columns(flat), same[0].dims
+        known = KNOWN | {name: quantity for name, (_, quantity) in self._stated.items()}
         variables: Tables = {}
         for name, column in answer.items():
             further, labels = ((), {}) if name not in known else (known[name].dims, known[name].labels)
@@ -464,10 +464,6 @@ def _joined(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
     return out
 
 
-def _known() -> dict[str, Quantity]:
-    return COLUMNS | named(*IDENTIFIED)
-
-
 @door
 def function(
     scene: SceneSource,
@@ -547,7 +543,7 @@ def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
 def _name(output: str) -> str:
     """The name of a quantity that is asked for by its name or symbol."""
     names = {name: name for name in (*QUANTITIES, *plugin_quantities(default_registry()))}
-    symbols = {quantity.symbol: name for name, quantity in _known().items() if name in QUANTITIES}
+    symbols = {quantity.symbol: name for name, quantity in KNOWN.items() if name in QUANTITIES}
     name = {**symbols, **names}.get(output)
     if name is None:
         raise SceneError.at(
