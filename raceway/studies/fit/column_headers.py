@@ -126,10 +126,10 @@ def _mapping(headers: Sequence[str], mapping: Mapping[str, str]) -> dict[str, st
 def over_time(headers: Sequence[str], mapping: Mapping[str, str] | None = None) -> bool:
     """Whether a column is time."""
     meant = _mapping(headers, mapping or {})
-    return any(_parts(_unscaled(meant.get(_plain(text), _plain(text)))[0])[0] == "time" for text in headers)
+    return any(_parts(unscaled(meant.get(_plain(text), _plain(text)))[0])[0] == "time" for text in headers)
 
 
-def _unscaled(name: str) -> tuple[str, float | None]:
+def unscaled(name: str) -> tuple[str, float | None]:
     """Name and factor of ``NAME*FACTOR`` or ``NAME/FACTOR``; None without one."""
     if not (match := _SCALED.fullmatch(name)) or not _is_number(match["size"]) or not float(match["size"]):
         return name, None
@@ -139,7 +139,7 @@ def _unscaled(name: str) -> tuple[str, float | None]:
 
 def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
     """Each header by itself, then the axes together: X beside Y is another axis than X beside Z."""
-    meant = {text: _unscaled(name) for text, name in mapping.items()}
+    meant = {text: unscaled(name) for text, name in mapping.items()}
     # Names that say x are read as headers that say x: beside Y it stands across the shaft.
     renamed = {
         text: name
@@ -227,7 +227,7 @@ def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: s
     """A map of a column that does not exist, to an unknown name, or to another unit than the header's."""
     texts = {_plain(text): text for text in headers}
     for header, meant in mapping.items():
-        name, scale = _unscaled(meant)
+        name, scale = unscaled(meant)
         if header not in texts:
             raise ValueError(
                 f"{where}no column '{_shortened(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"

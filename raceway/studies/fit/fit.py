@@ -16,6 +16,7 @@ from raceway.studies.fit.column_headers import over_time
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.identify import Identified, identify
 from raceway.studies.fit.linear import fit_record
+from raceway.studies.fit.response import FrequencyResponse, is_response, response_of
 from raceway.studies.fit.rig import fit_rig
 from raceway.studies.fit.signals import Data, Signals, headers_of, signals_of, table_of
 from raceway.studies.fit.synchronous import stated_run_out
@@ -41,7 +42,8 @@ def fit(
     ----------
     data : CSV file, mapping of column headers to arrays (n,) or pandas.DataFrame: a table of measured quantities over keys of the scene,
         ``load.axial [N], K [N/um], K error [N/um]``, errors as half-widths at 95 %; or the signals of a rig that ``identify`` reads;
-        or a record of force and displacement, ``time_s, force_n, x_um``, of one axis or two
+        or a record of force and displacement, ``time_s, force_n, x_um``, of one axis or two; or their frequency response, a universal
+        file (UFF type 58: receptance, mobility, accelerance)
     scene : Scene, path, TOML text or dict of tables; with a table ``rig`` for signals; None for a record of force and displacement
     free : keys such as "bearing.contact_angle_deg", a search begins at the scene's numbers; of a record "K", "C", "mass"
     mass : that moves with a record's displacement, where it is known [kg]; None: it is free
@@ -74,16 +76,23 @@ def fit(
     registry = registry_with(plugins)
     with telling(progress) as report:
         report("reading", 0, 2)
-        record = signals_of(data, columns) if over_time(headers_of(data, "data"), columns) else None
-        forced = record is not None and any(name.startswith("force") for name in record.columns)
-        _refuse_foreign(record, forced, scene is not None, mass is not None, slow_roll is not None or run_out is not None)
+        record: Signals | FrequencyResponse | None = None
+        if isinstance(data, str | Path) and is_response(data):
+            record = response_of(data, columns)
+        elif over_time(headers_of(data, "data"), columns):
+            record = signals_of(data, columns)
+        signals = record if isinstance(record, Signals) else None
+        forced = isinstance(record, FrequencyResponse) or (
+            signals is not None and any(name.startswith("force") for name in signals.columns)
+        )
+        _refuse_foreign(signals, forced, scene is not None, mass is not None, slow_roll is not None or run_out is not None)
         if record is not None and forced:
             search = partial(fit_record, record, names, mass)
         elif scene is None:
             raise SceneError.at("scene", None, "is missing: give --scene, whose answers the data are fitted by")
-        elif record is not None:
+        elif signals is not None:
             read, subtracted = as_scene(scene, plugins=plugins), stated_run_out(slow_roll, run_out, columns)
-            search = partial(fit_rig, record, read, names, registry, subtracted)
+            search = partial(fit_rig, signals, read, names, registry, subtracted)
         else:
             read = as_scene(scene, plugins=plugins)
             measured = measurements_in(*table_of(data, "data", "measurement"), read, columns)
@@ -119,7 +128,7 @@ def fit_texts(
 
     DATA is a CSV file: measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %);
     signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, a record of force and
-    displacement (time_s, force_n, x_um) for K, C and mass. Files of oscilloscopes and of LabVIEW are read, too. With --free writes
+    displacement (time_s, force_n, x_um), or their frequency response (frf.uff), for K, C and mass. Files of oscilloscopes and of LabVIEW are read, too. With --free writes
     fit.json and fit.png; without, identifies K and C of the bearing in the scene's table [rig]: identify.json. `raceway identify` is the same command.
 
     Parameters

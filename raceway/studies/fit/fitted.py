@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
-from raceway.errors import SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import member
 from raceway.framework.shown import Fact, number, number_within
 from raceway.out.answer import Answer, Part
@@ -18,6 +19,7 @@ from raceway.out.wrapping import Words
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.studies.fit.estimate import CONFIDENCE, Combination, Estimate
+from raceway.studies.fit.response import FrequencyResponse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -69,6 +71,7 @@ class Fitted(Answer):
     stated : whether errors of the data were stated; else their residuals determine them
     estimate : numbers, covariance, what is not determined;  series : data beside the fit;  derived : K and C of a rig
     notes : sentences that a reader of the numbers needs
+    response : displacement over force over frequency, of a linear model in one direction
 
     Examples
     --------
@@ -88,6 +91,7 @@ class Fitted(Answer):
     series: tuple[Series, ...]
     derived: tuple[Derived, ...] = ()
     notes: tuple[str, ...] = ()
+    response: FrequencyResponse | None = None
 
     @property
     def _numbers(self) -> dict[str, tuple[float, float, str]]:
@@ -127,6 +131,18 @@ class Fitted(Answer):
                 "model or the errors are wrong"
             )
         return [*out, *self.notes]
+
+    def to_uff(self, path: str | Path) -> Path:
+        """Write the measured receptance as a universal file (UFF type 58), for tools such as sdypy; of a linear model in one direction.
+
+        Raises
+        ------
+        RacewayError
+            Data without a frequency response, or pyuff is not installed.
+        """
+        if self.response is None or len(self.series) > 2:
+            raise RacewayError("only a linear model in one direction has a frequency response: fit K, C or mass of one axis")
+        return self.response.to_uff(path)
 
     def to_dict(self) -> Tables:
         """Plain tables, as in fit.json."""

@@ -31,6 +31,7 @@ import numpy as np
 from raceway.errors import SceneError
 from raceway.studies.fit.estimate import Estimate, Free, estimate, judged
 from raceway.studies.fit.fitted import Fitted, Series, refuse_few
+from raceway.studies.fit.response import FrequencyResponse
 from raceway.studies.fit.signals import Signals
 
 #: A tone's power over the median of its neighbours, which lie within this many frequencies; frequencies of a tone to either side; tones at most.
@@ -115,6 +116,7 @@ _ONE, _TWO = (("y", "force"), ("y", "force_y"), ("z", "force_z")), (("y", "force
 class _Spectra:
     """Spectra of a record: ``omega`` (n,) [rad/s]; force [N] and displacement [m], (n, d) each; ``axes``: the directions.
 
+    A frequency response has a force of 1, and no samples over time.
     ``indices`` (n,) of the frequencies in the full transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N].
     """
 
@@ -154,6 +156,12 @@ def _spectra_of(signals: Signals) -> _Spectra:
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
     axes, time = tuple(name for name, _ in pairs), interval * np.arange(count)
     return _Spectra(omega[band], of_force[band], of_displacement[band], axes, np.flatnonzero(band), time, force)
+
+
+def _spectra_of_response(response: FrequencyResponse) -> _Spectra:
+    hz, empty = response.hz, np.empty(0)
+    receptance, force = response.receptance[:, None], np.ones((len(hz), 1), complex)
+    return _Spectra(2.0 * np.pi * hz, force, receptance, ("y",), np.arange(len(hz)), empty, empty)
 
 
 def _free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
@@ -214,10 +222,10 @@ class _Linear:
         omega, axes, time = self.spectra.omega, self.spectra.axes, self.spectra.time
         self.excited = np.ones(len(omega), bool)
         x, turns = 1j * omega / omega[-1], np.outer(time, self.tones)
-        grown = (time / time[-1])[:, None]
-        waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)]
+        grown = (time / time[-1:])[:, None]
+        waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)] if len(time) else []
         hum = [_spectrum(wave)[self.spectra.indices] for wave in waves]
-        self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE), *hum])
+        self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE if len(time) else 0), *hum])
         powers = {"K": np.ones_like(omega) + 0j, "C": 1j * omega, "mass": -(omega**2) + 0j}
         self.slopes = np.zeros((len(omega), len(axes), len(axes), len(self.free)), complex)
         for k, number in enumerate(self.free):
@@ -285,7 +293,9 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
 def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, _Linear, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
-    while hum := _tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega):
+    while len(spectra.time) and (
+        hum := _tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega)
+    ):
         tones = (*problem.tones, hum)
         if len(tones) > TONES or _share_of_force(spectra, tones) > _TONAL:
             answer, problem = without_tones  # a model that misses the force itself does so at the force's frequencies
@@ -347,8 +357,10 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
     spectra, variance = problem.spectra, problem.variance(answer.values)
     d, hz = len(spectra.axes), spectra.omega / 2.0 / np.pi
     j, t = answer.jacobian[:, :count], answer.jacobian[:, count:]
-    basis = np.linalg.svd(t * [number.size for number in answer.free[count:]], full_matrices=False)[0]
-    slopes, scores = j - basis @ (basis.T @ j), None
+    slopes, scores = j, None
+    if t.size:
+        basis = np.linalg.svd(t * [number.size for number in answer.free[count:]], full_matrices=False)[0]
+        slopes = j - basis @ (basis.T @ j)
     white = attrs.evolve(problem, noise=problem.noise * (np.arange(_COLOURS) == 0)[:, None]).variance(answer.values)
     if (growth := float(np.sqrt((variance / white)[: max(len(hz) // 16, 1)].mean()))) > _COLOURED:
         text = f"noise grows toward low frequencies (1/f): at {hz[0]:.4g} Hz {growth:.2g} times its white part"
@@ -359,7 +371,7 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
         text = f"residuals are not white: their power near {hz[largest[0]]:.4g} Hz is {largest[1]:.2g} times the mean"
         problem.remarks.append(f"{text}; intervals follow from each line's own")
     alone = judged(answer.free[:count], answer.values[:count], answer.residuals, slopes, False, answer.evaluations, scores)
-    force, share = _aliased(spectra.signal, variance.min(axis=0))
+    force, share = _aliased(spectra.signal, variance.min(axis=0)) if len(spectra.signal) else (spectra.signal, 0.0)
     if not share:
         return alone
     problem.remarks.append(
@@ -371,8 +383,8 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
     return alone.with_shifts("aliasing", _real_and_imaginary(columns))
 
 
-def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted:
-    """K, C and mass of a linear model from a record of force and displacement.
+def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: float | None) -> Fitted:
+    """K, C and mass of a linear model from a record of force and displacement, or their frequency response.
 
     Parameters
     ----------
@@ -380,11 +392,11 @@ def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted
     """
     if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")
-    spectra = _spectra_of(signals)
+    spectra = _spectra_of(record) if isinstance(record, Signals) else _spectra_of_response(record)
     free = _free_parts(names, spectra, mass)
-    refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), signals.source)
+    refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), record.source)
     answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)
-    words, notes = {_word(number.name) for number in free}, []
+    words, notes = {_word(number.name) for number in free}, [*getattr(record, "notes", ())]
     if mass is None and not any("mass" in name for name in names):
         notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
     if absent := [word for word in ("K", "C") if word not in words]:
@@ -400,7 +412,10 @@ def fit_record(signals: Signals, names: list[str], mass: float | None) -> Fitted
             question = "does the force's sign mean that of the displacement, and is the mass known?"
             notes.append(f"{number.name} is negative: {question}")
     title = f"F = K x + C x' + m x'', {spectra.omega[0] / 2.0 / np.pi:.4g} to {spectra.omega[-1] / 2.0 / np.pi:.4g} Hz"
-    return Fitted(title, signals.source, "record", False, answer, _series(model, answer, residuals), (), tuple(notes))
+    series = _series(model, answer, residuals)
+    measured = 1.0 / (series[0].measured + 1j * series[1].measured)
+    response = FrequencyResponse(record.source, series[0].x, measured) if isinstance(record, Signals) else record
+    return Fitted(title, record.source, "record", False, answer, series, (), tuple(notes), response)
 
 
 def _series(model: _Linear, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:

@@ -1,0 +1,205 @@
+"""Frequency response functions in universal files (UFF type 58), by pyuff.
+
+References
+----------
+Universal file datasets 58 (function at nodal degree of freedom) and 164 (units), SDRL, University of Cincinnati, as printed by
+``pyuff.datasets``: specific data types, units labels, units factors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError, extra
+from raceway.storage.files import size_of, write_whole
+from raceway.storage.number_table import LARGEST
+from raceway.studies.fit.column_headers import IGNORE, unscaled
+
+#: Endings of universal files.
+_ENDINGS = {".uff", ".unv", ".u58", ".bunv"}
+#: Form -> specific data types of ordinate and denominator; sdypy's names (frf_form).
+_FORMS = {"receptance": (8, 13), "mobility": (11, 13), "accelerance": (12, 13), "dynamic_stiffness": (13, 8)}
+_FORCES, _FREQUENCY, _LEAST = {9, 13}, 18, 8
+_LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
+_NEWTONS = {"n": 1.0, "kn": 1e3, "lbf": 4.4482216152605}
+_UNITS = {
+    "8": _LENGTHS,
+    "11": {f"{unit}/s": size for unit, size in _LENGTHS.items()},
+    "12": {f"{unit}/s2": size for unit, size in _LENGTHS.items()} | {"g": 9.80665},
+    "13": _NEWTONS,
+}
+
+
+@attrs.frozen(eq=False)
+class FrequencyResponse:
+    """Displacement over force at one point.
+
+    Attributes
+    ----------
+    source : its file;  hz (n,) : frequencies [Hz], greater than 0;  receptance (n,) : complex [m/N]
+    notes : sentences on units and form that a reader needs
+    """
+
+    source: str
+    hz: np.ndarray
+    receptance: np.ndarray
+    notes: tuple[str, ...] = ()
+
+    def to_uff(self, path: str | Path) -> Path:
+        """Write it as dataset 58, double precision and binary: the same bits are read again.
+
+        Raises
+        ------
+        RacewayError
+            pyuff is not installed, or a file that cannot be written.
+        """
+        path = Path(path)
+        write_whole(b"", path)
+        labels = {"abscissa": "Hz", "ordinate": "m", "orddenom": "N"}
+        kinds = dict(zip(labels, (_FREQUENCY, *_FORMS["receptance"]), strict=True))
+        _pyuff(path).UFF(str(path)).write_sets(
+            {
+                "type": 58, "func_type": 4, "binary": 1, "id1": "receptance, raceway", "abscissa_spacing": 0,
+                "rsp_node": 1, "rsp_dir": 2, "ref_node": 1, "ref_dir": 2, "x": self.hz, "data": self.receptance,
+                **{f"{axis}_spec_data_type": kind for axis, kind in kinds.items()},
+                **{f"{axis}_axis_units_lab": label for axis, label in labels.items()},
+            },
+            mode="add",  # its "overwrite" loses the heading of binary sets
+        )  # fmt: skip
+        return path
+
+
+def is_response(data: object) -> bool:
+    """Whether data are a universal file, by its ending."""
+    return isinstance(data, str | Path) and Path(data).suffix.lower() in _ENDINGS
+
+
+def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> FrequencyResponse:
+    """The drive-point frequency response function of a universal file, as receptance in SI.
+
+    Parameters
+    ----------
+    columns : number of a function, from 1, -> its form, with a factor to SI where the file states no unit or another one
+        ("accelerance*9.80665"), or "ignore"
+
+    Raises
+    ------
+    SceneError
+        The function's fault, and the remedy.
+    """
+    pyuff, path, meant = _pyuff(Path(path)), Path(path), dict(columns or {})
+    try:
+        size_of(path, LARGEST)
+        file = pyuff.UFF(str(path))
+        sets = [file.read_sets(k) for k, kind in enumerate(file.get_set_types()) if kind in (58, 164)]
+    except OSError as why:
+        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
+    except Exception as why:  # pyuff raises nothing narrower
+        raise SceneError.at(str(path), None, f"cannot be read as a universal file: {why}") from None
+    functions = [table for table in sets if table["type"] == 58 and table["func_type"] == 4]
+    words = {str(k + 1): _words(table) for k, table in enumerate(functions)}
+    try:
+        if unknown := next((k for k in meant if k not in words), None):
+            raise ValueError(
+                f"no function {unknown} for --map; there are {'; '.join(f'{k}: {text}' for k, text in words.items())}"
+            )
+        used = {k: table for k, table in zip(words, functions, strict=True) if meant.get(k) != IGNORE}
+        points = {k: table for k, table in used.items() if _at_one_point(table)} or used
+        if len(points) != 1:
+            shown = "; ".join(f"{k}: {words[k]}" for k in points) or "none (function type 4)"
+            raise ValueError(
+                f'one frequency response function is fitted, there are {shown}: leave others out with --map "NUMBER={IGNORE}"'
+            )
+        ((number, table),) = points.items()
+        factors = next((units for units in sets if units["type"] == 164), None)
+        return _read(str(path), table, factors, number, meant.get(number, ""))
+    except ValueError as why:
+        raise SceneError.at(str(path), None, str(why)) from None
+
+
+def _pyuff(path: Path) -> Any:
+    try:
+        import pyuff
+    except ImportError:
+        raise RacewayError(f"{path}: universal files need pyuff: {extra('measurements')}") from None
+    return pyuff
+
+
+def _words(table: Mapping[str, Any]) -> str:
+    return f"{table['id1'].strip()}, response {table['rsp_node']}:{table['rsp_dir']}, force {table['ref_node']}:{table['ref_dir']}"
+
+
+def _at_one_point(table: Mapping[str, Any]) -> bool:
+    return bool(table["rsp_node"] == table["ref_node"] and abs(table["rsp_dir"]) == abs(table["ref_dir"]))
+
+
+def _read(
+    source: str, table: Mapping[str, Any], factors: Mapping[str, Any] | None, number: str, meant: str
+) -> FrequencyResponse:
+    """One function as receptance; ``ValueError`` with the remedy."""
+    notes = []
+    kinds = tuple(13 if (kind := table[f"{axis}_spec_data_type"]) in _FORCES else kind for axis in ("ordinate", "orddenom"))
+    form, scale = unscaled(meant)
+    form = form or next((name for name, pair in _FORMS.items() if pair == kinds), "")
+    if form not in _FORMS:
+        raise ValueError(
+            f"function {number} states no form that is known ({meant or f'data types {kinds[0]} over {kinds[1]}'}): "
+            f'--map "{number}=FORM", one of {", ".join(_FORMS)}'
+        )
+    if scale is None:
+        upper, lower = (
+            _unit(table, axis, kind, factors, number, form)
+            for axis, kind in zip(("ordinate", "orddenom"), _FORMS[form], strict=True)
+        )
+        scale = upper[0] / lower[0]
+        notes.append(f"{form.replace('_', ' ')} in {upper[1]} over {lower[1]}")
+    hz, values = np.asarray(table["x"], float), scale * np.asarray(table["data"])
+    if table["abscissa_spec_data_type"] not in (0, _FREQUENCY) or table["abscissa_axis_units_lab"].strip().lower() not in (
+        "",
+        "none",
+        "hz",
+    ):
+        raise ValueError(f"function {number} is not over frequency in Hz")
+    if len(hz) != len(values) or not (np.isfinite(hz).all() and np.isfinite(values).all()) or (np.diff(hz) <= 0.0).any():
+        raise ValueError(f"function {number}: frequencies must grow, and each needs one finite number")
+    above = (hz > 0.0) & (values != 0.0)
+    hz, values = hz[above], values[above]
+    if len(hz) < _LEAST or not np.iscomplexobj(values):
+        raise ValueError(f"function {number} has {len(hz)} complex numbers above 0 Hz: at least {_LEAST} are needed")
+    omega = 2.0 * np.pi * hz
+    if form != "receptance":
+        values = {"mobility": values / (1j * omega), "accelerance": -values / omega**2, "dynamic_stiffness": 1.0 / values}[
+            form
+        ]
+    if table["rsp_dir"] * table["ref_dir"] < 0:
+        values = -values
+        notes.append("force and response are counted in opposite directions: the sign is reversed")
+    if not _at_one_point(table):
+        notes.append(f"force and response are of two points ({_words(table)}): K is that between them, no drive point's")
+    return FrequencyResponse(source, hz, values, tuple(notes))
+
+
+def _unit(
+    table: Mapping[str, Any], axis: str, kind: int, factors: Mapping[str, Any] | None, number: str, form: str
+) -> tuple[float, str]:
+    """Factor to SI and words of a unit: by its label, else by the file's dataset 164, else SI."""
+    label = table[f"{axis}_axis_units_lab"].strip()
+    plain = label.lower().replace("µ", "u").replace("^", "").replace("**", "").replace(" ", "")
+    by_file = None if factors is None else 1.0 / factors["force" if kind == 13 else "length"]
+    remedy = f'--map "{number}={form}*FACTOR" with the factor to SI'
+    if plain in ("", "none"):
+        si = {8: "m", 11: "m/s", 12: "m/s2", 13: "N"}[kind]
+        return (1.0, f"{si} (no unit is stated)") if by_file is None else (by_file, f"{by_file:.6g} {si} (dataset 164)")
+    size = _UNITS[str(kind)].get(plain)
+    if size is None:
+        raise ValueError(f"function {number} has the unit '{label}', known are {', '.join(_UNITS[str(kind)])}: {remedy}")
+    if by_file is not None and abs(size / by_file - 1.0) > 1e-4:
+        raise ValueError(
+            f"function {number} has the unit '{label}', the file's dataset 164 one of {by_file:.6g} in SI: say which by {remedy}"
+        )
+    return size, label

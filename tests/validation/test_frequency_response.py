@@ -1,0 +1,115 @@
+"""Frequency response functions in universal files: K within its interval, round trips bit for bit, units right or refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway import SceneError
+from raceway.studies.fit.linear import fit_record
+from raceway.studies.fit.response import FrequencyResponse, response_of
+from tests.validation.instrument_files import DAMPING, MASS, STIFFNESS, write
+from validation.command_line import invoke
+
+pyuff = pytest.importorskip("pyuff")
+
+HZ = np.arange(5.0, 600.0, 2.5)
+OMEGA = 2.0 * np.pi * HZ
+_RANDOM = np.random.default_rng(3)
+NOISE = 1.0 + 2e-3 * (_RANDOM.standard_normal(len(HZ)) + 1j * _RANDOM.standard_normal(len(HZ)))
+RECEPTANCE = NOISE / (STIFFNESS + 1j * OMEGA * DAMPING - MASS * OMEGA**2)
+TRUTH = {"K": STIFFNESS, "C": DAMPING, "mass": MASS}
+
+
+def function(values, kind, units=("NONE", "NONE"), **more):
+    """A function of a universal file, as pyuff writes it."""
+    return {
+        "type": 58, "func_type": 4, "binary": 1, "id1": "drive point", "abscissa_spacing": 0, "x": HZ, "data": values,
+        "rsp_node": 7, "rsp_dir": 3, "ref_node": 7, "ref_dir": 3, "abscissa_spec_data_type": 18, "abscissa_axis_units_lab": "Hz",
+        "ordinate_spec_data_type": kind, "orddenom_spec_data_type": 13, "ordinate_axis_units_lab": units[0], "orddenom_axis_units_lab": units[1],
+    } | more  # fmt: skip
+
+
+def units(code, length, force):
+    return {"type": 164, "units_code": code, "units_description": "units", "temp_mode": 1, "length": length, "force": force, "temp": 1.0, "temp_offset": 0.0}  # fmt: skip
+
+
+def file(path, *sets):
+    pyuff.UFF(str(path)).write_sets(list(sets))
+    return path
+
+
+#: Files of one receptance, and the words that say how they were read.
+FORMS = {
+    "receptance": ([function(RECEPTANCE, 8)], "receptance in m (no unit is stated) over N (no unit is stated)"),
+    "mobility": ([function(1j * OMEGA * RECEPTANCE, 11, ("m/s", "N"))], "mobility in m/s over N"),
+    "accelerance in g": ([function(-(OMEGA**2) * RECEPTANCE / 9.80665, 12, ("g", "N"))], "accelerance in g over N"),
+    "inch and pounds force": ([function(-(OMEGA**2) * RECEPTANCE / 0.0254 * 4.4482216152605, 12, ("in/s^2", "lbf"))], "in/s^2 over lbf"),
+    "units of dataset 164": ([units(7, 39.37007874015748, 0.22480894309971), function(RECEPTANCE / 0.0254 * 4.4482216152605, 8)], "dataset 164"),
+    "opposite directions": ([function(-RECEPTANCE, 8, rsp_dir=-3)], "opposite directions"),
+    "reaction force": ([function(RECEPTANCE, 8, orddenom_spec_data_type=9)], "receptance"),
+    "a transfer function beside it": ([function(2.0 * RECEPTANCE, 8, rsp_node=8), function(RECEPTANCE, 8)], "receptance"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_k_of_a_frequency_response_lies_within_its_interval(form, tmp_path):
+    sets, words = FORMS[form]
+    fitted = rw.fit(file(tmp_path / "frf.uff", *sets), None, "K,C,mass")
+    np.testing.assert_allclose(fitted.response.receptance, RECEPTANCE, rtol=1e-9)
+    assert words in " ".join(fitted.warnings)
+    for name, truth in TRUTH.items():
+        assert abs(fitted[name] - truth) < fitted.half_width(name) < 0.01 * truth
+
+
+def test_intervals_of_frequency_responses_hold_what_they_state():
+    random, inside = np.random.default_rng(11), 0
+    for _ in range(60):
+        noise = 5e-3 * np.median(np.abs(RECEPTANCE)) * (random.standard_normal((2, len(HZ))).T @ [1.0, 1j])
+        exact = RECEPTANCE / NOISE
+        answer = fit_record(FrequencyResponse("frf", HZ, exact + noise), ["K", "C"], MASS)
+        inside += abs(answer["K"] - STIFFNESS) < answer.half_width("K")
+    assert inside >= 53  # of a binomial distribution with 0.95 less are 1 in 100
+
+
+def test_a_written_frequency_response_is_read_bit_for_bit(tmp_path):
+    path, columns = write("picoscope", tmp_path)
+    record = rw.fit(path, None, "K,C,mass", columns=columns)
+    response = response_of(record.to_uff(tmp_path / "record.uff"))
+    for name in ("hz", "receptance"):
+        np.testing.assert_array_equal(getattr(response, name), getattr(record.response, name))
+    again = rw.fit(tmp_path / "record.uff", None, "K,C,mass")
+    np.testing.assert_array_equal(response_of(again.to_uff(tmp_path / "again.uff")).receptance, response.receptance)
+    assert abs(again["K"] - STIFFNESS) < again.half_width("K")
+
+
+def test_the_command_fits_a_universal_file(tmp_path):
+    path = file(tmp_path / "frf.uff", function(RECEPTANCE, 0))
+    answer = invoke("fit", path, "--free", "K,C,mass", "--out", tmp_path / "out", "--no-pictures")
+    assert answer.exit_code == 2 and '--map "1=FORM", one of receptance, mobility, accelerance' in " ".join(
+        answer.stderr.split()
+    )
+    answer = invoke("fit", path, "--free", "K,C,mass", "--map", "1=receptance", "--out", tmp_path / "out", "--no-pictures")
+    assert answer.exit_code == 0, answer.output
+
+
+#: Files that are refused, and the words of the rule and the remedy.
+REFUSED = {
+    "unknown unit": ([function(RECEPTANCE, 8, ("furlong", "N"))], ["unit 'furlong'", '--map "1=receptance*FACTOR"']),
+    "label against dataset 164": ([units(1, 1.0, 1.0), function(RECEPTANCE, 12, ("g", "N"))], ["unit 'g'", "dataset 164", "say which"]),
+    "two drive points": ([function(RECEPTANCE, 8), function(RECEPTANCE, 8, id1="other")], ["1: drive point", "2: other", '--map "NUMBER=ignore"']),
+    "no frequency": ([function(RECEPTANCE, 8, abscissa_spec_data_type=17)], ["is not over frequency"]),
+    "frequencies that do not grow": ([function(RECEPTANCE, 8, x=HZ[::-1].copy())], ["frequencies must grow"]),
+    "real numbers": ([function(np.abs(RECEPTANCE), 8)], ["complex numbers"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_is_no_frequency_response_is_refused_with_a_remedy(case, tmp_path):
+    sets, words = REFUSED[case]
+    path = file(tmp_path / "frf.uff", *sets)
+    with pytest.raises(SceneError) as refusal:
+        rw.fit(path, None, "K")
+    for word in (str(path), *words):
+        assert word in str(refusal.value)
