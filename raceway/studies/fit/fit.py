@@ -129,7 +129,8 @@ def fit_texts(
     DATA is a CSV file: measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %);
     signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, a record of force and
     displacement (time_s, force_n, x_um), or their frequency response (frf.uff), for K, C and mass. Files of oscilloscopes and of LabVIEW are read, too. With --free writes
-    fit.json and fit.png; without, identifies K and C of the bearing in the scene's table [rig]: identify.json. `raceway identify` is the same command.
+    fit.json and fit.png; without, identifies K and C of the bearing in the scene's table [rig]: identify.json. `raceway identify` is
+    the same command.
 
     Parameters
     ----------

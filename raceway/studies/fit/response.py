@@ -2,15 +2,16 @@
 
 References
 ----------
-Universal file datasets 58 (function at nodal degree of freedom) and 164 (units), SDRL, University of Cincinnati, as printed by
-``pyuff.datasets``: specific data types, units labels, units factors.
+Universal file datasets 58 (function at nodal degree of freedom) and 164 (units), SDRL, University of Cincinnati, as pyuff prints
+them: specific data types, units labels, units factors.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import Any, TypeAlias
 
 import attrs
 import numpy as np
@@ -20,6 +21,8 @@ from raceway.storage.files import size_of, write_whole
 from raceway.storage.number_table import LARGEST
 from raceway.studies.fit.column_headers import IGNORE, unscaled
 
+#: A dataset, as pyuff reads it.
+_Set: TypeAlias = dict[str, Any]
 #: Endings of universal files.
 _ENDINGS = {".uff", ".unv", ".u58", ".bunv"}
 #: Form -> specific data types of ordinate and denominator; sdypy's names (frf_form).
@@ -122,7 +125,7 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
         raise SceneError.at(str(path), None, str(why)) from None
 
 
-def _pyuff(path: Path) -> Any:
+def _pyuff(path: Path) -> ModuleType:
     try:
         import pyuff
     except ImportError:
@@ -130,17 +133,15 @@ def _pyuff(path: Path) -> Any:
     return pyuff
 
 
-def _words(table: Mapping[str, Any]) -> str:
+def _words(table: _Set) -> str:
     return f"{table['id1'].strip()}, response {table['rsp_node']}:{table['rsp_dir']}, force {table['ref_node']}:{table['ref_dir']}"
 
 
-def _at_one_point(table: Mapping[str, Any]) -> bool:
+def _at_one_point(table: _Set) -> bool:
     return bool(table["rsp_node"] == table["ref_node"] and abs(table["rsp_dir"]) == abs(table["ref_dir"]))
 
 
-def _read(
-    source: str, table: Mapping[str, Any], factors: Mapping[str, Any] | None, number: str, meant: str
-) -> FrequencyResponse:
+def _read(source: str, table: _Set, factors: _Set | None, number: str, meant: str) -> FrequencyResponse:
     """One function as receptance; ``ValueError`` with the remedy."""
     notes = []
     kinds = tuple(13 if (kind := table[f"{axis}_spec_data_type"]) in _FORCES else kind for axis in ("ordinate", "orddenom"))
@@ -184,9 +185,7 @@ def _read(
     return FrequencyResponse(source, hz, values, tuple(notes))
 
 
-def _unit(
-    table: Mapping[str, Any], axis: str, kind: int, factors: Mapping[str, Any] | None, number: str, form: str
-) -> tuple[float, str]:
+def _unit(table: _Set, axis: str, kind: int, factors: _Set | None, number: str, form: str) -> tuple[float, str]:
     """Factor to SI and words of a unit: by its label, else by the file's dataset 164, else SI."""
     label = table[f"{axis}_axis_units_lab"].strip()
     plain = label.lower().replace("µ", "u").replace("^", "").replace("**", "").replace(" ", "")
