@@ -95,7 +95,7 @@ class Heading:
             counts = np.arange(len(values)) if self.absent else values[:, 0]
             times = self.start + self.interval * counts
             return np.column_stack([times, values if self.absent else values[:, 1:]])
-        if self.maker and len(values) > 2:
+        if self.maker and self.header[0].lower().startswith("time") and len(values) > 2:
             even, steps = np.linspace(values[0, 0], values[-1, 0], len(values)), np.diff(values[:, 0])
             if np.abs(values[:, 0] - even).max() <= np.ptp(steps) < np.median(steps):
                 values[:, 0] = even

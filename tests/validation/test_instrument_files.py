@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
 import raceway as rw
 from raceway import SceneError
+from raceway.storage.number_table import read_numbers
 from raceway.studies.fit.column_headers import columns_of
 from tests.validation.instrument_files import DAMPING, FILES, MASS, STIFFNESS, write
 from validation.command_line import invoke
@@ -47,6 +49,28 @@ def test_what_cannot_be_read_is_refused_with_line_rule_and_remedy(case, tmp_path
         rw.fit(path, None, "K", columns=columns)
     for word in (str(path), *words):
         assert word in str(refusal.value)
+
+
+#: Files whose three rows are 0, 0.5 and 1 ms, in variants that the generator does not write.
+VARIANTS = {
+    "LabVIEW without times": (
+        "LabVIEW Measurement\t\nX_Columns\tNo\n***End_of_Header***\t\nX0\t0\t0\nDelta_X\t0.0005\t0.0005\n***End_of_Header***\t\n"
+        "X_Value\tA\tB\tComment\n" + "\t1.5\t2.5\n" * 3
+    ),
+    "Tektronix with signs of comments": "#Model,MDO3014\n#Horizontal Units,s\n#Vertical Units,V,V\n#,,\n#TIME,A,B\n0,1.5,2.5\n5e-4,1.5,2.5\n1e-3,1.5,2.5\n",
+    "Rigol DS1000E": "Time,X(A),X(B)\nSecond,Volt,Volt\n0,1.5,2.5,\n5e-4,1.5,2.5,\n1e-3,1.5,2.5,\n",
+    "PicoScope with tabs": "Time\tA\tB\n(ms)\t(V)\t(V)\n\n0\t1,5\t2,5\n0,5\t1,5\t2,5\n1\t1,5\t2,5\n",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", VARIANTS)
+def test_variants_of_the_formats_give_the_same_columns(case, tmp_path):
+    path = tmp_path / "file.csv"
+    path.write_text(VARIANTS[case])
+    table = read_numbers(path, lambda header: None)
+    scale = 1e3 if "(ms)" in table.header[0] else 1.0
+    np.testing.assert_array_equal(table.values, [[scale * time, 1.5, 2.5] for time in (0.0, 5e-4, 1e-3)])
+    assert [header[:1] for header in table.header] == ["t", "A", "B"]
 
 
 def test_channels_of_two_clocks_are_refused_by_name(tmp_path):

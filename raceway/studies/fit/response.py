@@ -95,7 +95,7 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
     SceneError
         The function's fault, and the remedy.
     """
-    pyuff, path, meant = _pyuff(Path(path)), Path(path), dict(columns or {})
+    pyuff, path, meant = _pyuff(Path(path)), Path(path), {str(number): name for number, name in (columns or {}).items()}
     try:
         size_of(path, LARGEST)
         file = pyuff.UFF(str(path))
