@@ -378,3 +378,16 @@ def test_a_kernel_is_handed_to_another_process_uncompiled():
     assert pickle.loads(pickle.dumps(square)) is square
     done = python("-c", f"import pickle; print(pickle.loads({pickle.dumps(square)!r}).signature.args[0])")
     assert done.stdout.strip() == "array(float64, 1d, C)", done.stderr
+
+
+@jit(numba.void(numba.float64[:, ::1], numba.int64, numba.float64[::1]))
+def _ends(matrix, column, out):
+    matrix[-1, column] = 7.0
+    out[-1], out[0] = matrix[-1, -1], matrix[1, column - 1]
+
+
+def test_negative_indices_count_from_the_end() -> None:
+    matrix, out = np.arange(6.0).reshape(2, 3), np.zeros(3)
+    _ends(matrix, -2, out)
+    np.testing.assert_array_equal(matrix, [[0.0, 1.0, 2.0], [3.0, 7.0, 5.0]])
+    np.testing.assert_array_equal(out, [3.0, 0.0, 5.0])

@@ -4,6 +4,7 @@ A kernel carries one explicit signature of C-contiguous float64 arrays, so that 
 plug-in of its kind.  A record is a named tuple: its fields are read by name, and cost nothing in machine code.
 """
 
+import operator
 from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
@@ -65,6 +66,39 @@ def _call(context: Any, builder: Any, sig: Signature, args: list[Any]) -> Any:
 VECTOR = float64[::1]
 MATRIX = float64[:, ::1]
 CUBE = float64[:, :, ::1]
+
+
+def _entry(context: Any, builder: Any, sig: Signature, array: Any, index: Any) -> Any:
+    """The address of an entry; negative indices count from the end.
+
+    As numba's own, which writes some fifty instructions where ten do: a tenth of what kernels take to compile.
+    """
+    kind, indices = sig.args[:2]
+    parts = cgutils.unpack_tuple(builder, index) if isinstance(indices, types.BaseTuple) else [index]
+    data, shape = (context.data_model_manager[kind].get_field_position(name) for name in ("data", "shape"))
+    place = None
+    for axis, part in enumerate(parts):
+        size = builder.extract_value(array, [shape, axis])
+        if not getattr(part, "constant", -1) >= 0:
+            behind = builder.icmp_signed("<", part, part.type(0))
+            part = builder.select(behind, builder.add(part, size), part)  # noqa: PLW2901
+        if context.enable_boundscheck:
+            cgutils.do_boundscheck(context, builder, part, size, axis)
+        place = part if place is None else builder.add(builder.mul(place, size), part)
+    return builder.gep(builder.extract_value(array, data), [place])
+
+
+def _take(context: Any, builder: Any, sig: Signature, args: list[Any]) -> Any:
+    return builder.load(_entry(context, builder, sig, *args))
+
+
+def _put(context: Any, builder: Any, sig: Signature, args: list[Any]) -> None:
+    builder.store(args[2], _entry(context, builder, sig, *args[:2]))
+
+
+for _kind, _index in ((VECTOR, int64), (MATRIX, types.UniTuple(int64, 2)), (CUBE, types.UniTuple(int64, 3))):
+    lower_builtin(operator.getitem, _kind, _index)(_take)
+    lower_builtin(operator.setitem, _kind, _index, float64)(_put)
 
 #: law(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate)
 LAW = void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, VECTOR, VECTOR)
