@@ -15,6 +15,9 @@ from numba.core.datamodel.models import OpaqueModel
 from numba.core.typing.templates import Signature
 from numba.extending import NativeValue, lower_builtin, register_model, unbox
 
+#: A part of numba's compiler, which types some of itself only.
+_Numba = Any
+
 
 class Pointer(types.Callable, types.Opaque):
     """The type of a kernel of one signature among the arguments of another, which calls it where its machine code begins.
@@ -27,7 +30,9 @@ class Pointer(types.Callable, types.Opaque):
         self.signature = signature
         super().__init__(f"Pointer({signature})")
 
-    def get_call_type(self, context: Any, args: tuple[types.Type, ...], kws: Mapping[str, types.Type]) -> Signature | None:
+    def get_call_type(
+        self, context: _Numba, args: tuple[types.Type, ...], kws: Mapping[str, types.Type]
+    ) -> Signature | None:
         kinds = self.signature.args
         fits = not kws and len(args) == len(kinds) and all(map(context.can_convert, args, kinds))
         return cast(Signature, self.signature.replace(recvr=self)) if fits else None
@@ -43,7 +48,7 @@ register_model(Pointer)(OpaqueModel)
 
 
 @unbox(Pointer)
-def _address(_kind: Pointer, kernel: Any, wrapper: Any) -> NativeValue:
+def _address(_kind: Pointer, kernel: _Numba, wrapper: _Numba) -> NativeValue:
     builder, python = wrapper.builder, wrapper.pyapi
     number = python.object_getattr_string(kernel, "address")
     with builder.if_then(cgutils.is_null(builder, number), likely=False):
@@ -54,7 +59,7 @@ def _address(_kind: Pointer, kernel: Any, wrapper: Any) -> NativeValue:
 
 
 @lower_builtin(Pointer, Pointer, types.VarArg(types.Any))
-def _call(context: Any, builder: Any, sig: Signature, args: list[Any]) -> Any:
+def _call(context: _Numba, builder: _Numba, sig: Signature, args: list[_Numba]) -> _Numba:
     convention, kind = context.call_conv, sig.args[0].signature
     function = builder.bitcast(args[0], convention.get_function_type(kind.return_type, kind.args).as_pointer())
     status, answer = convention.call_function(builder, function, kind.return_type, kind.args, args[1:])
@@ -68,7 +73,7 @@ MATRIX = float64[:, ::1]
 CUBE = float64[:, :, ::1]
 
 
-def _entry(context: Any, builder: Any, sig: Signature, array: Any, index: Any) -> Any:
+def _entry(context: _Numba, builder: _Numba, sig: Signature, array: _Numba, index: _Numba) -> _Numba:
     """The address of an entry; negative indices count from the end.
 
     As numba's own, which writes some fifty instructions where ten do: a tenth of what kernels take to compile.
@@ -76,7 +81,7 @@ def _entry(context: Any, builder: Any, sig: Signature, array: Any, index: Any) -
     kind, indices = sig.args[:2]
     parts = cgutils.unpack_tuple(builder, index) if isinstance(indices, types.BaseTuple) else [index]
     data, shape = (context.data_model_manager[kind].get_field_position(name) for name in ("data", "shape"))
-    place = None
+    offset = None
     for axis, part in enumerate(parts):
         size = builder.extract_value(array, [shape, axis])
         if not getattr(part, "constant", -1) >= 0:
@@ -84,15 +89,15 @@ def _entry(context: Any, builder: Any, sig: Signature, array: Any, index: Any) -
             part = builder.select(behind, builder.add(part, size), part)  # noqa: PLW2901
         if context.enable_boundscheck:
             cgutils.do_boundscheck(context, builder, part, size, axis)
-        place = part if place is None else builder.add(builder.mul(place, size), part)
-    return builder.gep(builder.extract_value(array, data), [place])
+        offset = part if offset is None else builder.add(builder.mul(offset, size), part)
+    return builder.gep(builder.extract_value(array, data), [offset])
 
 
-def _take(context: Any, builder: Any, sig: Signature, args: list[Any]) -> Any:
+def _take(context: _Numba, builder: _Numba, sig: Signature, args: list[_Numba]) -> _Numba:
     return builder.load(_entry(context, builder, sig, *args))
 
 
-def _put(context: Any, builder: Any, sig: Signature, args: list[Any]) -> None:
+def _put(context: _Numba, builder: _Numba, sig: Signature, args: list[_Numba]) -> None:
     builder.store(args[2], _entry(context, builder, sig, *args[:2]))
 
 
