@@ -90,7 +90,7 @@ def test_cost_from_cold(claim, studies):
     for name, (_, limit) in STUDIES.items():
         total += studies[name].seconds
         claim(
-            f"from cold to the written page, {name}: processor time of the first process and half of two others", total, unit="s",
+            f"cold start to page, {name}: CPU time of the first process and half of two others", total, unit="s",
             at_most=limit, basis="regression", source=f"{studies[name].content['runs']} motions", machine=True, misses=SLOW,
         )  # fmt: skip
 
@@ -146,5 +146,5 @@ def test_error_of_runs_with_friction(claim):
     claim(
         f"largest change of K with friction by twice the turns of twice the steps, {len(changes)} points", max(changes),
         at_most=FRICTION_ERROR, basis="own other method", source="what the verdicts take for the error of K with friction",
-        misses="one point of ten: friction on balls that stand at 2000 N settles slowly",
+        misses="one point of ten: friction on balls that stand at 2000 N converges slowly",
     )  # fmt: skip

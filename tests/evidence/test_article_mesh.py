@@ -44,8 +44,8 @@ CASES = {
 #: Why a case misses its limit, by quantity and case.
 MISSES = {
     ("pressure", "400 N"): "too few nodes in the small ellipse",
-    ("kyy", "400 N"): "a tangent counts whole nodes in contact",
-    ("kyy", "2000 N"): "a tangent counts whole nodes in contact",
+    ("kyy", "400 N"): "a tangent counts full nodes in contact",
+    ("kyy", "2000 N"): "a tangent counts full nodes in contact",
 }
 #: The article's figure for its peak pressures against Hertz's.
 PRESSURE = 0.0242
@@ -134,7 +134,7 @@ def test_cost_at_rest(claim):
           source="one thread, kernels compiled before")  # fmt: skip
     begin = time.process_time()
     mesh_bodies(resolve(load_scene(SCENE)))
-    claim("of which meshing", time.process_time() - begin, unit="CPU s", at_most=20.0, **COST, source="a tenth of the whole")
+    claim("of which meshing", time.process_time() - begin, unit="CPU s", at_most=20.0, **COST, source="a tenth of all")
     slowest = max(static(case)["cpu_s"] for case in list(CASES)[1:])
     claim("another load, superelements from the disk: the slowest of three", slowest, unit="CPU s", at_most=20.0, **COST,
           source="a sixth of the first", misses="tangents of twelve equal balls are made one by one")  # fmt: skip

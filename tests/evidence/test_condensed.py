@@ -36,7 +36,7 @@ POINTS = {
     "free": {"x": 27.064, "y": 13.701, "tilt_z": 1.5465, "kxx": 66.08, "kyy": 269.6, "kzz": 256.2},
 }
 FOUNDATION = {"x": 32.191, "y": 2.598, "kyy": 191.7}
-PROTOTYPE = "a separate program of 560 lines with incompatible elements"
+PROTOTYPE = "a separate program with incompatible elements"
 SCENE = "B7206C, 1000 N axial, 500 N radial"
 #: Young's modulus of rings that do not deform [Pa].
 RIGID = 2e17

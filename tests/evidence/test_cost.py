@@ -257,7 +257,7 @@ def test_predicted_time(claim):
     times = {name: plan_time.compare(changes) for name, changes in plan_time.SCENES.items()}
     beyond = [name for name, one in times.items() if not one.holds]
     ratio = max((one.ratio for one in times.values()), key=lambda ratio: max(ratio, 1.0 / ratio))
-    quantity = f"predicted over measured processor time of whole runs, {len(times)} scenes, furthest from 1"
+    quantity = f"predicted over measured processor time of runs, {len(times)} scenes, furthest from 1"
     source = f"a factor of 2; beyond it: {', '.join(beyond) or 'none'}"
     misses = "how long the search for further steady orbits takes is not known before"
     assert set(beyond) <= {"rigid, periodic, internal resonance"}, times

@@ -40,7 +40,7 @@ RIG = rig_of(SCENE)
 SEEDS = 10
 DISTURBED = "40 dB of noise, 5 um of run-out less a slow roll, 5 um of drift"
 WIDTH = {"at_least": 0.5 / 1.96, "at_most": 2.0 / 1.96, "basis": "closed form", "source": "1 / 1.96 within a factor of 2"}
-WIDE = "marks are bounded, not scattered: intervals are {} to {} times as wide as the errors ask for"
+WIDE = "the marks' error is a bound: intervals are {} to {} times too wide"
 #: Of 200 records 95 % of which lie within, 0.90 is three standard deviations below, 0.98 two above.
 SHARE, SHARES = 0.90, {"at_least": 0.90, "at_most": 0.98, "basis": "closed form"}
 ANGLE = "bearing.contact_angle_deg"
@@ -142,7 +142,7 @@ def test_inverted_beam(claim):
     share = min(float(np.mean(np.array(kept) <= 1.0)) for kept in ratios.values())
     quantity = f"share of true K within the stated 95 %, {len(noisy)} of these records"
     claim(quantity, share, at_least=SHARE, basis="closed form", source="95 % less 1.4 standard deviations of 60")
-    quantity = f"K of {len(noisy)} of these records: root mean square of error over stated half-width, furthest from 0.51"
+    quantity = f"K of {len(noisy)} of these records: rms of error over half-width, furthest from 0.51"
     claim(quantity, min(map(rms, ratios.values())), **WIDTH, misses=WIDE.format(4, 14))
 
 
@@ -220,7 +220,7 @@ def test_damping(claim):
         basis="own other method",
         source=source,
     )
-    quantity = f"C of {SEEDS} records each, {where}: root mean square of error over stated half-width"
+    quantity = f"C of {SEEDS} records each, {where}: rms of error over half-width"
     claim(quantity, min(widths), **WIDTH, misses=WIDE.format(10, 11))
 
 
@@ -263,7 +263,7 @@ def test_noise_on_the_probe(claim):
         least = min(share[k] for share in shares)
         quantity = f"{where}: share of true {name} within the stated 95 %"
         claim(quantity, least, at_least=SHARE, basis="closed form", source=source)
-        quantity = f"{where}: {name}, root mean square of error over stated half-width, furthest from 0.51"
+        quantity = f"{where}: {name}, rms of error over half-width, furthest from 0.51"
         claim(quantity, min(width[k] for width in widths), **WIDTH, misses=WIDE.format(*factors))
     assert not failed, failed[:3]
     claim(f"{where}: records that cannot be used", len(failed), at_most=0, basis="closed form", source="the mark is there")
@@ -312,7 +312,7 @@ def test_contact_angle_fitted_to_signals(claim, tmp_path):
         basis="own other method",
         source=source,
     )
-    quantity = f"{where}: share of true K within the 95 % of `raceway identify`, which the assumed tilt stiffness widens"
+    quantity = f"{where}: share of true K within the 95 % of `raceway identify`, tilt stiffness included"
     claim(quantity, float(np.mean(covered)), at_least=SHARE, basis="closed form", source="95 %, one of twelve may miss")
 
 
@@ -410,7 +410,7 @@ def fits_to_grooves(count):
 def test_intervals_where_noise_is_not_white(claim):
     count = 40
     both = [*fits_to_noise(count), *fits_to_grooves(count)]
-    where = "hum, 1/f noise, unfiltered hammer, grooves off by their scatter"
+    where = "hum, 1/f noise, unfiltered hammer, grooves off by their uncertainty"
     share = min(float(np.mean(off <= half)) for off, half in both)
     quantity = f"{where}: share of true numbers within the stated 95 %, {count} seeds, least of {len(both)}"
     claim(quantity, share, at_least=SHARE, basis="closed form", source="95 % less 1.5 standard deviations of 40")

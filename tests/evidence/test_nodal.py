@@ -31,7 +31,7 @@ PROTOTYPE = {
         "kxx": 66.08, "kyy": 269.6, "kzz": 256.2,
     },
 }  # fmt: skip
-SEPARATE = "a separate program of 560 lines with incompatible elements, 8 points per semi-axis"
+SEPARATE = "a separate program with incompatible elements, 8 points per semi-axis"
 OWN = {"basis": "own other method"}
 #: Coefficient and load [N] of the single contact.
 MU, LOAD = 0.1, 300.0

@@ -192,9 +192,9 @@ def test_no_motion_grows_out_of_rest(claim):
         assert spread is None or spread > 0.1, "single turns of a transient repeat: it has a steady motion"
     where = "600 N, tilt free, 13 500 r/min and 400 N, tilt locked, 15 000 r/min, force of one direction"
     source = "a ramped transient of 60 turns repeats no turn"
-    quantity = f"share of the force where the motion that grows out of rest ends, {where}: larger one"
+    quantity = f"share of the force where the branch from rest ends, {where}: larger one"
     claim(quantity, max(folds), at_most=1.0, basis="own other method", source=source)
-    quantity = f"growth of disturbances a turn on the motion at the whole force, {where}: smaller one"
+    quantity = f"growth of disturbances per turn at the full force, {where}: smaller one"
     claim(quantity, min(growths), at_least=1.0, basis="own other method", source=source)
 
 
@@ -213,7 +213,7 @@ def test_motion_that_is_taken(claim):
     where = "82 kg near resonance with and without damping, the article's ring with its tilt free"
     source = "a turn by DOP853 on the reference's own equations"
     claim(f"{where}: Z, largest relative difference", max(apart), at_most=1e-6, basis="own other method", source=source)
-    quantity = f"{where}: growth of disturbances a turn, largest"
+    quantity = f"{where}: growth of disturbances per turn, largest"
     claim(quantity, max(growth), at_most=1.0 + 1e-5, basis="own other method", source=f"{source}: a motion that lasts")
     quantity = f"{where}: error of `newmark` over the stated one, largest"
     claim(quantity, max(error), at_most=FACTOR, basis="own other method", source="direct solution, which the turn confirms")
@@ -222,17 +222,17 @@ def test_motion_that_is_taken(claim):
 def test_motions_that_are_told(claim):
     for kind in ("periodic", "newmark"):
         orbits = run(rw.scene_from_dict(several.heavy(80.0, kind=kind))).simulation.orbits
-        quantity = f"stable motions of 80 kg with 5000 N s/m that `{kind}` tells"
+        quantity = f"stable motions of 80 kg with 5000 N s/m that `{kind}` reports"
         source = "a softening resonance has two stable motions and an unstable one between its folds"
         claim(quantity, sum(one["stable"] for one in orbits), near=2.0, within=0.0, basis="closed form", source=source)
     result = run(rw.scene_from_dict(several.article(500.0)))
     first = result.simulation.orbits[0]
     assert not first["stable"] and any("unstable" in text for text in result.warnings)
-    quantity = "multiplier of the orbit that `newmark` starts on, the article's ring under 500 N: warned of"
+    quantity = "multiplier of `newmark`'s unstable starting orbit, the article's ring under 500 N"
     claim(quantity, first["multiplier"], at_least=1.0, basis="closed form", source="unstable: above 1")
     closed = run(rw.scene_from_dict(several.article(800.0, kind="periodic", tolerance=1e-9)))
     gap = several.by_integration(closed, 0.0)[2]
-    quantity = "motion on a closed branch, the article's ring under 800 N: what a turn does not close by over the amplitude"
+    quantity = "motion on a closed branch, the article's ring under 800 N: closure error over the amplitude"
     source = "DOP853 on the reference's own equations, from the motion that is taken; tolerance 1e-9"
     claim(quantity, gap, at_most=1e-10, basis="own other method", source=source)
 
@@ -252,7 +252,7 @@ def test_random_scenes_by_two_integrators(claim):
     ):  # fmt: skip
         judged = [(distance, told) for friction, distance, told in pairs if (friction > 0.0) == rubs]
         good = sum(distance <= FACTOR or told for distance, told in judged)
-        quantity = f"share of pairs {words}: apart by at most {FACTOR:g} times their stated errors, or several motions told"
+        quantity = f"share of pairs {words}: apart by at most {FACTOR:g} times their stated errors, or several motions reported"
         source = f"{len(judged)} scenes; the other integrator"
         claim(quantity, good / len(judged), at_least=share, basis="own other method", source=source)
 

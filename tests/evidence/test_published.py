@@ -42,7 +42,7 @@ def test_stiffness_of_pairs(claim, case, preloads, axial, why):
     """A pair as the scene of a pair and as twice the tangent of one row, tilts locked."""
     for direction, limit, reason in (
         ("axial", axial, why),
-        ("radial", 0.08, "printed as a rounded factor times the axial one, for the whole catalogue"),
+        ("radial", 0.08, "printed as a rounded factor times the axial one"),
     ):
         error = largest(f"nsk-{case}-stiffness", f"{direction} stiffness", 2 * preloads, limit)
         quantity = f"NSK {case}, {direction} stiffness of a pair at {preloads} preloads: largest relative error"

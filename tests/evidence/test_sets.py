@@ -151,7 +151,7 @@ def test_cost_of_rows(claim):
     ratio = max(min(spent[count]) / (count * min(spent[1])) for count in (2, 4))
     quantity = "processor time of a run of 2 and 4 rows over that of as many runs of one row: larger"
     claim(
-        quantity, ratio, at_most=1.05, basis="regression", source="work grows with the rows; 5 % is what least times scatter"
+        quantity, ratio, at_most=1.05, basis="regression", source="work grows with the rows; 5 % is the spread of least times"
     )
 
 
@@ -294,7 +294,7 @@ def test_run_ups_through_a_resonance(claim):
         source=source,
     )
     quantity = f"{where}: error over that of the record alone, largest"
-    source = "of one record the error is told to a factor: a motion that lags behind its force is not linear in the lag"
+    source = "one record gives the error to a factor: a motion that lags behind its force is not linear in the lag"
     claim(quantity, max(alone), at_most=5.0, basis="own other method", source=source)
 
 
