@@ -135,8 +135,6 @@ def table(data: dict[str, Any]) -> str:
             cells.append((f"**{subject}**",))
         cells += [_cells(row, f"{subject}: " if shared else "", numbers) for row in claims]
     text = _markdown(("quantity", "value, limit", "basis"), cells)
-    if not all(map(holds, rows)):
-        text += "\n\nBold: [misses](../evidence.md#misses)."
     for basis, group in itertools.groupby(sources, lambda source: source[0]):
         lines = [f"{numbers[basis, source]}. {source}" for _, source in group]
         text += "\n\n" + "\n".join([f"Basis {basis}:", "", *lines])
@@ -155,7 +153,7 @@ def _cells(row: dict[str, Any], subject: str, numbers: dict[tuple[str, str], int
     return (
         row["quantity"].removeprefix(subject) + unit,
         f"{value if holds(row) else f'**{value}**'}, {limits(row['low'], row['high'])}",
-        str(numbers[row["basis"], row["source"]]),
+        f"{numbers[row['basis'], row['source']]}" + (f"; misses: {row['misses']}" if row["misses"] else ""),
     )
 
 

@@ -8,7 +8,7 @@ from raceway.framework.options import at_least, between, option, positive, word_
 
 
 def _conductance(between_words: str) -> float | str:
-    help_text = f"conductance between {between_words}; 'auto': by a correlation; 'infinite': one temperature"
+    help_text = f"conductance between {between_words}; 'auto': correlation; 'infinite': one temperature"
     return option("auto", unit="W/K", help=help_text, rule=word_or(positive(), "auto", "infinite"))
 
 

@@ -252,7 +252,9 @@ def test_random_scenes_by_two_integrators(claim):
     ):  # fmt: skip
         judged = [(distance, told) for friction, distance, told in pairs if (friction > 0.0) == rubs]
         good = sum(distance <= FACTOR or told for distance, told in judged)
-        quantity = f"share of pairs {words}: apart by at most {FACTOR:g} times their stated errors, or several motions reported"
+        quantity = (
+            f"share of pairs {words}: apart by at most {FACTOR:g} times their stated errors, or several motions reported"
+        )
         source = f"{len(judged)} scenes; the other integrator"
         claim(quantity, good / len(judged), at_least=share, basis="own other method", source=source)
 

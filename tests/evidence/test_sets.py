@@ -151,7 +151,11 @@ def test_cost_of_rows(claim):
     ratio = max(min(spent[count]) / (count * min(spent[1])) for count in (2, 4))
     quantity = "processor time of a run of 2 and 4 rows over that of as many runs of one row: larger"
     claim(
-        quantity, ratio, at_most=1.05, basis="regression", source="work grows with the rows; 5 % is the spread of least times"
+        quantity,
+        ratio,
+        at_most=1.05,
+        basis="regression",
+        source="work grows with the rows; 5 % is the spread of least times",
     )
 
 
