@@ -105,15 +105,15 @@ def test_a_window_whose_halves_differ_by_more_than_it_sees_is_not_believed():
     """Under a free vibration within two lines of 1x the response beats, and one window sees a mean of it."""
     scene = scene_from_dict(rubbing())
 
-    def unresolved(halves, orbit=None, settled=True, friction=0.3):
+    def unresolved(halves, orbit=None, repeats=True, friction=0.3):
         scene_of = attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=friction))
-        simulation = SimpleNamespace(start=SimpleNamespace(orbit=orbit, settled=settled))
+        simulation = SimpleNamespace(start=SimpleNamespace(orbit=orbit, repeats=repeats))
         return _unresolved(SimpleNamespace(problem=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
 
     assert unresolved(4.0) and unresolved(None) and not unresolved(2.0)
     assert unresolved(4.0, orbit=object()), "with friction the orbit of the start is none"
     assert not unresolved(4.0, orbit=object(), friction=0.0), "it began on its steady orbit"
-    assert unresolved(0.0, orbit=object(), settled=False, friction=0.0), "an unstable one"
+    assert unresolved(0.0, orbit=object(), repeats=False, friction=0.0), "an unstable one"
 
 
 @pytest.mark.parametrize(

@@ -255,7 +255,7 @@ def test_names_on_the_command_line():
     assert registry.find_any("hertz").kind == "contact_law"
     assert registry.find_any("contact-law:penalty").name == "penalty"
     for text, reason in {
-        "herz": r"no plug-in named 'herz' \(did you mean 'hertz'\?\); installed: bodies:condensed, bodies:elastic, bodies:rigid, contact_law:film, contact_law:hertz",
+        "herz": r"no plug-in named 'herz' \(did you mean 'hertz'\?\); installed: bodies:condensed, bodies:cylindrical_rollers, bodies:elastic, bodies:rigid, contact_law:film, contact_law:hertz",
         "law:hertz": "no kind of plug-in named 'law'.*kinds: contact_law, excitation",
         "integrator:hertz": "no integrator named 'hertz'",
     }.items():

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.errors import PluginError
-from raceway.framework.options import one_of, option, optional, positive
+from raceway.framework.options import option, optional, positive, word_or
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,18 +41,23 @@ class Line:
     #: What ``CylindricalRollers`` asks of a law.
     line_contact: ClassVar[bool] = True
 
-    constant: str = option("iso_16281", help="'iso_16281' or 'palmgren'", rule=one_of(*_COEFFICIENTS))
+    constant: float | str = option(
+        "iso_16281",
+        unit="m^1.8/N^0.9",
+        help="c: 'iso_16281', 'palmgren' or a number",
+        rule=word_or(positive(), *_COEFFICIENTS),
+    )
     length: float | None = option(None, unit="m", help="L; default: that of the rollers", rule=optional(positive()))
 
     @classmethod
     def examples(cls) -> list[Line]:
         """Instances for the conformance suite, whose contacts are ellipses."""
-        return [cls(length=9e-3), cls(length=0.03, constant="palmgren")]
+        return [cls(length=9e-3, constant=_COEFFICIENTS["iso_16281"]), cls(length=0.03, constant=_COEFFICIENTS["palmgren"])]
 
     @property
     def coefficient(self) -> float:
         """c [m^1.8 / N^0.9]."""
-        return _COEFFICIENTS[self.constant]
+        return _COEFFICIENTS[self.constant] if isinstance(self.constant, str) else self.constant
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
         import numpy as np

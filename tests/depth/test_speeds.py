@@ -173,7 +173,7 @@ def test_fit_of_a_series_of_equilibria_has_no_mass():
     [
         ([9000.0], "at least two speeds"),
         ([9000.0, 9000.0], "5 % or more above the smallest"),
-        ([9000.0, 9001.0, 9449.0], "5 % or more above the smallest: closer ones hide a K that is off by 20 times"),
+        ([9000.0, 9001.0, 9449.0], "5 % or more above the smallest: closer ones make K wrong by 20 times"),
         ([0.0, 1.0], "greater than 0"),
         ([], "two"),
     ],

@@ -56,7 +56,7 @@ def test_a_static_scene_balances_and_tells_what_it_took_off(static):
     assert model["energies_j"]["elastic"] > 0.0 and model["energies_j"]["contact"] > 0.0
     plan = make_plan(scene())
     assert plan.dofs > 2_000 and "pressures at surface points" in {part.part for part in plan.left_out}
-    unsure = [text for text in found["warnings"] if "too coarse to tell its own compliance" in text]
+    unsure = [text for text in found["warnings"] if "too coarse to determine its own compliance" in text]
     assert len(unsure) == (mesh["replaced_uncertainty"] > 0.0125)
 
 

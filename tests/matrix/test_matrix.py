@@ -104,7 +104,7 @@ def test_combination(cell, record_property):
     # Elastic bodies take eight steps a turn: some percent.
     assert found.drift is None or found.drift < (0.05 if cell.bodies == "elastic" else 5e-3)
     expected = reference(cell.excitation, cell.tilt, cell.bodies)
-    if expected is None:
+    if expected is None or cell.law == "line":  # whose contacts are lines, which balls do not have:
         return
     k = expected.real + found.mass * found.speed**2
     nodal = cell.discretisation == "nodal"
