@@ -8,6 +8,7 @@ import warnings
 import attrs
 import pytest
 
+import raceway
 from raceway import PluginError
 from raceway.plugins.dask import Dask
 from raceway.plugins.processes import Serial
@@ -70,7 +71,7 @@ def test_workers_of_another_version_are_refused_by_name(cluster, tmp_path):
         warnings.simplefilter("ignore")
         fill_store(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
     assert "no dask worker can compute these points: tcp://127.0.0.1:" in str(told.value)
-    assert "raceway 0.1.0 instead of 9.9" in str(told.value)
+    assert f"raceway {raceway.__version__} instead of 9.9" in str(told.value)
     assert not (tmp_path / "store").exists()  # nothing was computed, and nothing stands in the way of another try
 
 

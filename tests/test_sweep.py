@@ -18,7 +18,7 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import PluginError, RacewayError, SceneError, scene_from_dict
+from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
 from raceway.framework.contracts import Lost, Refused
 from raceway.plugins.dask import Dask
@@ -353,7 +353,7 @@ def test_a_store_of_something_else_is_named_and_left_alone(tmp_path):
         texts = dict(file.execute("SELECT name, value FROM facts").fetchall())
         file.execute("UPDATE facts SET value = ? WHERE name = 'digest'", (json.dumps(facts_digest(texts)),))
     before = (tmp_path / "s" / "points.sqlite").read_bytes()
-    with pytest.raises(RacewayError, match=r"another version \(raceway 0.1.0 instead of 0.0.9\)"):
+    with pytest.raises(RacewayError, match=rf"another version \(raceway {__version__} instead of 0.0.9\)"):
         prepare(SCENE, design, tmp_path / "s", resume=True)
     assert (tmp_path / "s" / "points.sqlite").read_bytes() == before
     (tmp_path / "strange").mkdir()
@@ -393,7 +393,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
     wanted = prepared.facts["identity"]
     for changed, words in (
         ({"plugins": {**wanted["plugins"], "contact_law:mine": "raceway-mine 1.0"}}, "contact law 'mine' of raceway-mine 1.0 is missing"),
-        ({"plugins": {**wanted["plugins"], "contact_law:hertz": "raceway 0.2"}}, "contact law 'hertz' is of raceway 0.1.0 instead of raceway 0.2"),
+        ({"plugins": {**wanted["plugins"], "contact_law:hertz": "raceway 9.9"}}, f"contact law 'hertz' is of raceway {__version__} instead of raceway 9.9"),
         ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
         ({"program": "y"}, "under the same version"),
     ):  # fmt: skip
