@@ -24,6 +24,7 @@ import raceway as rw
 from raceway.cli import frame
 from raceway.cli.commands import ALIASES
 from raceway.cli.main import main
+from raceway.framework.contracts import KINDS
 from raceway.out.progress import ProgressBar
 from validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
 
@@ -248,6 +249,11 @@ def test_every_command_is_looked_at():
 @pytest.mark.parametrize("alias", ALIASES)
 def test_help_of_an_alias_shows_it(alias):
     assert f"raceway {alias} " in invoke(alias, "--help").stdout.split("Example:")[1]
+
+
+def test_help_of_new_plugin_lists_the_kinds():
+    words = invoke("dev", "new-plugin", "--help").stdout.split()
+    assert {kind for kind in KINDS if {kind, f"{kind},", f"{kind}."} & set(words)} == set(KINDS)
 
 
 @pytest.mark.parametrize("command", [*RUNNABLE, "study", ""])

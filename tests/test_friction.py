@@ -96,6 +96,13 @@ def test_heat_of_a_measured_bearing():
     assert ratios == pytest.approx([0.723, 1.147, 1.299, 1.303], abs=0.006)
 
 
+def test_values_of_the_screen_are_short():
+    """They are never broken; long ones would push the remarks off a narrow screen."""
+    rows = Friction.rows(friction(quantities={"friction": {"seal_torque": 0.02}})[0])
+    assert all(len(value) < 20 for _, value, _ in rows)
+    assert [remark for name, _, remark in rows if name == "torque by source"][0].count(",") == len(PARTS) - 1
+
+
 def test_at_rest_nothing_is_lost():
     table, _ = friction(kinematics={"spin_speed_rpm": 0.0})
     assert table["power_w"] == table["parts"]["drag"] == table["parts"]["rolling"] == 0.0

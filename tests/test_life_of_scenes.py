@@ -10,6 +10,7 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.plugins.life import Life
 from raceway.points.dataset import open_store, write_csv
 from raceway.scene.lubricant import Lubricant
 
@@ -72,7 +73,9 @@ def test_the_modified_life_is_the_standards():
     expected = reliability_factor(0.99) * factor * found["l10r_million_revolutions"]
     assert found["l10mr_million_revolutions"] == pytest.approx(expected, rel=1e-12)
     assert found["l10mr_hours"] == pytest.approx(expected * 1e6 / (60.0 * 12000.0), rel=1e-12)
-    assert found["not_modified"] == ""
+    assert found["not_modified"] == "" and found["contamination"] == 0.3
+    remark = next(remark for name, _, remark in Life.rows(found) if name.startswith("modified"))
+    assert remark.endswith(f"reached by 99 %; kappa 1.5, a_ISO {factor:.3g}, e_C 0.3")
 
 
 OIL = {"oil": "VG 32", "temperature_c": 60.0}

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import raceway as rw
+from raceway.plugins.heat import Temperatures
 from validation.warm import (
     MEASURED,
     energy_imbalance,
@@ -97,7 +98,25 @@ def test_the_band_holds_the_answer():
     assert low < table["temperatures_k"]["inner"] - table["temperatures_k"]["outer"] < high
     bands = dict.fromkeys(("rolling_band", "elastic_band", "traction_band", "drag_band"), 0.0)
     narrow = rw.run(warm_pair({"conductance_band": 0.0}, quantities={"friction": bands})).to_dict()
+    rows = {name: (value, remark) for name, value, remark in Temperatures.rows(table)}
+    assert rows["running preload"][0].endswith(" N") and rows["running preload"][1] == "within the bands"
     assert_allclose(narrow["heat"]["band"]["running_preload_n"], narrow["equilibrium"]["preload"]["running_n"], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("heat", "lubricant", "words"),
+    [
+        ({"oil_inlet_c": 25.0}, {"viscosity": 0.02}, "does not thin as it warms"),
+        (
+            {"oil_inlet_c": 5.0, "ambient_c": -40.0},
+            {"oil": "VG 32"},
+            "surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)",
+        ),
+    ],
+)
+def test_oil_beyond_its_data_is_told_with_the_cause(heat, lubricant, words):
+    scene = warm_pair(heat, kinematics={"spin_speed_rpm": 100.0}) | {"lubricant": lubricant}
+    assert any(words in warning for warning in rw.run(scene).warnings)
 
 
 def test_an_inner_ring_that_oil_wets_is_colder():

@@ -16,7 +16,7 @@ from rich.text import Text
 from raceway.cli.console import print_json
 from raceway.cli.frame import common, faults, plugin_files, show, show_progress
 from raceway.errors import RacewayError
-from raceway.framework.contracts import plural
+from raceway.framework.contracts import KINDS, plural
 from raceway.framework.registry import default_registry, registry_with
 from raceway.out.table import written
 from raceway.out.wrapping import Words
@@ -89,20 +89,22 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     return 0 if conformity.conforms else 1
 
 
-@click.command("new-plugin", short_help="Write a package for a new plug-in.")
+_NEW_PLUGIN = f"""Write an installable package with a plug-in of a KIND that runs and passes its own tests at once.
+
+KIND: {", ".join(KINDS)}.
+
+\b
+Example:
+  raceway dev new-plugin contact_law my_law
+"""
+
+
+@click.command("new-plugin", short_help="Write a package for a new plug-in.", help=_NEW_PLUGIN)
 @click.argument("kind")
 @click.argument("name")
 @click.option("--out", type=click.Path(path_type=Path), default=Path("."), metavar="DIR", help="Where to put it [here].")
 @common
 def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
-    """Write an installable package with a plug-in of a KIND that runs and passes its own tests at once.
-
-    KIND: contact_law, excitation, integrator, identifier, mesher, format, report, executor or study.
-
-    \b
-    Example:
-      raceway dev new-plugin contact_law my_law
-    """
     from raceway.testing.scaffold import new_plugin as write
 
     folder = write(kind, name, out, default_registry())

@@ -160,7 +160,7 @@ class Friction:
                 f"{table['power_w']:.4g} W",
                 f"inner {table['heat_w']['inner']:.3g}, outer {table['heat_w']['outer']:.3g}",
             ),
-            ("torque by source", shares, "N m"),
+            ("torque by source", "N m", shares),
             (
                 "Palmgren's rule",
                 f"{rule['oil_bath']:.3g} N m",

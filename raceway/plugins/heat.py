@@ -89,15 +89,25 @@ class Temperatures:
         }
 
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
-        """Where the oil is beyond the temperatures of its viscosity."""
+        """Where the oil does not thin, or is beyond the temperatures of its viscosity."""
         from raceway.scene.lubricant import COLDEST, HOTTEST
 
         oil = points.problem.lubricant
-        if oil is None or not oil.thins or oil.temperature_c is None or COLDEST <= oil.temperature_c <= HOTTEST:
+        if oil is not None and not oil.thins:
+            return [
+                "lubricant.viscosity is one number: this oil does not thin as it warms, and heat and temperatures are too high where it "
+                "is warmer than that. Give lubricant.oil, or viscosity_40 and viscosity_100"
+            ]
+        if oil is None or oil.temperature_c is None or COLDEST <= oil.temperature_c <= HOTTEST:
             return []
+        advice = (
+            "Give more oil (heat.oil_flow)"
+            if oil.temperature_c > HOTTEST
+            else "Oil or surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)"
+        )
         return [
             f"the oil in the contacts is at {oil.temperature_c:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
-            "along Walther's line. Give more oil (heat.oil_flow)"
+            f"along Walther's line. {advice}"
         ]
 
     @staticmethod
@@ -111,7 +121,8 @@ class Temperatures:
         ways = ", ".join(f"{value:.3g} W by the {way}" for way, value in table["flows_w"].items())
         rows.append(("heat", f"{table['heat_w']:.4g} W", ways))
         if "running_preload_n" in band:
-            rows.append(("running preload", "", _within(band["running_preload_n"], 0.0, "N")))
+            value, _, remark = _within(band["running_preload_n"], 0.0, "N").partition(": ")
+            rows.append(("running preload", value, remark or "within the bands"))
         return rows
 
 

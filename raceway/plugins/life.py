@@ -117,21 +117,25 @@ class Life:
         numbers = {name: _stated(value) for name, value in values.items()}
         origin = ", ".join(dict.fromkeys(row.ratings.dynamic_from for row in rows))
         loads = "constant" if points.turn is None else "over a turn of the motion"
-        words = {"rating_from": origin, "loads": loads, "reliability": self.reliability, "not_modified": why}
+        set_by = {"reliability": self.reliability, "contamination": self.contamination}
+        words = {"rating_from": origin, "loads": loads, **set_by, "not_modified": why}
         return {**numbers, **words, "rows": [row.table for row in rows]}
 
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
         """Lives, equivalent load and static safety of the bearing."""
         facts: list[Fact] = []
-        for name, words, share in (
-            ("l10r", "reference life L10r", 0.9),
-            ("l10mr", "modified life Lnmr", table["reliability"]),
+        worst = min(table["rows"], key=lambda row: row["life_factor"] or 0.0)
+        by_row = {"kappa": worst["viscosity_ratio"], "a_ISO": worst["life_factor"], "e_C": table["contamination"]}
+        modified = "; " + ", ".join(f"{symbol} {value:.3g}" for symbol, value in by_row.items() if value is not None)
+        for name, words, share, by in (
+            ("l10r", "reference life L10r", 0.9, ""),
+            ("l10mr", "modified life Lnmr", table["reliability"], modified),
         ):
             turns, hours = table[f"{name}_million_revolutions"], table[f"{name}_hours"]
             if turns is not None:
                 at_speed = f"{hours:.4g} h; " if hours is not None else ""
-                facts.append((words, f"{turns:.4g} million", f"{at_speed}turns that {100.0 * share:g} % reach"))
+                facts.append((words, f"{turns:.4g} million", f"{at_speed}reached by {100.0 * share:g} %{by}"))
         origin = f"C = {number(table['rating_n'], 'N')}, by {table['rating_from']}"
         facts.append(("equivalent load P", number(table["equivalent_load_n"], "N"), origin))
         if table["static_safety"] is not None:
