@@ -119,6 +119,40 @@ def test_oil_beyond_its_data_is_told_with_the_cause(heat, lubricant, words):
     assert any(words in warning for warning in rw.run(scene).warnings)
 
 
+def test_stiffness_and_life_have_the_band_of_the_heat():
+    """Of a 7014C pair, whose upper end runs away: its stiffness may be any above, its life any below."""
+    tables = {"bearing": {"preset": "7014C"}, "kinematics": {"spin_speed_rpm": 9000.0}}
+    for scene, runs_away in ((warm_pair(), False), (warm_pair(**tables), True)):
+        document = rw.run(scene).to_dict()
+        band, equilibrium = document["heat"]["band"], document["equilibrium"]
+        at = {
+            "heat_w": document["heat"]["heat_w"],
+            "kyy_n_per_m": equilibrium["stiffness"][1][1],
+            "l10r_hours": document["life"]["l10r_hours"],
+        }
+        for name, value in at.items():
+            low, high = band[name]
+            lost = high if name != "l10r_hours" else low
+            assert (lost is None) == runs_away
+            assert (low is None or low < value) and (high is None or value < high)
+
+
+def test_tolerances_without_derivatives_have_no_interval():
+    band = rw.run(warm_pair(bearing={"preload_kind": "spring"}, tolerances={"bearing.width": "+-1 %"})).to_dict()[
+        "tolerances"
+    ]
+    assert band["quantities"] == {} and "every tolerance is left out" in band["why"]
+
+
+def test_runaway_advises_by_the_preload():
+    """Of a pair whose heat can not leave; a sprung one is not told to take springs."""
+    closed = dict.fromkeys(("shaft_ambient", "housing_ambient"), 1e-9) | {"oil_flow": 1e-14}
+    for kind in ("rigid", "spring"):
+        with pytest.raises(rw.ConvergenceError, match="more heat is made than can leave") as failure:
+            rw.run(warm_pair(closed, bearing={"preload_kind": kind}))
+        assert ("by a spring" in str(failure.value)) == (kind == "rigid")
+
+
 def test_an_inner_ring_that_oil_wets_is_colder():
     """Between the balls of a B7206C are 1 - 12 9.525 / (46 pi) = 0.2091 of the pitch circle."""
     gaps, all_over = (rw.run(warm_pair({"inner_wetting": share})).to_dict()["heat"] for share in ("auto", 1.0))
@@ -192,8 +226,11 @@ def test_a_bearing_that_its_own_heat_closes_is_an_answer():
         kinematics={"spin_speed_rpm": 16_000.0, "ring_growth": True},
         mounting={"shaft_interference": 5e-6},
     )
-    with pytest.raises(rw.ConvergenceError, match="steady temperatures are no way to run, inner at .* close the bearing"):
+    with pytest.raises(
+        rw.ConvergenceError, match="steady temperatures are no way to run, inner at .* close the bearing"
+    ) as fault:
         rw.run(scene)
+    assert "mounting." not in str(fault.value) and "heat.oil_flow" in str(fault.value)
 
 
 _MISSED = {28e3: "a third of the measured heat is missing"}

@@ -78,6 +78,8 @@ _ELSE, _PART = 1e-7, 1e-3
 #: Second difference over the first that calls for a smaller step, and that is a kink; rounding of a stiffness.
 _UNEVEN, _KINK, _ROUNDING = 5e-4, 0.02, 1e-11
 _BENDS = "the model has a kink there: to either side derivatives are others"
+_NONE_LEFT = "no intervals: every tolerance is left out"
+_SOME_LEFT = "intervals are of the other tolerances alone, as some are left out: wider ones are likely"
 _AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
 #: Arrays of a system that forces at rest and in motion depend on.
 _ARRAYS = ("scalars", "table", "stiffness", "load", "law_params", "mass", "damping", "force_params")
@@ -584,7 +586,7 @@ def first_order_band(
     Returns
     -------
     quantities : name -> value, unit, definition, low, high, and ``shares`` of the variance by key;  left_out : keys without a derivative, with reasons
-    why : why there are no quantities, or none of the motion; empty else
+    why : why there are no quantities, none of the motion, or intervals of a part of the tolerances; empty else
     """
     scene = model.scene
     if not tolerances and "tolerances" not in scene.source:
@@ -611,7 +613,11 @@ def first_order_band(
             by_name |= derivatives(model, equilibrium, answer)
             slopes[key.path] = tolerance.low - key.value, tolerance.high - key.value, by_name
     words |= {name: quantity_of(name).words for name in gradients.stated}
-    quantities = {}
+    if left_out:
+        why = "; ".join(filter(None, (why, _SOME_LEFT if slopes else _NONE_LEFT)))
+    quantities: Tables = {}
+    if left_out and not slopes:
+        return {"quantities": quantities, "left_out": left_out, "why": why}
     for name, value in {**values(model, equilibrium, orbit), **gradients.stated}.items():
         ends = [sorted(slope[name] * end for end in (low, high)) for low, high, slope in slopes.values()]
         low, high = limits(ends)

@@ -27,11 +27,12 @@ from raceway.bodies.rigid import Rigid
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.thermal import NODES
 from raceway.errors import ConvergenceError, RacewayError, SceneError
+from raceway.framework.duties import fitting_quantities
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.quantities import solved_point
+from raceway.pipeline.quantities import solved_point, stated_numbers
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
-from raceway.plugins.heat import ZERO_C, thermal_network
+from raceway.plugins.heat import NO_THINNING, ZERO_C, thermal_network
 from raceway.scene.changes import with_columns
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
@@ -52,9 +53,7 @@ _SPEEDS, _ROUNDS = 17, 3
 
 
 #: Reason of points without steady temperatures.
-RUNAWAY = (
-    f"no steady temperature below {_HOTTEST:g} °C: the warmer the bearing, the more heat it makes, beyond what can leave it"
-)
+RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: more heat is made than can leave, however warm the bearing becomes until there"
 
 
 #: Temperatures (m, 6) that follow from columns of keys at points (m,), with factors of friction and conductances.
@@ -127,11 +126,14 @@ def warm_plan(scene: Scene) -> ScenePlan:
         return plan_of(_at_row(scene, warmth.columns, 0))
     except SceneError as fault:
         level = ", ".join(f"{node} at {warmth.temperatures[0, NODES.index(node)]:.4g} °C" for node in _FELT)
-        raise ConvergenceError(f"steady temperatures are no way to run, {level}: {fault}") from fault
+        raise ConvergenceError(
+            f"steady temperatures are no way to run, {level}: {fault.mistakes[0].message}. Of the heat: more or colder oil (heat.oil_flow, "
+            "heat.oil_inlet_c), an inner ring that it wets (heat.inner_wetting), less speed"
+        ) from fault
 
 
 def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
-    """``heat.band`` of result.json: [low, high] of temperatures and running preload over the bands of friction and conductances.
+    """``heat.band`` of result.json: [low, high] of temperatures, heat, preload, stiffness and life over the bands of friction and conductances.
 
     Parameters
     ----------
@@ -140,7 +142,8 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     Notes
     -----
     Ends are those of the eight combinations of friction, the inner rings' conductance to the oil and the other conductances at the ends of
-    their bands.  Where some of them have no steady temperature, or close the bearing, the upper ends are None; both ends where all do.
+    their bands.  Where some of them have no steady temperature, or close the bearing, the upper ends are None, of life the lower one; both ends
+    where all do.
     """
     assert scene.heat is not None, "callers look"
     simple, wide = _simple(scene), 1.0 + scene.heat.conductance_band
@@ -148,25 +151,40 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     factors = np.array(list(product(friction, conductances, conductances))).T
     columns = {key: np.repeat(column, factors.shape[1]) for key, column in _one(simple).items()}
     warmth = warm(simple, columns, make_plan(simple), list(factors))
-    running = {}
+    running, rated = {}, any(plugin.name == "life" for plugin in fitting_quantities(resolve(simple)))
     for corner in np.flatnonzero(~warmth.runaway):
         with suppress(SceneError):
             problem = _at_row(simple, warmth.columns, corner)
             model = model_of(problem, plan_of(problem))
-            preloaded = scene.bearing.preloaded and preload_table(model, solve_equilibrium(model))
-            running[corner] = preloaded["running_n"] if preloaded else 0.0
+            equilibrium = solve_equilibrium(model)
+            preloaded = scene.bearing.preloaded and preload_table(model, equilibrium)
+            point = solved_point(model, equilibrium, None)
+            network = thermal_network(point, *factors[:, corner])
+            life = stated_numbers(point, ("life",))["l10r_hours"] if rated else [np.nan]
+            running[corner] = [
+                preloaded["running_n"] if preloaded else np.nan,
+                network.heats.sum(),
+                *np.diag(equilibrium.stiffness)[:2],
+                life[0],
+            ]
     level = warmth.temperatures[list(running)] + ZERO_C
     inner, _, outer = level[:, _FELT_NODES].T
 
-    def ends(values: np.ndarray) -> list[float | None]:
-        low = float(values.min()) if len(values) else None
-        return [low, float(values.max()) if len(values) == factors.shape[1] else None]
+    def ends(values: np.ndarray, falls: bool = False) -> list[float | None]:
+        """Corners that ran away are beyond the upper end, or of what falls with the heat beyond the lower one."""
+        steady, every = len(values) > 0, len(values) == factors.shape[1]
+        return [float(values.min()) if (every if falls else steady) else None,
+                float(values.max()) if (steady if falls else every) else None]  # fmt: skip
 
     table: Tables = {"friction": list(friction), "conductances": list(conductances)}
     table["temperatures_k"] = {node: ends(column) for node, column in zip(NODES, level.T, strict=True)}
     table["inner_less_outer_k"] = ends(inner - outer)
+    preload, heat, kxx, kyy, life = np.reshape(list(running.values()), (-1, 5)).T
+    table |= {"heat_w": ends(heat), "kxx_n_per_m": ends(kxx), "kyy_n_per_m": ends(kyy)}
     if scene.bearing.preloaded:
-        table["running_preload_n"] = ends(np.array(list(running.values())))
+        table["running_preload_n"] = ends(preload)
+    if rated:
+        table["l10r_hours"] = ends(life, falls=True)
     return table
 
 
@@ -194,11 +212,15 @@ def speed_limit(scene: Scene) -> float:
 
 
 def _runaway_words(scene: Scene) -> str:
-    return (
-        f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: the warmer the bearing, the more it is preloaded and the more heat it "
-        "makes, and beyond this speed more than can leave it. Preload it less or by a spring, cool the inner ring or warm the housing "
-        "(heat.inner_oil, heat.oil_flow), or take a thinner oil"
+    words = (
+        f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: more heat is made than can leave, however warm the "
+        "bearing becomes until there. "
     )
+    if scene.bearing.preloaded and scene.bearing.preload_kind == "rigid":
+        words += "A rigid preload grows as the inner ring warms: preload it less or by a spring. "
+    if scene.lubricant is not None and not scene.lubricant.thins:
+        words += f"{NO_THINNING}. "
+    return f"{words}Carry off more heat (heat.oil_flow, heat.inner_oil), or take a thinner oil"
 
 
 def _keys(scene: Scene) -> tuple[str, ...]:

@@ -33,6 +33,14 @@ if TYPE_CHECKING:
 
 #: 0 degrees Celsius [K].
 ZERO_C = 273.15
+#: What is said of an oil of one viscosity.
+NO_THINNING = (
+    "lubricant.viscosity is one number: this oil does not thin as it warms, and heat and temperatures are too high where it is warmer than "
+    "that. Give lubricant.oil, or viscosity_40 and viscosity_100"
+)
+#: Rows of ``heat.band`` that are shown as intervals alone: key, unit and what it is times the key's.
+_BANDS = {"running preload": ("running_preload_n", "N", 1.0), "kxx": ("kxx_n_per_m", "N/µm", 1e-6),
+          "kyy": ("kyy_n_per_m", "N/µm", 1e-6), "life L10r": ("l10r_hours", "h", 1.0)}  # fmt: skip
 _NODES = {"inner": "the inner rings", "balls": "the balls", "outer": "the outer rings", "shaft": "the shaft",
           "housing": "the housing", "oil": "the oil in the bearing"}  # fmt: skip
 _FLOWS = {"oil": "throughput", "shaft": "shaft_ambient", "housing": "housing_ambient"}
@@ -94,10 +102,7 @@ class Temperatures:
 
         oil = points.problem.lubricant
         if oil is not None and not oil.thins:
-            return [
-                "lubricant.viscosity is one number: this oil does not thin as it warms, and heat and temperatures are too high where it "
-                "is warmer than that. Give lubricant.oil, or viscosity_40 and viscosity_100"
-            ]
+            return [NO_THINNING]
         if oil is None or oil.temperature_c is None or COLDEST <= oil.temperature_c <= HOTTEST:
             return []
         advice = (
@@ -119,10 +124,14 @@ class Temperatures:
             ends = band.get("temperatures_k", {}).get(node)
             rows.append((node, f"{kelvin - ZERO_C:.4g} °C", _within(ends, ZERO_C, "°C")))
         ways = ", ".join(f"{value:.3g} W by the {way}" for way, value in table["flows_w"].items())
-        rows.append(("heat", f"{table['heat_w']:.4g} W", ways))
-        if "running_preload_n" in band:
-            value, _, remark = _within(band["running_preload_n"], 0.0, "N").partition(": ")
-            rows.append(("running preload", value, remark or "within the bands"))
+        rows.append(
+            ("heat", f"{table['heat_w']:.4g} W", "; ".join(filter(None, (_within(band.get("heat_w"), 0.0, "W"), ways))))
+        )
+        for label, (name, unit, factor) in _BANDS.items():
+            if name in band:
+                ends = [None if end is None else factor * end for end in band[name]]
+                value, _, remark = _within(ends, 0.0, unit).partition(": ")
+                rows.append((label, value, remark or "within the bands"))
         return rows
 
 
@@ -131,8 +140,12 @@ def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
     if ends is None:
         return ""
     if None in ends:
-        above = "" if ends[0] is None else f"{ends[0] - less:.4g} {unit} or more: "
-        return f"{above}no steady temperature at one end of the bands"
+        known = [
+            f"{end - less:.4g} {unit} or {word}: "
+            for end, word in zip(ends, ("more", "less"), strict=True)
+            if end is not None
+        ]
+        return f"{''.join(known)}no steady temperature at one end of the bands"
     return f"{ends[0] - less:.4g} to {ends[1] - less:.4g} {unit}"
 
 
