@@ -117,7 +117,15 @@ def test_balls_that_slip_sideways_are_told():
 
 def test_without_oil_it_is_left_out_and_asked_for_it_names_the_keys():
     dry = {name: table for name, table in TABLES.items() if name != "lubricant"}
-    assert "friction" not in run(rw.Scene.from_dict(dry)).to_dict()
+    result = run(rw.Scene.from_dict({**dry, "quantities": {"friction": {"seal_torque": 0.02}}}))
+    table = result.to_dict()
+    assert (
+        "friction" not in table
+        and "needs an oil" in table["not_computed"]["friction"]
+        and "life" not in table["not_computed"]
+    )
+    assert any(warning.startswith("[quantities.friction] has no effect") for warning in result.warnings)
+    assert not any("no effect" in warning for warning in run(rw.Scene.from_dict(dry)).warnings)
     with pytest.raises(RacewayError) as caught:
         rw.function(rw.Scene.from_dict(dry), ["load.axial"], ["torque_nm"])
     assert "[lubricant] with `oil` and `temperature_c`" in str(caught.value)

@@ -80,9 +80,15 @@ def unused_with_bodies(tables: SceneTables) -> list[tuple[str, str]]:
 
 def fitting_quantities(problem: Problem) -> list[Quantities]:
     """Plug-ins of quantities whose numbers a problem has, by the order of their names; ``PluginError`` where one breaks its duty."""
+    missing = missing_quantities(problem)
+    return [getattr(problem.quantities, name) for name, why in missing.items() if not why]
+
+
+def missing_quantities(problem: Problem) -> dict[str, str]:
+    """Plug-in -> ``why_no_quantities``, by the order of their names."""
     table = problem.quantities
-    plugins = [getattr(table, field.name) for field in attrs.fields(type(table))]
-    return [plugin for plugin in plugins if not why_no_quantities(plugin, problem)]
+    names = [field.name for field in attrs.fields(type(table))]
+    return {name: why_no_quantities(getattr(table, name), problem) for name in names}
 
 
 def why_no_quantities(plugin: Quantities, problem: Problem) -> str:

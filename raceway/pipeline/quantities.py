@@ -12,7 +12,7 @@ from raceway.bodies.model import Equilibrium, Model
 from raceway.bodies.running import running_pairs
 from raceway.core.record import Record
 from raceway.framework.contracts import SolvedPoints
-from raceway.framework.duties import fitting_quantities, quantities_at, quantity_report
+from raceway.framework.duties import fitting_quantities, missing_quantities, quantities_at, quantity_report
 from raceway.storage.tables import Tables
 
 
@@ -23,11 +23,13 @@ class StatedQuantities:
     Attributes
     ----------
     values : name -> number, or array over the quantity's dimensions;  tables : plug-in -> what result.json has;  warnings : sentences
+    missing : plug-in -> what the problem lacks for it
     """
 
     values: dict[str, float | np.ndarray]
     tables: dict[str, Tables]
     warnings: tuple[str, ...]
+    missing: dict[str, str]
 
 
 def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | None) -> StatedQuantities:
@@ -44,7 +46,10 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
         tables[plugin.name], sentences = quantity_report(plugin, points, computed)
         warnings += sentences
         values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in computed.items()}
-    return StatedQuantities(values, tables, tuple(warnings))
+    missing = {name: why for name, why in missing_quantities(model.problem).items() if why}
+    asked = model.scene.source.get("quantities", {})
+    warnings += [f"[quantities.{name}] has no effect: {why}" for name, why in missing.items() if asked.get(name)]
+    return StatedQuantities(values, tables, tuple(warnings), missing)
 
 
 def stated_numbers(points: SolvedPoints, names: Iterable[str]) -> dict[str, np.ndarray]:

@@ -313,6 +313,7 @@ class Result(Answer):
                 "geometry": self.geometry,
                 "equilibrium": equilibrium_table(self.model, self.equilibrium),
                 **self.stated.tables,
+                "not_computed": self.stated.missing,
                 "identification": self._identification(),
                 "model": self.bodies,
                 "motion": self._motion(),
