@@ -143,7 +143,7 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     -----
     Ends are those of the eight combinations of friction, the inner rings' conductance to the oil and the other conductances at the ends of
     their bands.  Where some of them have no steady temperature, or close the bearing, the upper ends are None, of life the lower one; both ends
-    where all do.
+    where all do.  Stiffness and life are left out where bodies are simplified for the temperatures (``_simple``).
     """
     assert scene.heat is not None, "callers look"
     simple, wide = _simple(scene), 1.0 + scene.heat.conductance_band
@@ -180,10 +180,12 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     table["temperatures_k"] = {node: ends(column) for node, column in zip(NODES, level.T, strict=True)}
     table["inner_less_outer_k"] = ends(inner - outer)
     preload, heat, kxx, kyy, life = np.reshape(list(running.values()), (-1, 5)).T
-    table |= {"heat_w": ends(heat), "kxx_n_per_m": ends(kxx), "kyy_n_per_m": ends(kyy)}
+    table["heat_w"] = ends(heat)
+    if simple is scene:
+        table |= {"kxx_n_per_m": ends(kxx), "kyy_n_per_m": ends(kyy)}
     if scene.bearing.preloaded:
         table["running_preload_n"] = ends(preload)
-    if rated:
+    if rated and simple is scene:
         table["l10r_hours"] = ends(life, falls=True)
     return table
 
