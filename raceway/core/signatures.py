@@ -86,7 +86,7 @@ def _entry(context: _Numba, builder: _Numba, sig: Signature, array: _Numba, inde
         size = builder.extract_value(array, [shape, axis])
         if not getattr(part, "constant", -1) >= 0:
             behind = builder.icmp_signed("<", part, part.type(0))
-            part = builder.select(behind, builder.add(part, size), part)  # noqa: PLW2901
+            part = builder.select(behind, builder.add(part, size), part)
         if context.enable_boundscheck:
             cgutils.do_boundscheck(context, builder, part, size, axis)
         offset = part if offset is None else builder.add(builder.mul(offset, size), part)

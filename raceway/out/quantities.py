@@ -222,6 +222,10 @@ DIFFERENTIABLE = {number.symbol: number for number in (K, C, AMPLITUDE, KXX, KYY
 KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values(), BALL_LOAD, CONTACT_ANGLE)
 
 
+#: What only the loop over steady orbits states: the largest Floquet multiplier, and the change of stiffness along an orbit.
+OF_ORBITS = ("largest_multiplier", "stiffness_change")
+
+
 def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
     """Name -> plug-in and quantity of every number that plug-ins of quantities state.
 
@@ -233,11 +237,7 @@ def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
     numbers: dict[str, tuple[str, Quantity]] = {}
     for entry in (each for each in registry.all() if each.kind == "quantity"):
         for quantity in entry.plugin.numbers:
-            if (
-                quantity.name in numbers
-                or quantity.name in KNOWN
-                or quantity.name in ("largest_multiplier", "stiffness_change")
-            ):
+            if quantity.name in numbers or quantity.name in KNOWN or quantity.name in OF_ORBITS:
                 raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")
             numbers[quantity.name] = entry.name, quantity
     return numbers

@@ -1,4 +1,4 @@
-"""What ``raceway run`` shows of elastic bodies: the table ``model`` of result.json."""
+"""Rows of ``raceway run``, section by section, from the content of result.json."""
 
 from __future__ import annotations
 
@@ -176,14 +176,14 @@ def error_rows(result: ReadTables) -> list[Row]:
     parts = {
         name.replace("_", " "): error.get(name) for name in ("time_step", "transient", "identification", "mesh", "contact")
     }
-    known = [
-        f"{name} {value:.1e}" for name, value in parts.items() if value and value > _NEGLIGIBLE * (error["total"] or 0.0)
-    ]
+    least = _NEGLIGIBLE * (error["total"] or 0.0)
+    known = {name: f"{name} {value:.1e}" for name, value in parts.items() if value and value > least}
     if identified is None:
-        return [("relative error", "", f"of the stiffness: {', '.join(known)}")] if known else []
+        return [("relative error", "", f"of the stiffness: {', '.join(known.values())}")] if known else []
     rigid = result["scene"]["bodies"]["kind"] == "rigid"  # which have no mesh
     unknown = [name for name, value in parts.items() if value is None and not (rigid and name == "mesh")]
-    words = [", ".join(known) if len(known) > 1 else known[0].rpartition(" ")[0]] if known else []
+    # A single part is the total, whose number stands beside it.
+    words = [", ".join(known.values() if len(known) > 1 else known)] if known else []
     words += [f"{', '.join(unknown)} not estimated"] if unknown else []
     total = "not estimated" if error["total"] is None else f"{error['total']:.1e}"
     rows: list[Row] = [("relative error of Z", total, "; ".join(words))]
@@ -211,7 +211,7 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 def cost_row(cost: ReadTables) -> Row:
     """Time and memory."""
     words = [f"{number(cost['cpu_s'], 'CPU-s', 3)}"] if "cpu_s" in cost else []
-    words += [f"{cost['steps']} steps"] if cost["steps"] else []
+    words += [f"{cost['steps']} steps"] if cost["steps"] and not cost["compile_s"] else []  # two lines at most
     words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"] + (
         [f"{cost['threads']} threads"] if cost["threads"] > 1 else []
     )

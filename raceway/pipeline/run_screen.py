@@ -44,7 +44,7 @@ _OF_Z = (
     *(quantity.label for quantity in (K, C, Z, PHASE_LAG)), "loss factor", "orbit, semi-axes",
 )  # fmt: skip
 #: Relative change of a stiffness by a hypothesis below which it is not told.
-LEAST_CHANGE = 1e-3
+_LEAST_CHANGE = 1e-3
 
 
 def _answer_rows(result: ReadTables) -> list[Row]:
@@ -98,7 +98,7 @@ def _model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
     parts = {}
     for key in ("kinematics.gyroscopic", "kinematics.ring_growth"):
         changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
-        if max(map(abs, changes), default=0.0) >= LEAST_CHANGE:
+        if max(map(abs, changes), default=0.0) >= _LEAST_CHANGE:
             parts[key] = changes
     changes = spread[name] if len(parts) > 1 else next(iter(parts.values()), [])
     return [("", "", f"model error {of}{percents(*changes)}: {', '.join(parts)} off")] if parts else []

@@ -52,8 +52,9 @@ _HOTTEST = 400.0
 _SPEEDS, _ROUNDS = 17, 3
 
 
+_WHY_RUNAWAY = "more heat is made than can leave, however warm the bearing becomes until there"
 #: Reason of points without steady temperatures.
-RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: more heat is made than can leave, however warm the bearing becomes until there"
+RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: {_WHY_RUNAWAY}"
 
 
 #: Temperatures (m, 6) that follow from columns of keys at points (m,), with factors of friction and conductances.
@@ -214,10 +215,7 @@ def speed_limit(scene: Scene) -> float:
 
 
 def _runaway_words(scene: Scene) -> str:
-    words = (
-        f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: more heat is made than can leave, however warm the "
-        "bearing becomes until there. "
-    )
+    words = f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: {_WHY_RUNAWAY}. "
     if scene.bearing.preloaded and scene.bearing.preload_kind == "rigid":
         words += "A rigid preload grows as the inner ring warms: preload it less or by a spring. "
     if scene.lubricant is not None and not scene.lubricant.thins:

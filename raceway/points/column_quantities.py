@@ -25,7 +25,7 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.registry import Registry, default_registry
-from raceway.out.quantities import AMPLITUDE, KNOWN, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
+from raceway.out.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan
@@ -35,9 +35,7 @@ from raceway.scene.scene import Scene
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
 #: exist, which a run looks for.
 _MILD = 0.5
-_MULTIPLIER = "largest_multiplier"
-#: The name of that change, which runs do not state.
-_CHANGE = "stiffness_change"
+_MULTIPLIER, _CHANGE = OF_ORBITS
 #: Relative tolerance of the orbit of one scene.
 _TOLERANCE = 1e-10
 #: Labels of the dimensions of arrays.

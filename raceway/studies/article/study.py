@@ -21,7 +21,7 @@ from raceway.errors import ConvergenceError, RacewayError, Status
 from raceway.framework.registry import Registry
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
-from raceway.out.quantities import ERROR, FORCE_AMPLITUDE, K, Z
+from raceway.out.quantities import ERROR, FORCE_AMPLITUDE, OF_ORBITS, K, Z
 from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
@@ -222,7 +222,6 @@ _STATIC = "seed-static-pressures"
 #: What a row has of the compiled loop, and what decides whether that is the motion of a run: one whose stiffness changes by less than
 #: this part of its mean has no other motion beside it (of 1296 points in the study, two have one from a change of 0.11 on).
 _LOOPED = {"k": K.name, "abs_z": Z.name, "force_n": FORCE_AMPLITUDE.name, "error": ERROR.name}
-_ALONE = ("largest_multiplier", "stiffness_change")
 _LINEAR = 0.1
 
 
@@ -248,13 +247,13 @@ def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | N
     columns = {key: [tables[key.partition(".")[0]][name] for tables in points] for key, name in paths.items()}
     numbers = {key: np.array(column, dtype=float) for key, column in columns.items() if not isinstance(column[0], str)}
     try:
-        f = function(scene_from_dict(points[0], registry), numbers, [*_LOOPED.values(), *_ALONE], threads=1)
+        f = function(scene_from_dict(points[0], registry), numbers, [*_LOOPED.values(), *OF_ORBITS], threads=1)
     except RacewayError:  # its row says why
         return [None] * len(points)
     if f.why_slow or f.scene.bodies.name != "rigid":  # the loop states no error of a mesh
         return [None] * len(points)
     answer = f.looped(numbers)
-    multiplier, change = (answer[name] for name in _ALONE)
+    multiplier, change = (answer[name] for name in OF_ORBITS)
     return [
         {
             "speed_rpm": speed, "axial_n": load, "status": Status.COMPLETED, "reason": "", "found": "directly", "mesh_error": None,
