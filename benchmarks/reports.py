@@ -1,7 +1,8 @@
-"""Reports on disk: JSON, the Markdown made of it, and the blocks of the documents; ``python -m benchmarks.reports`` refreshes both.
+"""Reports on disk as JSON, their pages on the site, and the blocks of the documents; ``python -m benchmarks.reports`` writes both.
 
 ``pytest --evidence`` writes the JSON (``benchmarks.claims``).  A block between ``<!-- evidence:NAME -->`` and ``<!-- /evidence -->`` in
-README.md and docs is a report's table; nothing in a table is typed by hand.
+README.md and docs is a report's table; nothing in a table is typed by hand.  As an extension of Sphinx (docs/conf.py) the module writes
+the pages before they are read, and a link to a report's JSON leads to its page.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def _git(*words: str) -> str:
 def write(
     name: str, title: str, rows: list[dict[str, Any]], seconds: float, command: str, folder: Path = FOLDER
 ) -> dict[str, Any]:
-    """Write the JSON and the Markdown file of a report; returns the JSON's content."""
+    """Write the JSON of a report; returns its content."""
     data = {
         "title": title,
         "rows": rows,
@@ -103,7 +104,6 @@ def write(
     }
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    (folder / f"{name}.md").write_text(page(data), encoding="utf-8")
     return data
 
 
@@ -112,8 +112,25 @@ def read(folder: Path = FOLDER) -> dict[str, dict[str, Any]]:
     return {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))}
 
 
+def setup(app: Any) -> dict[str, bool]:
+    """Entry point of Sphinx: pages of the reports, and the links to them."""
+
+    def linked(_: Any, __: str, source: list[str]) -> None:
+        source[0] = re.sub(r"(\(reports/\w+)\.json\)", r"\1.md)", source[0])
+
+    app.connect("builder-inited", lambda _: write_pages())
+    app.connect("source-read", linked)
+    return {"parallel_read_safe": True}
+
+
+def write_pages(folder: Path = FOLDER) -> None:
+    """Write the Markdown page of every report beside its JSON; git ignores them."""
+    for name, data in read(folder).items():
+        (folder / f"{name}.md").write_text(page(data), encoding="utf-8")
+
+
 def page(data: dict[str, Any]) -> str:
-    """The Markdown file of a report."""
+    """The page of a report."""
     lines = [f"# {data['title']}", "", table(data), "", _origin(data), ""]
     return "\n".join(lines)
 
@@ -186,7 +203,7 @@ def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
         ("report", "rows that hold", "made at"),
         (
             (
-                f"[{data['title']}]({links}{name}.md)",
+                f"[{data['title']}]({links}{name}.json)",
                 f"{sum(map(holds, data['rows']))} of {len(data['rows'])}",
                 data["commit"],
             )
@@ -209,7 +226,7 @@ def misses(reports: dict[str, dict[str, Any]], links: str = "") -> str:
         ("report", "quantity", "value", "limit"),
         (
             (
-                f"[{name}]({links}{name}.md)",
+                f"[{name}]({links}{name}.json)",
                 row["quantity"],
                 shown(row["value"]),
                 limits(row["low"], row["high"]),
@@ -238,7 +255,7 @@ def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
         if block == "readme" and row["basis"] not in OUTSIDE:
             raise KeyError(f"README shows {', '.join(OUTSIDE)}, and {quantity!r} is {row['basis']}")
         value = f"{row['value']:.6g}" if isinstance(row["value"], float) and row["value"] > 100 else shown(row["value"])
-        link = f"[{name}]({links}{name}.md)"
+        link = f"[{name}]({links}{name}.json)"
         cells.append((words, value, limits(row["low"], row["high"]), _yes(holds(row)), link))
     return _markdown(("what", "number", "limit", "holds", "report"), cells)
 
@@ -276,10 +293,9 @@ def links_from(document: Path) -> str:
 
 
 def refresh() -> list[Path]:
-    """Rewrite the pages of reports and every block; returns the documents that changed."""
+    """Write the pages of reports and every block; returns the documents that changed."""
+    write_pages()
     reports = read()
-    for name, data in reports.items():
-        (FOLDER / f"{name}.md").write_text(page(data), encoding="utf-8")
     changed = []
     for path in documents():
         old = path.read_text(encoding="utf-8")

@@ -6,16 +6,19 @@ The reference is taken from the docstrings.  Nothing on a page asks the network.
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from pathlib import Path
 
-_PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+_ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(_ROOT))  # for benchmarks.reports
+_PROJECT = tomllib.loads((_ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 project = "Raceway"
 author = _PROJECT["authors"][0]["name"]
 release = version = _PROJECT["version"]
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "benchmarks.reports"]
 templates_path = ["_templates"]
 exclude_patterns = ["_build", "_templates", "**.ipynb_checkpoints"]
 nitpicky = False

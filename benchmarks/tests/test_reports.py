@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
@@ -31,9 +32,18 @@ def test_rows_hold_or_say_why_not(name):
         assert bool(row["misses"]) != Claim(**row).holds
 
 
-@pytest.mark.parametrize("name", sorted(REPORTS))
-def test_markdown_is_made_of_the_json(name):
-    assert (files.FOLDER / f"{name}.md").read_text(encoding="utf-8") == files.page(REPORTS[name])
+def test_the_site_has_a_page_of_each_report_and_links_to_it(tmp_path):
+    (tmp_path / "one.json").write_text(
+        json.dumps(_report(x=1.001)["one"] | {"command": "pytest", "seconds": 1.0}), encoding="utf-8"
+    )
+    files.write_pages(tmp_path)
+    assert (tmp_path / "one.md").read_text(encoding="utf-8").startswith("# One\n")
+    hooks = {}
+    files.setup(SimpleNamespace(connect=hooks.__setitem__))
+    source = ["see ([report](reports/one.json)) and [data](one.json)"]
+    hooks["source-read"](None, "page", source)
+    assert set(hooks) == {"builder-inited", "source-read"}
+    assert source == ["see ([report](reports/one.md)) and [data](one.json)"]
 
 
 def test_every_report_has_a_module():
