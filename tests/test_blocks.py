@@ -230,8 +230,8 @@ def test_the_answer_says_how_points_were_computed(tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n')
     words = ["sweep", tmp_path / "s.toml", "--grid", "load.axial=0,500,900", "--out", tmp_path / "s"]
     shown = " ".join(invoke(*words, "--csv").output.split())
-    assert "3 points: 2 done, 1 failed" in shown and "2 are computed in a compiled loop" in shown
-    assert "the stability of orbits, other orbits and warnings are not looked at" in shown
+    assert "3 points: 2 done, 1 failed" in shown and "2 computed in a compiled loop" in shown
+    assert "Not checked at computed points: stability of orbits, further orbits, warnings" in shown
     lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
     assert [line.split(",")[1] for line in lines] == ["status", "failed", "computed", "computed"]
     content = json.loads(invoke(*words, "--resume", "--json").stdout)

@@ -182,7 +182,7 @@ def test_the_catalogue_is_searched_by_pattern_or_by_a_part_of_the_name():
 def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     static = {"bearing": {"preset": "7014C"}, "load": {"axial": 1000.0}}
     found = run(static)
-    assert found.geometry["words"] == "geometry inferred: stiffness known to about 4 % axially, 8 % radially"
+    assert found.geometry["words"] == "geometry inferred: stiffness uncertain by about 4 % axially, 8 % radially"
     # A series without printed stiffnesses is known less well than those that have some.
     other = run({**static, "bearing": {"preset": "7914C"}}).geometry
     assert other["stiffness_error"] == other["radial_stiffness_error"] == 0.2 and "another maker" in other["stiffness_basis"]

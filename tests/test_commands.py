@@ -119,7 +119,7 @@ TOLD = {
         "orbit",
     ),
     "run, static": ("static scene", "kyy tilts follow"),
-    "plan": ("Kept", "Left out", "degrees of freedom", "time step", "wall time"),
+    "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),
     "export": ("moments on the ring", "r/min"),

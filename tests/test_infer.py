@@ -295,7 +295,7 @@ def test_the_command_infers_one_bearing_and_a_table(tmp_path):
     one = ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"]
     found = json.loads(invoke(*one, "--json").stdout)
     assert found["bearing"]["ball_count"] == 20 and found["numbers"]["ball_count"]["reason"]
-    assert "axial stiffness known to about 4 %" in invoke(*one).stdout
+    assert "axial stiffness uncertain by about 4 %" in invoke(*one).stdout
     file = tmp_path / "mine.csv"
     file.write_text(
         f"{HEAD}\n7014C,70,110,20,15,47000,43000\n7014A5,70,110,20,25,44500,41000\nwrong,70,112,20,15,47000,23000\n"

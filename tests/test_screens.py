@@ -179,7 +179,7 @@ def test_a_dry_bearings_damping_is_told_with_the_remedy(tmp_path):
 def test_a_table_says_once_what_is_the_same_in_all_rows():
     rows = [{"axial": "400", "speed_rpm": f"{speed}", "K N/µm": 153.2} for speed in (12000, 15000)]
     text = lines(rows_table(rows))
-    assert text[0] == "the same in all rows: axial 400, K N/µm 153.2"
+    assert text[0] == "same in all rows: axial 400, K N/µm 153.2"
     assert text[1].split() == ["speed", "r/min"] and text[3:] == ["      12000", "      15000"]
     assert "the same" not in lines(rows_table(rows[:1]))[0]
 

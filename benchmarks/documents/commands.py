@@ -46,9 +46,7 @@ With one line in its start file the shell completes commands, options, keys of a
 def page() -> str:
     """The text of docs/command_line.md."""
     commands = list(walk(main, "raceway"))
-    table = ["## Commands", "", "| command | does |", "|---|---|"]
-    table += [f"| [`{name}`](#{name.replace(' ', '-')}) | {command.get_short_help_str(200)} |" for name, command in commands]
-    return "\n".join([_HEAD, *table, "", *(section(name) for name, _ in commands)])
+    return "\n".join([_HEAD, "## Commands\n", *(section(name) for name, _ in commands)])
 
 
 def walk(group: click.Group, path: str) -> Iterator[tuple[str, click.Command]]:

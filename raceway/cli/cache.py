@@ -41,11 +41,10 @@ def _cache_screen(caches: ReadTables) -> RenderableType:
 
 
 @click.command(short_help="List or clear the caches.")
-@click.option("--clear", is_flag=True, help="Remove all of it; the next run compiles and condenses again.")
+@click.option("--clear", is_flag=True, help="Delete both; the next run compiles and condenses again.")
 @common
 def cache(clear: bool, as_json: bool) -> int:
-    """List the caches of compiled kernels and compliances of bodies (RACEWAY_CACHE_DIR names another folder): number, size, content,
-    last use; or clear them.
+    """List the caches of compiled kernels and of body compliances with size and last use, or clear them.  RACEWAY_CACHE_DIR moves them.
 
     \b
     Example:

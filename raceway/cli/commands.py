@@ -39,7 +39,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "plan",
         "raceway.cli.plan:plan",
-        "Is a scene right, what would be built, and what not.",
+        "Validate a scene; predict its size, time and memory.",
         "raceway plan examples/b7206.toml --set supports.tilt=free",
         folder=None,
         pictures=None,
@@ -47,7 +47,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "compare",
         "raceway.points.compare:compare",
-        "One scene, some keys varied, everything else the same.",
+        "Vary keys of a scene; report the effect of each.",
         "raceway compare examples/b7206.toml \\\n"
         "    --vary excitation.kind=unidirectional,bidirectional \\\n"
         "    --vary excitation.speed_rpm=10980:15000:5",
@@ -58,7 +58,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "sweep",
         "raceway.cli.sweep:sweep",
-        "One scene at thousands of points, in a store; parallel, resumable.",
+        "Compute many operating points; parallel, resumable.",
         "raceway sweep examples/b7206.toml --plot K \\\n"
         "    --grid excitation.speed_rpm=10980:15000:9 --grid load.axial=400,1200\n"
         "raceway sweep raceway-out/B7206C-sweep --plot p0 --at load.axial=1200\n"
@@ -92,7 +92,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "follow",
         "raceway.points.follow:follow",
-        "K as a curve over speed or any continuous key: folds, stability, special points.",
+        "Continue K over speed or another key, through folds, with stability.",
         "raceway follow examples/b7206.toml --over excitation.speed_rpm=500:30000\n"
         "raceway follow examples/b7206.toml --over load.axial=2000:100 \\\n"
         "    --set supports.tilt=free",
@@ -107,7 +107,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "band",
         "raceway.points.band:uncertainty",
-        "How much tolerances and numbers of a scene change the answer.",
+        "Derivatives of the answer; 95 % band over tolerances.",
         "raceway band examples/b7206.toml --by bearing.contact_angle_deg\n"
         'raceway band examples/minimal.toml --tolerance load.axial="±10 %" \\\n'
         '    --tolerance bearing.contact_angle_deg="±1 deg" --samples 512',
@@ -126,7 +126,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "fit",
         "raceway.studies.fit.fit:fit_texts",
-        "Numbers of a scene, or K and C of a rig's bearing, from measured data.",
+        "Fit scene parameters, or K and C of a rig's bearing, to measurements.",
         "raceway fit measured-k.csv --scene examples/b7206.toml \\\n"
         "    --free bearing.contact_angle_deg\n"
         "raceway fit shaker.csv --free K,C,mass\n"
@@ -160,7 +160,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "catalogue --infer",
         "raceway.studies.catalogue.infer:infer_texts",
-        "Balls and grooves of a bearing from what its maker prints.",
+        "Infer balls and grooves from printed dimensions and ratings.",
         'raceway catalogue --infer --bore "70 mm" --outer-diameter "110 mm" \\\n'
         '    --rating "15:47 kN:43 kN" --rating "25:44.5 kN:41 kN"\n'
         "raceway catalogue --infer nsk --conformity 0.522",
@@ -180,7 +180,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "view",
         "raceway.studies.view.view:view",
-        "Draw a bearing: loads, contacts, mesh, orbit; pictures and a page.",
+        "Draw a bearing: loads, contacts, mesh, orbit; PNG, HTML.",
         "raceway view examples/b7206.toml --html",
         {"page": Option("html")},
         pictures=None,
@@ -196,7 +196,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     Command(
         "export",
         "raceway.studies.rotor.command:export",
-        "Write a sweep's coefficients for a rotor program.",
+        "Export coefficients of a sweep to rotor programs.",
         "raceway export raceway-out/B7206C-sweep --ross bearing.toml \\\n"
         "    --at load.axial=1000\n"
         "raceway sweep examples/b7206.toml --set identifier.kind=tangent \\\n"
@@ -224,14 +224,14 @@ TRUST = (
     Command(
         "precision",
         "raceway.points.precision:precision",
-        "Error against run time: which setting is good enough.",
+        "Error against run time of numerical settings.",
         "raceway precision examples/b7206.toml \\\n"
         "    --vary integrator.kind=newmark,central_difference \\\n"
         "    --vary integrator.steps_per_turn=45,90,180,360",
         {
-            "vary": Option(metavar="A.B=X,Y", help="Axis; all combinations are run. Without: a default design"),
-            "reference": Option(metavar="A.B=C", help="Key of the reference; found by itself without"),
-            "limit_s": Option("limit", "SECONDS", "Leave out what is predicted to take longer."),
+            "vary": Option(metavar="A.B=X,Y", help="Axis; all combinations are run; without, a default design"),
+            "reference": Option(metavar="A.B=C", help="Key of the reference; without, chosen automatically"),
+            "limit_s": Option("limit", "SECONDS", "Omit settings predicted to take longer."),
         },
         folder="-precision",
         unchecked=True,
@@ -239,7 +239,7 @@ TRUST = (
     Command(
         "stability",
         "raceway.studies.stability.study:stability",
-        "Stiff and extreme cases: what must hold, holds.",
+        "Test laws and integrators on stiff and extreme cases.",
         "raceway stability --only chatter",
         {"only": Option(metavar="WORDS"), "every": Option("all")},
         folder="-stability",
@@ -249,7 +249,7 @@ TRUST = (
     Command(
         "verify",
         "raceway.studies.verify.study:verify",
-        "Compute the reference cases.",
+        "Compare with published reference cases.",
         "raceway verify --only harris-table-6.1 --all",
         {"only": Option(metavar="CASE"), "every": Option("all")},
         folder=None,
@@ -258,11 +258,11 @@ TRUST = (
 )
 DEVELOPERS = (
     Later("new-plugin", "raceway.cli.plugins:new_plugin", "Write a package for a new plug-in."),
-    Later("check-plugin", "raceway.cli.plugins:check_plugin", "Does a plug-in keep its contract?"),
+    Later("check-plugin", "raceway.cli.plugins:check_plugin", "Test a plug-in against its contract."),
     Command(
         "law",
         "raceway.points.law:law",
-        "A contact law on one contact: force, stiffness, damping, energy per cycle.",
+        "Force, stiffness, damping and energy per cycle of a contact law.",
         "raceway dev law hertz --set contact.damping=300\n"
         "raceway dev law penalty --out raceway-out/penalty\n"
         "raceway dev law film --set contact.viscosity=0.03 \\\n"
@@ -278,7 +278,7 @@ DEVELOPERS = (
     ),
     Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
     Later("cache", "raceway.cli.cache:cache", "List or clear the caches."),
-    Later("plugins", "raceway.cli.plugins:plugins", "List what is installed, with options."),
+    Later("plugins", "raceway.cli.plugins:plugins", "List installed plug-ins and their options."),
     Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
 )
 #: Heading in --help -> its commands.

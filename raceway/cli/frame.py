@@ -50,7 +50,7 @@ def common(command: F) -> F:
     """--json, -v and --debug, which every command takes; ``console`` reads --json and --debug from the command line, too."""
     command = click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")(command)
     command = click.option(
-        "-v", "--verbose", is_flag=True, expose_value=False, callback=listen, help="Say on standard error what is computed."
+        "-v", "--verbose", is_flag=True, expose_value=False, callback=listen, help="Report progress on standard error."
     )(command)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON only, errors too.")(command)
 

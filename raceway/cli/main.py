@@ -70,7 +70,7 @@ class _DeveloperCommands(_CommandsByName):
 
 @click.group(cls=_DeveloperCommands, short_help="Plug-ins: templates, conformance, laws, schema, caches.")
 def dev() -> None:
-    """For those who write plug-ins: templates, conformance, contact laws on one contact, caches, schema.
+    """Tools for plug-in authors: templates, conformance tests, contact laws, caches, schema.
 
     \b
     Example:
@@ -82,15 +82,15 @@ def dev() -> None:
 @click.version_option(__version__, prog_name="raceway")
 @click.option("--debug", is_flag=True, expose_value=False, help="Show tracebacks.")
 def main() -> None:
-    """Dynamic stiffness of ball bearings under axial load and rotor unbalance, with error and cost.
+    """Dynamic stiffness of rolling bearings under axial load and rotor unbalance, with error and cost.
 
-    A scene is a TOML file with SI units; ten lines are enough.
+    Input is a scene: a TOML file of some ten lines in SI units.
 
     \b
-      raceway plan examples/b7206.toml      is it right, and what would be built
-      raceway run examples/b7206.toml       the answer
+      raceway plan examples/b7206.toml      validate; predict size, time, memory
+      raceway run examples/b7206.toml       compute K and C with their errors
       raceway run examples/b7206.toml --set load.axial=400 --pictures
 
-    Exit codes: 0 success, 1 a numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C,
-    143 SIGTERM, 129 SIGHUP.
+    Exit codes: 0 success, 1 numerical failure, 2 mistake in the scene or on the command line, 130 Ctrl-C, 143 SIGTERM,
+    129 SIGHUP.
     """

@@ -32,19 +32,19 @@ _KEYS: dict[str, dict[str, tuple[Any, bool]]] = {
 _KINDS = {
     "excitation": (
         "bidirectional",
-        "a force that turns; 'unidirectional': along one line.  Without this table the scene is static",
+        "rotating force; 'unidirectional': along one line.  Without this table the scene is static",
     ),
     "contact": ("hertz", "contact law; raceway dev plugins lists others"),
-    "integrator": ("auto", "the steady orbit where there is one; 'newmark' and others integrate over time"),
+    "integrator": ("auto", "the steady orbit where one exists; 'newmark' and others integrate over time"),
 }
 _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  Lines that begin with # are comments;
-# every key with unit and default: docs/scene.md.  What is wrong in it: raceway check FILE
+# every key with unit and default: docs/scene.md.  Validate: raceway check FILE
 """
 
 
 @click.command("new-scene", short_help="Write a scene to start from.")
 @click.argument("preset", default="B7206C")
-@click.option("--out", type=PATH, metavar="FILE", help="The file [PRESET.toml here].")
+@click.option("--out", type=PATH, metavar="FILE", help="File [PRESET.toml here].")
 @common
 def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     """Write a scene with comments: a bearing of the catalogue under axial load and unbalance.

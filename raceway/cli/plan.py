@@ -50,13 +50,13 @@ class _Planned(Answer):
             _derived(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
         ]
         yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
-        yield from (_reasons("Kept", plan["kept"]), _reasons("Left out", plan["left_out"]))
+        yield from (_reasons("Included", plan["kept"]), _reasons("Left out", plan["left_out"]))
 
 
 def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
-    """Validate a scene, and say what it needs, what is left out and why, and the predicted size, time step and cost.
+    """Validate a scene; list the physics included and left out with reasons, predicted size, time step, time and memory.
 
-    Builds nothing. Every mistake is listed with its path, value, rule and the nearest valid choice.
+    Computes nothing. Every mistake is listed with key, value, rule and nearest valid choice.
     """
     checked = check(scene, plugins=plugins)
     if checked.mistakes:

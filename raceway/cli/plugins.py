@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from raceway.testing.suite import Conformity
 
 
-@click.command(short_help="List what is installed, with options.")
+@click.command(short_help="List installed plug-ins and their options.")
 @plugin_files
 @common
 def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
@@ -68,7 +68,7 @@ def schema(as_json: bool) -> int:
     return 0
 
 
-@click.command("check-plugin", short_help="Does a plug-in keep its contract?")
+@click.command("check-plugin", short_help="Test a plug-in against its contract.")
 @click.argument("name", metavar="[KIND:]NAME")
 @plugin_files
 @common
@@ -89,7 +89,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
     return 0 if conformity.conforms else 1
 
 
-_NEW_PLUGIN = f"""Write an installable package with a plug-in of a KIND that runs and passes its own tests at once.
+_NEW_PLUGIN = f"""Write an installable package with a working plug-in of a KIND and its tests.
 
 KIND: {", ".join(KINDS)}.
 
@@ -102,7 +102,7 @@ Example:
 @click.command("new-plugin", short_help="Write a package for a new plug-in.", help=_NEW_PLUGIN)
 @click.argument("kind")
 @click.argument("name")
-@click.option("--out", type=click.Path(path_type=Path), default=Path("."), metavar="DIR", help="Where to put it [here].")
+@click.option("--out", type=click.Path(path_type=Path), default=Path("."), metavar="DIR", help="Parent folder [here].")
 @common
 def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
     from raceway.testing.scaffold import new_plugin as write

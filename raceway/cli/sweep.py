@@ -22,7 +22,7 @@ from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_RE
 from raceway.out.table import micro, written
 from raceway.out.wrapping import Words
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
-from raceway.points.dataset import NOT_LOOKED_AT, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
+from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
@@ -89,7 +89,7 @@ class _Swept(Answer):
             yield Words(f"and {total - len(rows)} more points in {self.store}", "dim")
         yield f"{total} points: {counted}"
         if states["computed"]:
-            yield f"{states['computed']} are computed in a compiled loop. {NOT_LOOKED_AT}"
+            yield f"{states['computed']} computed in a compiled loop. {NOT_CHECKED}"
         for number, reason in islice(points.reasons.items(), _MOST_REASONS):
             yield f"failed: {point_words(points.design.point(number))}: {micro(reason.splitlines()[0])}"
         for count, text, where in warned.values():

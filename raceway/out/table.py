@@ -112,7 +112,7 @@ def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
     same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
     columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
     constants = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
-    return _Rows(columns, title, f"the same in all rows: {constants}" if constants else "")
+    return _Rows(columns, title, f"same in all rows: {constants}" if constants else "")
 
 
 @attrs.frozen

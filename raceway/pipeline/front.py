@@ -34,16 +34,16 @@ def run(
 ) -> Result:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 
-    Writes DIR/result.json, or DIR/failure.json and DIR/last-good-state.npz when the numbers fail (exit code 1).  Reports are plug-ins
-    (raceway dev plugins lists them); one that fails is named after the result is saved.
+    Writes DIR/result.json; after a numerical failure (exit code 1) DIR/failure.json and DIR/last-good-state.npz.  Reports are plug-ins
+    (raceway dev plugins); a report that fails is named after the result is saved.
 
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)`` between chunks of steps; an exception
         stops the run
-    reports : name of a report that is written, too
-    patience : times the planned time or memory after which a run is stopped; ``inf``: never
+    reports : name of a report to write as well
+    patience : multiple of the predicted time or memory at which a run is stopped; ``inf``: never
     plugins : files of one-off plug-ins that the scene uses
     out : folder in which result.json and reports are written; None: nothing is written
 

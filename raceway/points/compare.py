@@ -282,7 +282,7 @@ def compare(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Comparison:
-    """Vary some keys of a scene, all else the same, and say which of them causes what.
+    """Vary keys of a scene, all others constant; report the effect of each key and of pairs.
 
     Parameters
     ----------

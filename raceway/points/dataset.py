@@ -64,7 +64,7 @@ def values_of(result: Result) -> Tables:
 #: Status of points that have numbers.
 FINISHED = ("computed", "run")
 #: What runs say of a point beyond the columns.
-NOT_LOOKED_AT = "Of computed points the stability of orbits, other orbits and warnings are not looked at: raceway run does"
+NOT_CHECKED = "Not checked at computed points: stability of orbits, further orbits, warnings; raceway run does"
 RESULTS, TABLE = "results.nc", "results.csv"
 #: Dimensions, values and attributes of a variable.
 Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
@@ -233,7 +233,7 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
         "program": store.facts["identity"]["program"],
         "schema": store.facts["schema"],
         "created": store.facts["created"],
-        "note": "NaN: not finished, or not estimated; see status. " + NOT_LOOKED_AT,
+        "note": "NaN: not finished, or not estimated; see status. " + NOT_CHECKED,
         "damaged_rows": damaged,
     }
     if damaged:

@@ -251,16 +251,16 @@ def law(
     frequency: float | None = None,
     plugins: Iterable[str | Path] = (),
 ) -> LawCurves:
-    """What a contact law does with one contact of a bearing: force, stiffness, damping, and the energy of a cycle.
+    """Force, stiffness, damping and energy per cycle of a contact law at one contact of a bearing.
 
     Parameters
     ----------
-    name : of the law
+    name : name of the law
     scene : Scene, path, TOML text or dict of tables with rigid bodies; None: B7206C under 1 kN axial load
-    changes : of the scene, as ``raceway.evolve`` takes them, for instance ``"contact.damping=300"``
-    race : "inner" or "outer";  ball : its number, from 0 over all rows; None: the most loaded one
-    amplitude : of the cycle over the elastic approach of the equilibrium
-    frequency : of the cycle [Hz]; None: of the scene's excitation, without one 200 Hz
+    changes : changes of the scene as for ``raceway.evolve``, for instance ``"contact.damping=300"``
+    race : "inner" or "outer";  ball : number of the ball, from 0 over all rows; None: the most loaded one
+    amplitude : amplitude of the cycle over the elastic approach at equilibrium
+    frequency : frequency of the cycle [Hz]; None: the excitation's, else 200 Hz
     plugins : files of one-off plug-ins that hold the law
 
     Returns

@@ -506,14 +506,14 @@ def precision(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Precision:
-    """Run a scene with many settings: what each costs, and how far it is from a reference with a known bound.
+    """Run a scene with many numerical settings; report run time and error of each against a reference with a known bound.
 
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables
     vary : key of the scene -> its values, whose combinations are run; None: a design made for the scene
-    reference : key -> value of the reference; found by itself without
-    repeats : runs of each setting, of which the fastest counts
+    reference : key -> value of the reference; None: chosen automatically
+    repeats : runs per setting; the fastest is reported
     limit_s : settings that are predicted to take longer are left out [s]
     out : folder in which finished rows are stored and reused, and precision.json and .md are written; None: nothing is written
     kept : folder of the finished rows instead of ``out``

@@ -286,7 +286,7 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
         **({"rows": [{"row": k, **geometry} for k, geometry in by_row.items()]} if by_row else {}),
         "stiffness_error": axial,
         "radial_stiffness_error": radial,
-        "words": f"geometry inferred: stiffness known to about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially",
+        "words": f"geometry inferred: stiffness uncertain by about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially",
     }
 
 

@@ -173,13 +173,13 @@ class _Listing(Answer):
 
 
 def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bool = False) -> _Listing:
-    """List bearings whose name matches PATTERN; of a single one, all numbers with source and uncertainty, and its frequencies.
+    """List bearings whose name matches PATTERN; for a single one print all numbers with source, uncertainty and ball-pass frequencies.
 
     Parameters
     ----------
-    pattern : as in a shell, or a part of the name
-    picture : draw the section of the one bearing found, in proportion
-    materials : list the materials of rings and balls instead
+    pattern : shell pattern, or part of the name
+    picture : draw the section of a single match, to scale
+    materials : list the materials of rings and balls
     """
     if materials:
         return _materials()

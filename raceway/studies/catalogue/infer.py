@@ -272,7 +272,7 @@ def infer_texts(
 ) -> Inferred | _InferredTable:
     """Infer ball count, ball diameter, pitch diameter and conformity, each with its uncertainty and reason.
 
-    By ISO 281 and ISO 76, for all angles of a size together, with balls of a usual size. TABLE is a CSV file with the columns name,
+    Inverts ISO 281 and ISO 76 for all contact angles of a size together. TABLE is a CSV file with the columns name,
     bore_mm, outer_diameter_mm, width_mm, contact_angle_deg, dynamic_rating_n, static_rating_n, optionally preload_1_n,
     stiffness_1_n_per_um, preload_2_n ...; static_factor (f_0) of deep-groove bearings; ball_count, ball_diameter_mm,
     pitch_diameter_mm are compared only. Included tables: "nsk", "gmn", "nsk_deep_groove", "nmb_deep_groove".

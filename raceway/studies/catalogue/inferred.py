@@ -160,7 +160,7 @@ class Inferred(Answer):
             rows.append(
                 (f"{check.quantity}, {check.contact_angle_deg:g} deg", value, f"met with {100.0 * check.error:+.2f} %")
             )
-        error = f"geometry inferred: axial stiffness known to about {100.0 * self.stiffness_error:.0f} %"
+        error = f"geometry inferred: axial stiffness uncertain by about {100.0 * self.stiffness_error:.0f} %"
         return [Words(self.printed.title, "bold"), sections(rows), error]
 
 

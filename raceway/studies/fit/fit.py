@@ -126,21 +126,21 @@ def fit_texts(
 ) -> Fitted | Identified:
     """Fit numbers of a scene to measured data, or identify K and C of a bearing from the signals of its rig; intervals at 95 %.
 
-    DATA is a CSV file: measured quantities over keys of the scene (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %);
-    signals of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, a record of force and
-    displacement (time_s, force_n, x_um), or their frequency response (frf.uff), for K, C and mass. Files of oscilloscopes and of LabVIEW are read, too. With --free writes
-    fit.json and fit.png; without, identifies K and C of the bearing in the scene's table [rig]: identify.json. `raceway identify` is
-    the same command.
+    DATA is a CSV file: measured quantities over scene keys (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %); signals
+    of a rig (time_s, y_um, z_um and key, a once-per-turn probe, or speed_rpm); or, without a scene, force and displacement (time_s,
+    force_n, x_um) or their frequency response (frf.uff), for K, C and mass. Oscilloscope and LabVIEW files are read as saved. With
+    --free writes fit.json and fit.png; without, identifies K and C of the bearing in the table [rig]: identify.json. `raceway
+    identify` is the same command.
 
     Parameters
     ----------
     data : a CSV file
-    free : keys that are free; a search begins at the scene's numbers. Without, K and C of a rig are identified
-    scene : the bearing or rig, with load and speed as in the measurement
+    free : free keys, started at the scene's values; without, K and C of a rig are identified
+    scene : bearing or rig, with load and speed of the measurement
     mass : moving mass of a record of force and displacement; else it is free
-    slow_roll : signals at a low speed, whose run-out is subtracted
-    run_out : the run-out itself: amplitude [µm] and angle from the mark [deg]
-    columns : a column by its header: "Ch 1=K [N/µm]", "X [um]=y_um", "CH1=force_n*100" (100 N per V), or =ignore
+    slow_roll : slow-roll signals, whose run-out is subtracted
+    run_out : amplitude [µm] of the run-out and its angle from the mark [deg]
+    columns : quantity of a column: "Ch 1=K [N/µm]", "X [um]=y_um", "CH1=force_n*100" (100 N per V), or =ignore
     """
     free, meanings, vector = tuple(free), _meanings(columns), _vector(run_out)
     if free:

@@ -67,24 +67,24 @@ def export(
 ) -> Exports:
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for a rotor program.
 
-    For ROSS (axes X, Y, Z are y, z, x here), Nastran, Ansys, or as a table. The sweep has at least 5 values of
-    excitation.speed_rpm, 2 without ROSS; with kinematics.spin_speed_rpm it is a table over speed and frequency, for ROSS 3 and
-    --table. Other axes need --at. What a program cannot represent is reported here and in its file.
+    For ROSS (axes X, Y, Z are y, z, x here), Nastran, Ansys, or as a table. The sweep needs 5 or more values of
+    excitation.speed_rpm, 2 without ROSS; with kinematics.spin_speed_rpm, too, the table is over speed and frequency (ROSS 3,
+    --table). Other axes need --at. Losses of a format are reported on the screen and in the file.
 
     Parameters
     ----------
     store : the folder of a sweep
-    ross : a .toml or .json that ross.BearingElement.load reads
+    ross : .toml or .json for ross.BearingElement.load
     nastran : bulk data: CBUSH, PBUSH, PBUSHT, TABLED1
     ansys : APDL commands: COMBI214 with tables over OMEGS
-    table : a .csv or .json of all numbers, the 5x5 K and C with them
-    at : choose a value of an axis
-    source : where the matrix comes from; None: rotating force; tangent in a static sweep
-    damping : of cyy and czz [N s/m] where the sweep's own is smaller than its error
-    ross_version : generation of ROSS; None: the installed one, else 3
-    node : where the bearing stands: ROSS' node; Nastran's grid point, 0: to complete
-    number : of Nastran's property (the next 12 are its tables), of Ansys' element type
-    tag : the element's name in ROSS; None: the bearing's
+    table : .csv or .json of all numbers, with the 5x5 K and C
+    at : select a value of an axis
+    source : source of the matrix; None: rotating force; tangent in a static sweep
+    damping : cyy and czz [N s/m] where the damping of the sweep is below its error
+    ross_version : major version of ROSS; None: the installed one, else 3
+    node : node of the bearing in ROSS; grid point in Nastran, 0: to complete
+    number : Nastran's property (the next 12 are its tables), Ansys' element type
+    tag : name of the element in ROSS; None: the bearing's
     """
     paths = [Path(path) for path in (ross, nastran, ansys, table) if path is not None]
     files = {"nastran": nastran, "ansys": ansys, None: table}

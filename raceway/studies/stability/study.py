@@ -267,17 +267,17 @@ def stability(
     scene: ReadTables | None = None, only: str | None = None, every: bool = False, processes: int = PROCESSES,
     *, kept: Path | None = None, plugins: Sequence[Path] = (), progress: OnProgress | None = None,
 ) -> Stability:  # fmt: skip
-    """Put every law and transient integrator through stiff and extreme cases; exit code 1 when one is not as expected.
+    """Run every law and transient integrator on stiff and extreme cases; exit code 1 when a case is not as expected.
 
-    Without --only or --all a set of quick cases is run. With SCENE, that scene is put through the cases that suit any scene.
-    Writes stability.json and stability.md. Finished cases are stored in DIR/points.sqlite and reused.
+    Without --only or --all the quick cases are run; with SCENE, the cases that apply to any scene. Writes stability.json and
+    stability.md. Finished cases are stored in DIR/points.sqlite and reused.
 
     Parameters
     ----------
     scene : plain tables; the full catalogue when None
-    only : cases whose name holds these words, row by row
-    every : all cases, not only those of a minute: some ten minutes
-    processes : that work at a time; 0: in this one, without guard against a hang
+    only : cases whose name contains these words, row by row
+    every : all cases (ten minutes), not only the quick ones
+    processes : parallel processes; 0: this process, without a guard against hangs
     kept : folder that finished cases are stored in and taken from
     plugins : one-off plug-in files, which each process loads
     progress : called as ``progress(what, done, total)`` after each case; an exception stops the study

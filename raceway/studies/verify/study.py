@@ -371,13 +371,13 @@ def verify(
     registry: Registry | None = None,
     progress: OnProgress | None = None,
 ) -> _Verification:
-    """Compute reference cases; exit code 1 when a number misses its tolerance.
+    """Compute the reference cases; exit code 1 when a number misses its tolerance.
 
-    Published numbers, closed forms, and this program by two ways are counted apart.
+    Published numbers, closed forms and internal comparisons are counted separately.
 
     Parameters
     ----------
-    only : one case instead of all
+    only : this case only
     every : show every number, not only the worst of each case
     registry : whose integrators the impacts are run with
     progress : called as ``progress(case, done, total)`` before each case and once at the end

@@ -175,15 +175,15 @@ class _Meshes(Answer):
 def mesh(
     scene: Scene, form: str = "vtu", picture: bool = False, *, plugins: Iterable[Path] = (), progress: OnProgress
 ) -> _Meshes:
-    """Build the meshes of a scene; say their counts, quality, memory and time; write a file for each ring, one for all balls.
+    """Mesh the bodies of a scene; print counts, quality, memory and time; write one file per ring and one for all balls.
 
     A scene without a table [mesh] gets the mesher `structured` with its defaults.
 
     Parameters
     ----------
     scene : a scene
-    form : format of the files by its name or ending: vtu, abaqus or inp; plug-ins bring more
-    picture : also draw the bearing, cut open, as mesh.png; needs no display
+    form : file format: vtu, abaqus (inp), or a plug-in's
+    picture : also draw the bearing, cut open, as mesh.png
     plugins : files of one-off plug-ins that the scene uses
     progress : called as ``progress(what, done, total)``
 

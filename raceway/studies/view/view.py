@@ -325,14 +325,14 @@ def view(
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> View:
-    """Compute one scene and draw it: the bearing cut open with its ball loads, contact ellipses with their pressure, ball
-    loads by azimuth, the orbit, the mesh of elastic bodies. Needs no display.
+    """Compute one scene and draw it: ball loads on the bearing cut open, contact ellipses with pressure, ball loads over
+    azimuth, orbit, mesh of elastic bodies. Needs no display.
 
     Parameters
     ----------
     scene : Scene, path, TOML text or dict of tables, which is run first; or the Result of a run
     out : folder of the pictures; None: they stay in memory
-    page : also write view.html: the bearing to turn about, tables, all pictures; it opens without a network
+    page : also write view.html, which works offline: the bearing in 3D, tables, all pictures
     plugins : files of one-off plug-ins that the scene uses
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
 
