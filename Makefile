@@ -29,9 +29,10 @@ lint: $(VENV)/.all ## ruff, import-linter, mypy
 	$(BIN)/lint-imports
 	$(BIN)/mypy
 
-docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials run; in an environment of its own, which has ROSS
-	rm -rf docs/api/generated docs/_build
+docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials and gallery run; in an environment of its own, which has ROSS
+	rm -rf docs/api/generated docs/gallery docs/_build
 	$(VENV)-docs/bin/sphinx-build -W --keep-going -E -q -b html docs docs/_build/html
+	$(VENV)-docs/bin/python -m pytest -q docs/test_site.py
 	@echo "open docs/_build/html/index.html"
 
 ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
@@ -80,4 +81,4 @@ apt-line: ## what installs the system libraries that some tests need, as root on
 	@echo $(APT_LINE)
 
 clean: ## without environment and outputs
-	rm -rf $(VENV) $(VENV)-docs raceway-out build dist docs/_build docs/api/generated
+	rm -rf $(VENV) $(VENV)-docs raceway-out build dist docs/_build docs/api/generated docs/gallery

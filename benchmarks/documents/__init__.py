@@ -5,7 +5,7 @@ program checks scenes with (here).  README shows the scene examples/minimal.toml
 and examples/k_over_speed.py (here).
 
 commands  docs/command_line.md: the help of every command
-versions  the table of docs/versions.md, from pyproject.toml
+versions  the table of docs/installation.md, from pyproject.toml
 drawing   docs/pictures/parameters.svg: what the keys of [bearing] mean
 promises  docs/pictures/stability.svg: from its report
 """
@@ -31,7 +31,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "docs" / "scene.md"
 README = ROOT / "README.md"
 COMMANDS = ROOT / "docs" / "command_line.md"
-VERSIONS = ROOT / "docs" / "versions.md"
+VERSIONS = ROOT / "docs" / "installation.md"
 DRAWING = ROOT / "docs" / "pictures" / "parameters.svg"
 STABILITY = ROOT / "docs" / "pictures" / "stability.svg"
 SHOWN = ROOT / "examples" / "minimal.toml"

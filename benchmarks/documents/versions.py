@@ -1,4 +1,4 @@
-"""docs/versions.md: the table of Python versions and of the oldest packages, from pyproject.toml."""
+"""docs/installation.md: the table of Python versions and of the oldest packages, from pyproject.toml."""
 
 from __future__ import annotations
 
