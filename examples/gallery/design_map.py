@@ -34,9 +34,7 @@ seconds = time.perf_counter() - start
 
 figure, axes = plt.subplots(1, 2, sharey=True, layout="constrained", figsize=(8.0, 3.8))
 for plot, index in zip(axes, (count // 6, count - 1), strict=True):
-    colours = plot.pcolormesh(
-        speeds, loads, 1e-6 * answer["kyy"][:, :, index], vmin=0, vmax=500
-    )
+    colours = plot.pcolormesh(speeds, loads, 1e-6 * answer["kyy"][:, :, index], vmin=0, vmax=500)
     limit = plot.contour(
         speeds,
         loads,

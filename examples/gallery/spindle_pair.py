@@ -49,6 +49,4 @@ axes.set(xlabel="speed [r/min]", ylabel="K [N/µm]", ylim=(0, None))
 axes.legend()
 
 fastest = stiffness.isel({"excitation.speed_rpm": -1}).values
-print(
-    f"K at 30 000 r/min: {fastest[0]:.0f} N/µm with spacers, {fastest[1]:.0f} N/µm with a spring"
-)
+print(f"K at 30 000 r/min: {fastest[0]:.0f} N/µm with spacers, {fastest[1]:.0f} N/µm with a spring")
