@@ -42,24 +42,23 @@ _SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re
 
 _HEAD = """# The scene file
 
-One TOML file in SI units; other units are in the key's name (`_rpm`, `_deg`). Missing tables and keys take their defaults; a key without
-default is required. In a table with `kind`, which names a plug-in, the other keys are that plug-in's. All mistakes are reported at once,
-with path, value, rule and nearest valid name.
+One TOML file in SI units; other units are in the key's name (`_rpm`, `_deg`). A missing key takes its default. `kind` names a plug-in,
+to which the other keys of its table belong. All mistakes are reported at once, with key, value, rule and nearest valid name.
 
-Numbers with a unit may be text: `axial = "1 kN"`, `ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`, of
-m, N, Pa, g, s, Hz, rad with prefixes n, u (µ), m, c, k, M, G, and in, min, deg, r, rev, rpm, K, combined as `N s/m`, `kg m2` or
-`N/mm^3`; in Python also quantities of pint.
+Values may be text with a unit: `axial = "1 kN"`, `ball_diameter = "9.525 mm"`, `speed_rpm = "200 Hz"`, `radial = ["100 N", 0.0]`. Units:
+m, N, Pa, J, W, g, s, Hz, rad with prefixes n, u (µ), m, c, k, M, G; in, lb, oz, lbf, psi, min, deg, r, rev, rpm, K; combined as
+`N s/m`, `oz in`, `N/mm^3`; in Python also quantities of pint.
 
 | command | |
 |---|---|
 | `raceway dev new-scene` | writes a scene with comments |
 | `raceway check SCENE` | validates |
 | `raceway dev schema` | prints a JSON schema for editors |
-| `--set table.key=value` | changes a key for one run; title and folder of the results state it |
+| `--set table.key=value` | changes a key for one run; title and result folder state it |
 
 ![a bearing in section, along its axis, and pairs of rows, with the keys of their dimensions](pictures/parameters.svg)
 
-`title` is a string; default: the name of the file. This page is made by `python -m benchmarks.documents` from the program's declarations.
+`title` is a string; default: the file's name. `python -m benchmarks.documents` makes this page from the program's declarations.
 """
 
 #: Tables in the order in which people write them: with the kind of plug-in that each names.
@@ -80,24 +79,25 @@ _ORDER = (
     ("identifier", "identifier"),
 )
 _NOTES = {
-    "bearing": "`preset` names a bearing of [the catalogue](catalogue.md); other keys override it. Without it the required keys and one of "
-    "`contact_angle_deg`, `radial_clearance` are needed. Materials by name: `raceway catalogue --materials`.",
-    "supports": "For rigid bodies seats are `rigid`.",
+    "bearing": "`preset` names a bearing of [the catalogue](catalogue.md). Without it the required keys and `contact_angle_deg` or "
+    "`radial_clearance` are needed. `raceway catalogue --materials` lists materials.",
+    "supports": "With rigid bodies both seats are `rigid`.",
     "excitation": "Without this table the scene is static and `identification` is null.",
-    "bodies": "What deforms. `elastic` bodies: [at rest](elastic.md), [in motion](elastic_dynamics.md).",
-    "mesh": "Hexahedra of the bodies ([meshes](mesh.md)): required for elastic, not used for rigid bodies.",
-    "lubricant": "The oil of friction, life, heat, and of the film law without own oil keys; default: the oil of the film law.",
-    "kinematics": "`gyroscopic` and `ring_growth` are hypotheses without a default for all bearings. Their effect on K and kyy "
-    'is reported as [`error.model`](physics.md#hypotheses-left-at-their-defaults) unless the scene states them, also as `gyroscopic = "none"`.',
-    "mounting": "Fits and temperatures as numbers; they change the preload ([sets](sets.md)).",
-    "integrator": '`kind = "auto"` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn. `newmark` is used '
-    "with forces of changing speed or size, friction, laws with memory, orbiting balls, forces that are not compiled, given `turns`, "
-    "`steps_per_turn` or `start`, and, with a warning, where no stable orbit is found. `raceway plan` and `plan` in "
+    "bodies": "Deformable parts; elastic bodies [at rest](elastic.md), [in motion](elastic_dynamics.md).",
+    "mesh": "Hexahedra ([meshes](mesh.md)): required by elastic bodies, ignored by rigid ones.",
+    "lubricant": "The oil of friction, life, heat and of a film law without oil keys; default: the oil of the film law.",
+    "kinematics": "No default of `gyroscopic` and `ring_growth` suits all bearings: where the scene does not set them, their effect on K "
+    "and kyy is reported as [`error.model`](physics.md#hypotheses-left-at-their-defaults).",
+    "mounting": "Fits and temperatures, which change the preload ([sets](sets.md)).",
+    "integrator": "`auto` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn, and uses `newmark` for "
+    "forces of changing speed or size, friction, laws with memory, orbiting balls, forces that are not compiled, where `turns`, "
+    "`steps_per_turn` or `start` is set, and, with a warning, where no stable orbit is found. `raceway plan` and `plan` in "
     "result.json state choice and reason. A comparison uses one integrator at all points.",
-    "quantities": "Options of plug-ins with numbers of a result: [life](life.md), [friction torque](friction.md).",
+    "quantities": "Options of [life](life.md), [friction torque](friction.md) and plug-ins.",
     "rig": "For `raceway study rig` and `raceway identify` ([the rig](rig.md)); ignored by `raceway run`.",
-    "heat": "Computes the steady temperatures of `mounting` and `lubricant.temperature_c` ([a warm spindle](warm_spindle.md)).",
-    "contact": "`discretisation` is `resultant` for rigid bodies; condensed and elastic ones take both.",
+    "heat": "Computes the steady temperatures of `mounting` and `lubricant.temperature_c` ([a warm spindle](warm_spindle.md)). "
+    "Conductances: 'auto' is a correlation, 'infinite' equal temperatures.",
+    "contact": "Rigid bodies take `resultant` only.",
 }
 
 

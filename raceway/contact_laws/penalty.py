@@ -57,7 +57,7 @@ class Penalty:
     calibrate_at: float | None = option(
         None,
         unit="N",
-        help="ball load at which the approach equals Hertz's, at points: is 1 % of it",
+        help="ball load at which the approach equals Hertz's (nodal: 1 % of it)",
         rule=optional(positive()),
     )
 

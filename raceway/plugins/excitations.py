@@ -146,7 +146,7 @@ class Bidirectional(Amplitude):
 
     name: ClassVar[str] = "bidirectional"
 
-    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+    whirl: str = option("forward", help="sense of rotation", rule=one_of("forward", "backward"))
 
     @classmethod
     def examples(cls, **options: object) -> list[Self]:
@@ -176,7 +176,7 @@ class RunUp:
     unbalance: float = option(unit="kg m", help="mass times eccentricity of the rotor", rule=at_least(0.0))
     load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
     phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
-    whirl: str = option("forward", help="sense of turning", rule=one_of("forward", "backward"))
+    whirl: str = option("forward", help="sense of rotation", rule=one_of("forward", "backward"))
 
     period_s: ClassVar[None] = None
 

@@ -36,7 +36,7 @@ class Material:
     thermal_expansion: float | None = option(
         None,
         unit="1/K",
-        help="linear, needed where [mounting] warms it; default where `young` is steel's (204 to 214 GPa): 12.5e-6",
+        help="linear coefficient; default where `young` is steel's (204 to 214 GPa): 12.5e-6, else required by temperatures",
         rule=optional(at_least(0.0)),
     )
 
@@ -100,7 +100,7 @@ class Bearing:
     )
     row: tuple[Row, ...] = option(
         (),
-        help="single rows: position, direction, preload, and keys that differ from [bearing]",
+        help="one row: position, direction, preload and keys that differ from [bearing]",
     )
     preload: float = option(
         0.0,
@@ -128,7 +128,7 @@ class Bearing:
     spring_travel: float | None = option(
         None,
         unit="m",
-        help="travel of these rings against the spring from the position before mounting, either way; default: unlimited",
+        help="travel of these rings either way from their unmounted position; default: unlimited",
         rule=optional(travel()),
     )
     row_distance: float | None = option(

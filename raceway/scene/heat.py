@@ -8,8 +8,9 @@ from raceway.framework.options import at_least, between, option, positive, word_
 
 
 def _conductance(between_words: str) -> float | str:
-    help_text = f"conductance between {between_words}; 'auto': correlation; 'infinite': one temperature"
-    return option("auto", unit="W/K", help=help_text, rule=word_or(positive(), "auto", "infinite"))
+    return option(
+        "auto", unit="W/K", help=f"conductance between {between_words}", rule=word_or(positive(), "auto", "infinite")
+    )
 
 
 def _to_ambient(node: str) -> float | str:
@@ -30,13 +31,13 @@ class Heat:
     Conductances that are 'auto' follow from correlations (``raceway.core.thermal``), those to the ambient from ISO 15312.
     """
 
-    oil_inlet_c: float = option(unit="°C", help="of the oil that is supplied", rule=between(-273.15, 1e3))
+    oil_inlet_c: float = option(unit="°C", help="temperature of the supplied oil", rule=between(-273.15, 1e3))
     oil_flow: float | str = option(
         unit="m3/s",
         help="flow through all rows; 'infinite': constant oil temperature",
         rule=word_or(positive(), "infinite"),
     )
-    ambient_c: float = option(20.0, unit="°C", help="around shaft and housing", rule=between(-273.15, 1e3))
+    ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-273.15, 1e3))
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=positive())
     inner_wetting: float | str = option(
         "auto",
@@ -54,5 +55,5 @@ class Heat:
     shaft_ambient: float | str = _to_ambient("shaft")
     housing_ambient: float | str = _to_ambient("housing")
     conductance_band: float = option(
-        0.5, help="r: uncertainty of 'auto' conductances, 1/(1 + r) to 1 + r times", rule=at_least(0.0)
+        0.5, help="r: 'auto' conductances are uncertain by factors 1/(1 + r) to 1 + r", rule=at_least(0.0)
     )

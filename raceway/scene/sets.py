@@ -110,13 +110,13 @@ class Row:
     position: float | None = option(
         None,
         unit="m",
-        help="of the plane of its inner groove centres along x; default: rows `row_distance` apart",
+        help="axial position of its inner groove centres; default: rows `row_distance` apart",
         rule=optional(finite()),
     )
     preload: float | None = option(
         None,
         unit="N",
-        help="that this row was ground for, with preload_of = 'row'; default: bearing.preload",
+        help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
         rule=optional(at_least(0.0)),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys of the row override it")

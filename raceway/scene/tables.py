@@ -177,7 +177,7 @@ class Supports:
     tilt: float | str = option(
         "locked",
         unit="N m/rad",
-        help="'free': massless shaft; a number: tilt stiffness of the shaft",
+        help="'free': no restoring moment; a number: tilt stiffness of the shaft",
         rule=word_or(positive(), "locked", "free"),
     )
     axial: str = option(
@@ -203,12 +203,16 @@ class Supports:
 
 @attrs.frozen
 class Rotor:
-    mass: float = option(0.0, unit="kg", help="supported by this bearing, beside the inner ring's", rule=at_least(0.0))
-    transverse_inertia: float = option(
-        0.0, unit="kg m2", help="about the reference point, beside the ring's", rule=at_least(0.0)
+    mass: float = option(
+        0.0, unit="kg", help="share of the rotor carried by this bearing, without the inner ring", rule=at_least(0.0)
     )
-    polar_inertia: float = option(0.0, unit="kg m2", help="for gyroscopic moments, beside the ring's", rule=at_least(0.0))
-    damping: float = option(0.0, unit="N s/m", help="viscous, on the translations", rule=at_least(0.0))
+    transverse_inertia: float = option(
+        0.0, unit="kg m2", help="about the reference point, without the inner ring", rule=at_least(0.0)
+    )
+    polar_inertia: float = option(
+        0.0, unit="kg m2", help="for gyroscopic moments, without the inner ring", rule=at_least(0.0)
+    )
+    damping: float = option(0.0, unit="N s/m", help="viscous damping of the translations", rule=at_least(0.0))
 
 
 @attrs.frozen
