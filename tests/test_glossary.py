@@ -70,16 +70,16 @@ def can_be_imported(name):
     return True
 
 
-def test_rows_have_five_cells_and_terms_stand_once():
-    assert len(ROWS) > 60 and {len(row) for row in ROWS} == {5}
+def test_rows_have_four_cells_and_terms_stand_once():
+    assert len(ROWS) > 60 and {len(row) for row in ROWS} == {4}
     terms = [row[0] for row in ROWS]
     assert len(terms) == len(set(terms))
-    assert all(row[4].endswith(".") for row in ROWS)
+    assert all(row[3].endswith(".") for row in ROWS)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
 def test_the_codes_name_exists(row, scene_keys, result_keys):
-    name, _, value = row[3].strip("`").partition(" = ")
+    name, _, value = row[2].strip("`").partition(" = ")
     if value:
         assert repr(value.strip('"')) in scene_keys[name]
     else:
