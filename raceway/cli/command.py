@@ -2,7 +2,7 @@
 
 A front takes plain values and returns an ``Answer``, which is saved, shown and drawn the same way for all.  Names of arguments have one meaning:
 ``scene`` is a file that --set changes, ``kept`` the folder of --out for finished rows, ``progress`` a bar, ``plugins`` files,
-``pictures`` the folder of what is drawn while it is computed.
+``pictures`` the folder of what is drawn while it is computed, ``plan`` whether the answer is a ``Workload``, of which nothing is written.
 """
 
 from __future__ import annotations
@@ -230,11 +230,12 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     folder = out
     if out is None and about.folder is not None:
         folder = RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
+    state_folder = folder if "kept" in parameters else None
+    folder = None if arguments.get("plan") else folder
     pictures = folder is not None and pictures and has_matplotlib(by_default=bool(about.pictures))
     if folder is not None:
         writable(folder)
     tell_faults(registry)
-    state_folder = folder if "kept" in parameters else None
     shared = {"plugins": plugins, "kept": state_folder, "registry": registry, "pictures": folder if pictures else None}
     arguments |= {name: value for name, value in shared.items() if name in parameters}
     stopped = None

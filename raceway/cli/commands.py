@@ -91,7 +91,7 @@ ANSWERS: tuple[Command | Later, ...] = (
     ),
     Command(
         "follow",
-        "raceway.points.follow:follow",
+        "raceway.points.follow:curve",
         "Continue K over speed or another key, through folds, with stability.",
         "raceway follow examples/b7206.toml --over excitation.speed_rpm=500:30000\n"
         "raceway follow examples/b7206.toml --over load.axial=2000:100 \\\n"

@@ -194,6 +194,7 @@ def sweep(
     at: Iterable[str] = (),
     kind: str | None = None,
     picture: str | Path | None = None,
+    plan: bool = False,
     plugins: Iterable[str | Path] = (),
     progress: ShowProgress = None,
 ) -> Answer:
@@ -225,8 +226,9 @@ def sweep(
     at : choose a value of an axis
     kind : of the picture; None: map where both axes have more than 8 values, else curves
     picture : a .png or .svg; None: STORE/NAME-KIND.png
+    plan : print how many points, how long, how much memory and disk, and stop
     """
-    from raceway.points.sweep import executor_of, fill_store, prepare, refuse_large
+    from raceway.points.sweep import executor_of, fill_store, prepare, refuse_large, workload
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
     if (stored := exists(scene)) or value is not None:
@@ -239,10 +241,11 @@ def sweep(
     pool = executor_of(executor, {"workers": workers, "scheduler": scheduler}, registry)
     tables = plain_tables(scene, *settings, registry=registry)
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
-    resume = resume or retry_failed
-    if resume and not exists(folder):
+    if (resume or retry_failed) and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to go on with: it is begun anew", stacklevel=2)
-    prepared = prepare(tables, listed, folder, plugins, resume)
+    prepared = prepare(tables, listed, folder, plugins, resume or retry_failed or plan)
+    if plan:
+        return workload(prepared, pool)
     refuse_large(prepared, pool, force)
     if value is not None:
         choice.foresee(prepared.design, prepared.facts["scene"])
@@ -251,8 +254,7 @@ def sweep(
         with telling(progress, remaining=True) as report:
             if scheduler:
                 report(f"waiting for {scheduler}", 0, 0)
-            with fill_store(prepared, pool, retry_failed, report):
-                pass
+            fill_store(prepared, pool, retry_failed, report).close()
     except (KeyboardInterrupt, RacewayError) as why:
         if not (folder / POINTS).is_file():
             raise

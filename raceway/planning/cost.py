@@ -1,4 +1,4 @@
-"""Predicted time of a run of compiled rings, from measured times of its parts.
+"""Predicted time of a run of compiled rings, and of a point in columns, from measured times of their parts.
 
 Constants are seconds of processor time of the reference machine of ``slowness``, with all that a run does
 for its error beside its answer: tests/evidence/test_cost.py holds whole runs against them.
@@ -9,11 +9,15 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import cache
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.planning.parts import Balls, Motion
 from raceway.planning.resolve import Problem, recorded_per_turn
+
+if TYPE_CHECKING:
+    from raceway.planning.plan import ScenePlan
 
 #: How much less a step of an explicit method takes, whose steps iterate less.
 _EXPLICIT = 0.5
@@ -71,6 +75,23 @@ def _orbit(problem: Problem) -> float:
     searched = problem.tilts and problem.excitation.sense == 0
     searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
     return _SEARCH_S if searched else _ORBIT_S
+
+
+#: A point of columns with 12 balls and all quantities of a sweep: its equilibrium, also with an oil film, what heat adds; its orbit under
+#: a rotating force, and factors on that of damped contacts and of a force along a fixed direction.
+_STATIC_S, _FILM_S, _HEAT_S, _TURNING_S, _DAMPED, _FIXED = 17.0e-6, 0.11e-3, 0.2e-3, 0.13e-3, 2.9, 4.5
+
+
+def column_time(plan: ScenePlan, moving: bool) -> float:
+    """Processor time of a point in compiled columns on this machine [s]; ``moving``: with its steady orbit."""
+    problem = plan.problem
+    seconds = _FILM_S if getattr(problem.contact.law, "elementwise", False) else _STATIC_S
+    seconds += 0.0 if problem.scene.heat is None else _HEAT_S
+    if moving:
+        damped = _DAMPED if plan.keeps("contact damping") else 1.0
+        fixed = problem.excitation is not None and problem.excitation.sense == 0
+        seconds += _TURNING_S * damped * (_FIXED if fixed else 1.0)
+    return seconds * problem.bearing.balls_in_all / 12.0 * slowness()
 
 
 #: Iterations of the piece of work, and its processor time on the machine that ``wall_time``'s constants belong to [s].

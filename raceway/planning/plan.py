@@ -14,7 +14,7 @@ import attrs
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door
 from raceway.framework.shown import Fact, Shown, duration
-from raceway.planning.cost import slowness
+from raceway.planning.cost import START_S, slowness
 from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.resolve import Problem, refuse_memory, resolve
 from raceway.planning.rules import foreseen, refuse_what_cannot_run, scene_warnings
@@ -40,7 +40,7 @@ class ScenePlan(Shown):
     predicted_work_s : the same on the machine whose times the plan knows: no machine's speed changes it
     predicted_bytes : resident memory at the peak; 0 where it is small, or not known
     at_least : whether that may be any number of times more: a mesh whose size is not known before it is read
-    predicted_once_s : seconds of that which a second run on the same bodies does not take again
+    predicted_once_s : seconds of that which a second run in the same process, on the same bodies, does not take again
     mesh : predicted ``bodies[{name, cells, bytes}]``, ``cells``, ``bytes``; None where nothing is meshed or predicted
 
     Examples
@@ -136,6 +136,7 @@ def plan_of(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
     if motion.recorded:
         refuse_memory(problem, motion.turns, motion.steps_per_turn, count)
     cost = problem.body_kind.cost(balls, motion, parts)
+    machine = slowness() if cost.scales else 1.0
     free = (0 if problem.supports.axial == "displacement" else 1, 1, 1, int(tilts), int(tilts))
     unknowns = sum(free) + count * (1 if balls.kind == "weightless" else 2)
     return ScenePlan(
@@ -150,9 +151,9 @@ def plan_of(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
         dofs=cost.unknowns or unknowns,
         time_step_s=problem.period / motion.steps_per_turn if motion.recorded else None,
         predicted_steps=motion.turns * motion.steps_per_turn,
-        predicted_wall_s=cost.seconds * (slowness() if cost.scales else 1.0),
+        predicted_wall_s=cost.seconds * machine,
         predicted_work_s=cost.seconds,
-        predicted_once_s=cost.once,
+        predicted_once_s=(START_S + cost.once) * machine,
         predicted_bytes=cost.bytes,
         mesh=cost.mesh,
         at_least=cost.at_least,

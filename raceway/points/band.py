@@ -24,12 +24,14 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
 from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.run import run, steady_plan
+from raceway.planning.plan import make_plan
 from raceway.points.column_quantities import stated_columns
 from raceway.points.engine import Item, local, work_through
 from raceway.points.function import function
 from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import row_key, written
-from raceway.scene.changes import with_number, without
+from raceway.points.workload import Workload, of_columns, run_times
+from raceway.scene.changes import continuous_keys, with_number, without
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -135,6 +137,8 @@ def _indices(axes: Axes, entry: ReadTables, keys: list[str], named: bool) -> Non
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
 _CHUNK, _LIMITS = 256, (0.025, 0.975)
+#: Derivatives by all keys, over a run; least time of a run [s].
+_DERIVATIVES, _RUN_S = 3.5, 2e-3
 #: Bins of a histogram.
 _BINS = 24
 #: By so much a Sobol index of few samples may lie beyond 0 and 1 before that is told.
@@ -429,10 +433,11 @@ def uncertainty(
     samples: int = 0,
     seed: int = 1,
     processes: int = 0,
+    plan: bool = False,
     kept: str | Path | None = None,
     progress: ShowProgress = None,
     plugins: Iterable[str | Path] = (),
-) -> Band | Sensitivities:
+) -> Band | Sensitivities | Workload:
     """How much the numbers and tolerances of a scene change its answer: K, C, stiffness, displacement and ball loads.
 
     First-order derivatives by every number and the 95 % band over the tolerances. With --samples the band of samples and its Sobol
@@ -445,6 +450,7 @@ def uncertainty(
     keys : to differentiate by; none: every number of the scene
     samples : n, a power of 2: (d + 2) n samples for d tolerances; 0: derivatives alone
     seed : of the samples;  processes : that work on samples at a time; 0: in this one
+    plan : print how many samples or derivatives and how long, and stop
     kept : folder of finished samples, read and added to
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
     plugins : files of one-off plug-ins that the scene uses
@@ -459,7 +465,29 @@ def uncertainty(
             raise SceneError.at(
                 "keys", ", ".join(keys), "asks for derivatives, which samples do not give: leave it or the samples out"
             )
+        if plan:
+            return _samples_planned(as_scene(scene, plugins=plugins), tolerances, samples, processes)
         return band(
             scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
         )
+    if plan:
+        return _derivatives_planned(as_scene(scene, plugins=plugins), tuple(keys))
     return sensitivities(scene, keys, tolerances=tolerances, progress=progress, plugins=plugins)
+
+
+def _derivatives_planned(scene: Scene, keys: tuple[str, ...]) -> Workload:
+    """By so many keys, as of some runs."""
+    plan, count = make_plan(scene), len(keys) or len(continuous_keys(scene))
+    seconds = plan.predicted_once_s + _DERIVATIVES * max(plan.predicted_wall_s - plan.predicted_once_s, _RUN_S)
+    return Workload(scene.title, count, seconds, looped=count, noun="derivatives")
+
+
+def _samples_planned(scene: Scene, tolerances: Mapping[str, str] | Iterable[str], samples: int, processes: int) -> Workload:
+    """Samples of a band, as of columns or runs."""
+    varied = tolerances_of(scene, tolerances or stated_tolerances(scene))
+    count, read = (len(varied) + 2) * samples, scene if scene.excitation is None else _steady(scene)
+    loop = function(read, [tolerance.key.path for tolerance in varied], ["K" if read.excitation else "kyy"], threads=1)
+    if loop.why_slow:
+        seconds, _ = run_times(count, lambda _: read.to_dict(), default_registry(), planned=1)
+        return Workload(scene.title, count, seconds / max(processes, 1), runs=count, noun="samples", why_runs=loop.why_slow)
+    return of_columns(scene.title, loop, count, noun="samples")

@@ -23,6 +23,7 @@ from raceway.out.progress import ShowProgress, telling
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
+from raceway.points.workload import Workload, run_times
 from raceway.scene.inputs import Change, SceneSource, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
@@ -114,6 +115,41 @@ def follow(
     if out is not None:
         curve.save(out, pictures=True)
     return curve
+
+
+def curve(
+    scene: SceneSource,
+    over: str,
+    *changes: Change,
+    points: int = 1000,
+    aim: float = 1e-3,
+    doubled: bool = False,
+    turns: int = 0,
+    plan: bool = False,
+    plugins: Iterable[str | Path] = (),
+    progress: ShowProgress = None,
+) -> Followed | Workload:
+    """Follow the steady orbit of a scene over a continuous key, through folds, with its stability.
+
+    Parameters
+    ----------
+    points : orbits at most
+    aim : deviation of an orbit from its prediction along the tangent, over its size, that steps are chosen for
+    doubled : follow the branches of twice the period that leave it at period doublings, too
+    turns : of a time integration from beside the most unstable orbit of each unstable stretch; 0: none
+    plan : print how many orbits and how long at most, and stop
+    """
+    if not plan:
+        return follow(
+            scene, over, *changes, points=points, aim=aim, doubled=doubled, turns=turns, plugins=plugins, progress=progress
+        )
+    registry = registry_with(plugins)
+    parameter = parameter_of(plain_tables(scene, *changes, registry=registry), over, registry)
+    seconds, _ = run_times(points, lambda _: parameter.base.to_dict(), registry, planned=1)
+    remarks = ["Smooth branches take 30 to 200 orbits."] + ["Integrations over time (--turns) are added."] * bool(turns)
+    return Workload(
+        parameter.base.title, points, seconds, looped=points, noun="orbits", at_most=True, remarks=tuple(remarks)
+    )
 
 
 def _follow_branch(

@@ -8,7 +8,7 @@ import tempfile
 import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,6 @@ from raceway.framework.shown import duration
 from raceway.out.progress import telling
 from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
-from raceway.planning.plan import make_plan
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
@@ -33,6 +32,7 @@ from raceway.points.engine import Work, answers, differences, identity, registry
 from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, Store, exists, written
 from raceway.points.survey import survey
+from raceway.points.workload import Workload, of_columns, run_times
 from raceway.scene.changes import continuous_keys
 from raceway.scene.inputs import SceneSource, plain_tables
 from raceway.scene.reading import scene_from_dict
@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 
 #: Predicted time [s] of runs beyond which a sweep has to be forced.
 _LIMIT_S = 86_400.0
+#: A run in both files [bytes].
+_RUN_BYTES = 5000.0
 #: Parts of a block that threads share: it takes less than a second on one core.
 _SHARED = 4
 
@@ -238,17 +240,36 @@ def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
     RacewayError
         With bytes or the predicted time.
     """
-    size = prepared.design.size
-    refuse_bytes(size, sum(len(DOF) ** len(quantity.dims) for quantity in COLUMNS.values()), "give fewer points at a time")
+    refuse_bytes(prepared.design.size, sum(map(_numbers, COLUMNS)), "give fewer points at a time")
     if prepared.function is None and not force:
-        seconds = 0.0
-        with suppress(RacewayError):  # said by the run of the first point
-            plan = make_plan(scene_from_dict(prepared.facts["scene"], registry_of(prepared.plugins)))
-            seconds = size * plan.predicted_work_s / getattr(executor, "workers", 1)
-        if seconds > _LIMIT_S:
+        work = workload(prepared, executor, planned=1)
+        if work.seconds > _LIMIT_S:
             raise RacewayError(
-                f"{size} runs would take about {duration(seconds)}: give fewer points or more workers, or force them"
+                f"{work.runs + work.refused} runs would take about {duration(work.seconds)}: give fewer points or more workers, or force them"
             )
+
+
+def workload(prepared: Sweep, executor: Executor, planned: int = 100) -> Workload:
+    """What is not finished yet: its size, and its time as that of so many planned points; nothing is computed."""
+    design, function, registry, stored = prepared.design, prepared.function, registry_of(prepared.plugins), 0
+    if exists(prepared.store):
+        with open_store(prepared.store) as store:
+            stored = design.size - store.status()["waiting"]
+    title, left = str(prepared.facts["scene"]["title"]), design.size - stored
+    if function is None:
+        seconds, refused = run_times(
+            left, lambda n: tables_at(prepared.tables, design.point(n), registry), registry, planned
+        )
+        return Workload(
+            title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refused, refused=refused, stored=stored,
+            disk_bytes=_RUN_BYTES * design.size, why_runs="an axis or the scene that no compiled loop takes",
+        )  # fmt: skip
+    return of_columns(title, function, design.size, stored, len(design.keys) + sum(map(_numbers, function.outputs)))
+
+
+def _numbers(name: str) -> int:
+    """Entries of a quantity at a point."""
+    return len(DOF) ** len(COLUMNS[name].dims) if name in COLUMNS else 1
 
 
 def fill_store(

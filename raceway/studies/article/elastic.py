@@ -29,6 +29,7 @@ from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import tables_at
 from raceway.points.engine import Clocks, Item, local, work_through
 from raceway.points.store import row_key, written
+from raceway.points.workload import Workload, stored_rows
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
@@ -501,8 +502,7 @@ def elastic_article(
     """
     begun, cpu = time.monotonic(), time.process_time()
     runs = design.runs()
-    scenes = [design.scene(run, registry) for run in runs]
-    items = [Item(row_key(scene, registry, "article elastic"), run.name, k) for k, (run, scene) in enumerate(zip(runs, scenes, strict=True))]  # fmt: skip
+    scenes, items = _scenes_and_items(design, registry)
     # The run at rest with elastic bodies under the heaviest load: its most loaded contact is drawn.
     drawn = max(
         (k for k, run in enumerate(runs) if run.excitation is None and run.bodies == "elastic"), key=lambda k: runs[k].axial
@@ -521,6 +521,24 @@ def elastic_article(
         rows, reused = work_through(compute, items, store, local(registry, 0), registry, plugins)
     spent = time.monotonic() - begun, time.process_time() - cpu
     return ElasticArticle(scenes[0].title, design, rows, *spent, reused, store.fault, command)
+
+
+def _scenes_and_items(design: _Design, registry: Registry) -> tuple[list[Scene], list[Item]]:
+    runs = design.runs()
+    scenes = [design.scene(run, registry) for run in runs]
+    keys = [row_key(scene, registry, "article elastic") for scene in scenes]
+    return scenes, [Item(key, run.name, k) for k, (key, run) in enumerate(zip(keys, runs, strict=True))]
+
+
+def elastic_workload(design: _Design, kept: Path | None, registry: Registry) -> Workload:
+    """The runs that are not stored, one after another."""
+    scenes, items = _scenes_and_items(design, registry)
+    left = [scene for scene, item in zip(scenes, items, strict=True) if not stored_rows(kept, [item.key])]
+    memory = max((make_plan(scene).predicted_bytes for scene in left), default=0)
+    return Workload(
+        scenes[0].title, len(items), sum(_predicted(left, registry)), runs=len(left), stored=len(items) - len(left),
+        bytes=memory, why_runs="bodies of finite elements, one run at a time",
+    )  # fmt: skip
 
 
 def _predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:

@@ -32,6 +32,7 @@ def article(
     friction: float | None = None,
     turns: int | None = None,
     processes: int | None = None,
+    plan: bool = False,
     kept: Path | None = None,
     pictures: Path | None = None,
     plugins: Iterable[str | Path] = (),
@@ -57,6 +58,7 @@ def article(
     friction : Coulomb coefficient of the runs with friction, 0: none; None: the scene's, or 0.03
     turns : of a motion of elastic bodies, 40 steps each; None: 2
     processes : that work at a time; 0: in this one; None: 2
+    plan : print how many points and how long, and stop
     kept : folder that finished curves are stored in and taken from
     pictures : folder for sections of elastic bodies, which are drawn while their arrays are there; None: none are
     progress : called as ``progress(what, done, total)``; an exception stops the study
@@ -86,11 +88,13 @@ def article(
     registry = registry_with(files)
     typed = _command(scene, {"bodies": None if bodies == "both" else bodies, **options, "processes": None}, changes, files)
     if elastic:
-        from raceway.studies.article.elastic import SCENE, TURNS, elastic_article
+        from raceway.studies.article.elastic import SCENE, TURNS, elastic_article, elastic_workload
         from raceway.studies.article.elastic import design as elastic_design
 
         tables = plain_tables(SCENE if scene is None else scene, *changes, registry=registry)
         runs = elastic_design(tables, friction, TURNS if turns is None else turns)
+        if plan:
+            return elastic_workload(runs, kept, registry)
         with telling(progress) as report:
             return elastic_article(runs, pictures, kept, registry, files, report, typed)
     from raceway.studies.article.design import ARTICLE, LOADS, SPEEDS, design
@@ -99,10 +103,13 @@ def article(
     kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
     curves = design(tables, speeds or SPEEDS, axial or LOADS, shaft, kinds, friction)
     # Mistakes are refused before anything is loaded that computes.
-    from raceway.studies.article.study import solve_curves
+    from raceway.studies.article.study import solve_curves, workload
 
+    workers = 2 if processes is None else processes
+    if plan:
+        return workload(curves, workers, kept, registry)
     with telling(progress) as report:
-        return solve_curves(curves, 2 if processes is None else processes, kept, registry, files, report, typed)
+        return solve_curves(curves, workers, kept, registry, files, report, typed)
 
 
 def _command(scene: object, options: dict[str, object], changes: Iterable[Change], plugins: Iterable[Path]) -> str:

@@ -30,6 +30,7 @@ from raceway.points.column_quantities import lasting
 from raceway.points.engine import Item, local, processor_time, without_mesh, work_through
 from raceway.points.function import function
 from raceway.points.store import program_key, tables_key, written
+from raceway.points.workload import Workload, run_times, stored_rows
 from raceway.scene.changes import with_value
 from raceway.scene.reading import scene_from_dict
 from raceway.storage.files import without_nan
@@ -489,6 +490,28 @@ class Article(Answer):
         yield Words(cost + (f"; {self.reused} of {self.tasks} pieces taken from earlier" if self.reused else ""), "dim")
 
 
+def _items(design: Design, registry: Registry) -> list[Item]:
+    items, program = list[Item](), program_key(registry)
+    for name, compute, inputs in _tasks(design, registry):
+        key = tables_key({"function": compute.__qualname__, "inputs": inputs}, registry, program=program)
+        items.append(Item(key, name, (name, compute, inputs)))
+    return items
+
+
+def workload(design: Design, processes: int, kept: Path | None, registry: Registry) -> Workload:
+    """Points of the curves over speed, which take nearly all of the time."""
+    curves = design.tasks()
+    items = _items(design, registry)[-len(curves) :]
+    left = [curve for curve, item in zip(curves, items, strict=True) if not stored_rows(kept, [item.key])]
+    points = [(setting, load, speed) for setting, load in left for speed in design.speeds_of(setting)]
+    size = sum(len(design.speeds_of(setting)) for setting, _ in curves)
+    seconds, refused = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
+    return Workload(
+        str(design.tables["title"]), size, seconds / max(processes, 1), runs=len(points) - refused, refused=refused,
+        stored=size - len(points), why_runs="steady orbits, each from its neighbour",
+    )  # fmt: skip
+
+
 def solve_curves(
     design: Design,
     processes: int,
@@ -509,10 +532,7 @@ def solve_curves(
     begun, cpu, own_cpu = time.monotonic(), processor_time(), time.process_time()
     for setting in design.settings():  # mistakes are refused before anything is run
         title = scene_from_dict(design.point(setting, design.loads[0], design.speeds[0], registry), registry).title
-    items, program = list[Item](), program_key(registry)
-    for name, compute, inputs in (tasks := _tasks(design, registry)):
-        key = tables_key({"function": compute.__qualname__, "inputs": inputs}, registry, program=program)
-        items.append(Item(key, name, (name, compute, inputs)))
+    items = _items(design, registry)
     with written(kept) as store:
         finished, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in finished])
@@ -523,4 +543,4 @@ def solve_curves(
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
     spent = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu
     numbers = title, curves, tuple(rig), tuple(static), tuple(compared), scan
-    return Article(*numbers, *spent, len(tasks), reused, store.fault, command)
+    return Article(*numbers, *spent, len(items), reused, store.fault, command)

@@ -24,6 +24,7 @@ from raceway.out.table import rows_table
 from raceway.out.wrapping import Words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, written
+from raceway.points.workload import Workload, run_times, stored_rows
 from raceway.scene.reading import rig_of
 from raceway.scene.scene import Scene
 from raceway.scene.tables import Rig
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _OnProgress = Callable[[str, int, int], None]
+
+#: Runs of the bearing until it moves as the shaft does, and time of the signals of a point [s].
+_RUNS, _SIGNALS_S = 6, 0.25
 
 
 @attrs.frozen(eq=False)
@@ -251,10 +255,11 @@ def rig(
     scene: Scene,
     signals: bool = True,
     *,
+    plan: bool = False,
     kept: Path | None = None,
     plugins: Sequence[Path] = (),
     progress: _OnProgress | None = None,
-) -> _RigStudy:
+) -> _RigStudy | Workload:
     """Simulate a test rig, the table [rig] of SCENE: a shaft with a disc on two of its bearings, and a sensor beside one.
 
     The signals are read by the article's procedure as printed and by inverting the beam; the error is split into its causes.
@@ -264,7 +269,7 @@ def rig(
     Parameters
     ----------
     scene : with a table [rig];  plugins : files of one-off plug-ins that it uses
-    signals : write the signals as CSV (default)
+    signals : write the signals as CSV (default);  plan : print how many points and how long, and stop
     kept : folder that finished points are stored in and taken from
     progress : called as ``progress(what, done, total)`` after each point; an exception stops the study
 
@@ -276,7 +281,9 @@ def rig(
         No point at which shaft and bearing find a common motion.
     """
     inputs, registry = rig_of(scene), registry_with(plugins)
-    grid = list(enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm))
+    items = _items(scene, inputs, registry)
+    if plan:
+        return _workload(scene, len(items), stored_rows(kept, [item.key for item in items]), registry)
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
     supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
     critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
@@ -292,21 +299,38 @@ def rig(
             return {"answers": [], "reason": str(why)}
         return {"answers": tested.answers, "reason": ""}
 
-    keys = [row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]) for k, point in grid]
-    names = [f"{rpm:.0f} r/min, {axial:.0f} N" for _, (axial, rpm) in grid]
-    items = [Item(*item) for item in zip(keys, names, grid, strict=True)]
     with written(kept) as store:
         rows, _ = work_through(compute, items, store, local(registry, 0), registry, on_progress=progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
     failed = list[Tables]()
-    for (k, (axial, rpm)), row in zip(grid, rows, strict=True):
+    for (k, (axial, rpm)), row in zip((item.task for item in items), rows, strict=True):
         if row["reason"]:
             failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
         elif k not in points:
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
     solved = [points[k] for k in sorted(points)]
     return _RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
+
+
+def _items(scene: Scene, inputs: Rig, registry: Registry) -> list[Item]:
+    """Numbered pairs of axial load [N] and speed [r/min]."""
+    grid = enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm)
+    return [
+        Item(
+            row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]),
+            f"{point[1]:.0f} r/min, {point[0]:.0f} N",
+            (k, point),
+        )
+        for k, point in grid
+    ]
+
+
+def _workload(scene: Scene, points: int, stored: int, registry: Registry) -> Workload:
+    left = points - stored
+    seconds, _ = run_times(_RUNS * left, lambda _: scene.to_dict(), registry, planned=1)
+    why = f"about {_RUNS} of each point"
+    return Workload(scene.title, points, seconds + _SIGNALS_S * points, runs=left, stored=stored, why_runs=why)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
