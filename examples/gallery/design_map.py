@@ -3,7 +3,7 @@ Design map of a million points
 ==============================
 
 Stiffness and peak pressure of a 7014C over axial load, speed and contact angle, by one call that is compiled.
-Here each axis has 32 values, some 33 000 points; ``count = 100`` makes it a million, in some 15 seconds on one core.
+Here each axis has 32 values, some 33 000 points; ``count = 100`` makes it a million, in some 15 seconds.
 """
 
 import time

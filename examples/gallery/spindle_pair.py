@@ -26,7 +26,6 @@ spindle = {
         "amplitude": "constant",
         "force": "10 N",
     },
-    "integrator": {"kind": "periodic"},
 }
 swept = rw.sweep(
     spindle,
