@@ -29,6 +29,5 @@ plt.xlabel("radial clearance [µm]")
 plt.ylabel("life L10r [h]")
 plt.ylim(0, None)
 plt.legend()
-print(
-    f"6206/C4, as mounted: L10r = {result['life']['l10r_hours']:.0f} h, {100 * result['life']['l10r_hours'] / hours[0]:.0f} % of that without clearance"
-)
+share = result["life"]["l10r_hours"] / hours[0]
+print(f"6206/C4: {100 * share:.0f} % of the life without clearance")

@@ -35,7 +35,9 @@ frequencies = np.fft.rfftfreq(time.size, 1.0 / 8000.0)[20:800:10]
 turning = 2j * np.pi * frequencies
 model = fitted["K"] + turning * fitted["C"] + turning**2 * fitted["mass"]
 plt.figure(layout="constrained")
-plt.plot(frequencies, 1e-6 * (spectra[:, 0] / spectra[:, 1]).real, "o", color="0.7", label="measured")
+plt.plot(
+    frequencies, 1e-6 * (spectra[:, 0] / spectra[:, 1]).real, "o", color="0.7", label="measured"
+)
 plt.plot(frequencies, 1e-6 * model.real, label="fitted")
 plt.xlabel("frequency [Hz]")
 plt.ylabel("Re F/x [N/µm]")

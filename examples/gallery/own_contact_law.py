@@ -52,6 +52,7 @@ plt.plot(loads, stiffness.T, "o-", label=["Hertz", "linear"])
 plt.xlabel("axial load [N]")
 plt.ylabel("kyy [N/µm]")
 plt.legend()
+growth = stiffness[:, -1] / stiffness[:, 0]
 print(
-    f"from 100 to 2000 N: Hertz {stiffness[0, -1] / stiffness[0, 0]:.2f}, linear {stiffness[1, -1] / stiffness[1, 0]:.2f} times kyy"
+    f"kyy from 100 to 2000 N: times {growth[0]:.2f} with Hertz, {growth[1]:.2f} with the linear law"
 )
