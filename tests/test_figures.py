@@ -16,6 +16,7 @@ from matplotlib.text import Text
 import raceway
 from raceway import scene_from_dict
 from raceway.bodies.elastic_stress import below_contacts
+from raceway.out.picture import readable
 from raceway.plugins import pictures
 from raceway.points import band as band_picture
 from raceway.points import compare_picture as comparison
@@ -51,6 +52,16 @@ def shown(figure: Figure) -> list[str]:
     """What lies outside once the figure is laid out, which is when its limits are known."""
     figure.draw_without_rendering()
     return outside(figure)
+
+
+def unreadable(figure: Figure) -> list[str]:
+    """Letters below 9 pixels of 600, but in wide figures of pages, labels of axes of more than five words."""
+    figure.draw_without_rendering()
+    least = min(1.05 * figure.get_figwidth(), 11.0)
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    small = [f"{text.get_text()!r} in {text.get_fontsize():g} pt" for text in texts if text.get_fontsize() < least - 1e-6]
+    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel())]
+    return small + [label for label in labels if len(label.partition("[")[0].split()) > 5]
 
 
 def of_a_run() -> list[Figure]:
@@ -216,9 +227,10 @@ DRAWN: dict[object, Callable[[], list[Figure]]] = {
         for draw in DRAWN.values()
     ],
 )
-def test_every_drawn_point_lies_inside_its_axes(draw):
+def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
     figures = draw()
     assert figures and [line for figure in figures for line in shown(figure)] == []
+    assert [fault for figure in figures for fault in unreadable(readable(figure))] == []
 
 
 def test_labels_of_precision_lie_on_no_other_and_name_the_other_models():

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway.errors import RacewayError, extra
+from raceway.out.wrapping import lines_of
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3aa6b9", "#b0457b")
 GREY, GRID = "#555f6b", "#e3e7eb"
 MARKERS = "os^DvPX*"
+#: Least size of letters over the figure's width [pt/inch], which are 9 pixels of 600, up to a size; panels in a row at most.
+_READABLE, _LARGEST = 1.05, 11.0
+MOST_COLUMNS = 3
 
 
 def dress(axes: Axes) -> None:
@@ -71,6 +75,24 @@ def label_axes(axes: Axes, title: str, x: str, y: str, size: float = 11.0) -> No
     axes.set_axisbelow(True)
 
 
+def wrapped(title: str, width: int = 80) -> str:
+    """A title in lines of so many signs at most, each of its own lines apart."""
+    return "\n".join(lines_of(title, width))
+
+
+def readable(figure: Figure) -> Figure:
+    """The figure with letters of at least 9 pixels where it is shown 600 pixels wide."""
+    from matplotlib.text import Text
+
+    least = min(_READABLE * figure.get_figwidth(), _LARGEST)
+    for axes in figure.axes:
+        for side in axes.xaxis, axes.yaxis:
+            side.set_tick_params(labelsize=max([least, *(label.get_fontsize() for label in side.get_ticklabels()[:1])]))
+    for text in figure.findobj(Text):
+        text.set_fontsize(max(text.get_fontsize(), least))
+    return figure
+
+
 def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
     """Write a figure as PNG, whole or not at all.
 
@@ -86,7 +108,7 @@ def figure_png(figure: Figure, dots_per_inch: int) -> bytes:
     """A figure as the content of a PNG file."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    figure.set_dpi(dots_per_inch)
+    readable(figure).set_dpi(dots_per_inch)
     memory = io.BytesIO()
     FigureCanvasAgg(figure).print_png(memory)
     return memory.getvalue()

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import attrs
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
-from raceway.out.picture import label_axes, new_figure, save_figure
+from raceway.out.picture import label_axes, new_figure, save_figure, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +22,8 @@ if TYPE_CHECKING:
 
 _USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"
 _MICRO = 1e6
+#: Lines of a spectrum from which on their tops are joined.
+_DENSE = 400
 
 
 @attrs.frozen
@@ -127,8 +128,12 @@ def _draw_orbit(axes: Axes, result: Result) -> None:
     if shortened:
         label = f"all {_turns(record.schedule.turns)}"
         axes.plot(*(_MICRO * record.displacement[:, 1:3].T), color=_OTHER, linewidth=0.8, label=label)
-    label = f"{'last ' if shortened else ''}{_turns(turns)}, used"
-    axes.plot(*(_MICRO * used.displacement[:, 1:3].T), color=_USED, linewidth=1.4, label=label)
+    import numpy as np
+
+    label, path = f"last {_turns(turns)}, used" if shortened else _turns(turns), used.displacement[:, 1:3]
+    if motion.model.problem.integrator.method.steady and not shortened:  # closed
+        path = np.vstack([path, path[:1]])
+    axes.plot(*(_MICRO * path.T), color=_USED, linewidth=1.4, label=label)
     still = _MICRO * result.equilibrium.displacement[1:3]
     axes.plot(*still, "+", color=_STATIC, markersize=11, label="static equilibrium")
     axes.set_aspect("equal", adjustable="datalim")
@@ -151,7 +156,10 @@ def _draw_spectrum(axes: Axes, result: Result) -> None:
         # Beside each other, since both directions of a turning force have the same line.
         x = order[shown] + (lane - 0.5) * apart
         tops = np.maximum(lines[shown, lane], peak * 1e-9)
-        axes.vlines(x, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
+        if len(x) > _DENSE:
+            axes.plot(x, tops, color=colour, linewidth=width, label=f"displacement {name}")
+        else:
+            axes.vlines(x, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
     first = float(lines[shown].max(axis=1)[np.argmin(np.abs(order[shown] - 1.0))])
     text = f"1x: {first:.4g} µm at {frequency:.4g} Hz"
     axes.annotate(text, (1.0, first), xytext=(12, 2), textcoords="offset points", fontsize=10)
@@ -160,7 +168,7 @@ def _draw_spectrum(axes: Axes, result: Result) -> None:
     axes.set_ylim(peak * 1e-9, peak * 10.0)
     axes.set_xticks(range(11))
     title = f"Spectrum of the displacement, mean removed\n{_subtitle(result)}"
-    label_axes(axes, title, "frequency / frequency of the excitation [-]", "amplitude [µm]")
+    label_axes(axes, title, "frequency / excitation frequency [-]", "amplitude [µm]")
 
 
 def _draw_ball_loads(axes: Any, result: Result) -> None:
@@ -205,7 +213,7 @@ def _turns(count: int) -> str:
 
 def _subtitle(result: Result) -> str:
     """The title, and what was changed of the scene, in lines that fit."""
-    return "\n".join(part for line in result.title.splitlines() for part in wrap(line, 64))
+    return wrapped(result.title, 64)
 
 
 class _Drawing(NamedTuple):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
@@ -16,7 +15,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
-from raceway.out.picture import new_figure
+from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
 from raceway.out.progress import telling
 from raceway.out.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
 from raceway.out.wrapping import Words
@@ -86,26 +85,27 @@ _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5
 
 
 def _draw(content: ReadTables) -> Figure:
-    """A column a quantity: histogram of its samples, and bars of Sobol indices where they are known."""
+    """Of each quantity the histogram of its samples, and below it bars of Sobol indices where they are known."""
     quantities, keys = content["quantities"], [entry["key"] for entry in content["tolerances"]]
     with_indices = any(entry["total"] is not None for entry in quantities.values())
-    wide, high = 2.0 + 2.9 * len(quantities), 3.2 + (1.2 + 0.35 * len(keys) if with_indices else 0.0)
-    figure = new_figure(wide, high)
-    rows = figure.subplots(
-        2 if with_indices else 1,
-        len(quantities),
-        squeeze=False,
-        height_ratios=[2.2, 0.8 + 0.35 * len(keys)] if with_indices else [1.0],
-    )
+    heights = [2.2, 0.8 + 0.35 * len(keys)] if with_indices else [2.2]
+    columns = min(len(quantities), MOST_COLUMNS)
+    blocks = -(-len(quantities) // columns)
+    figure = new_figure(1.2 + 2.9 * columns, 0.7 + (sum(heights) + 0.6 * len(heights)) * blocks)
+    rows = figure.subplots(len(heights) * blocks, columns, squeeze=False, height_ratios=heights * blocks)
     for k, (name, entry) in enumerate(quantities.items()):
-        _draw_histogram(rows[0, k], name, entry)
+        block, column = divmod(k, columns)
+        _draw_histogram(rows[len(heights) * block, column], name, entry)
+        rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
         if with_indices:
-            _indices(rows[1, k], entry, keys, named=k == 0)
+            _indices(rows[2 * block + 1, column], entry, keys, named=column == 0)
+    for panel in rows[-len(heights) :, len(quantities) - columns * (blocks - 1) :].flat:
+        panel.set_visible(False)
+    handles, labels = rows[0, 0].get_legend_handles_labels()
     if with_indices:
-        handles, labels = rows[1, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower right", ncols=2, fontsize=8, frameon=False)
-    rows[0, 0].set_ylabel("samples", fontsize=9)
-    figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
+        handles, labels = (a + b for a, b in zip((handles, labels), rows[1, 0].get_legend_handles_labels(), strict=True))
+    figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
+    figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
 
 
@@ -113,9 +113,9 @@ def _draw_histogram(axes: Axes, name: str, entry: ReadTables) -> None:
     (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
     edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
     axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
-    for end in (low, high):
-        axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2)
-    axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--")
+    for end, label in ((low, "95 % of samples"), (high, None)):
+        axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
+    axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
     axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
     axes.set_xlabel(unit, fontsize=9)
     axes.tick_params(labelsize=8)

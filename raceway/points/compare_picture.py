@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import COLOURS, GREY, MARKERS, dress, given_axes, new_figure
+from raceway.out.picture import COLOURS, GREY, MARKERS, dress, given_axes, new_figure, wrapped
 from raceway.out.quantities import KXX, K, Quantity
 from raceway.points.axes import shown as _text
 from raceway.points.effects import MOVING, Findings, Row
@@ -34,7 +34,7 @@ def draw(comparison: Findings) -> Figure:
     column = next((key for key in list(texts)[:1] if len(texts[key]) <= _MOST_COLUMNS), None)
     styles = {key: values for key, values in texts.items() if key != column}
     columns = texts[column] if column else [""]
-    figure = new_figure(12.8, 7.6)
+    figure = new_figure(9.0, 6.4)
     one_scale = len({quantity.unit for quantity in quantities}) == 1
     panels = figure.subplots(len(quantities), len(columns), sharex=True, sharey="col" if one_scale else "row", squeeze=False)
     for column_number, value in enumerate(columns):
@@ -45,7 +45,8 @@ def draw(comparison: Findings) -> Figure:
             panel.set_ylabel(quantity.axis if column_number == 0 else "")
         panels[0, column_number].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, column_number].set_xlabel(along)
-    figure.suptitle(f"{_named(quantities)} over {along}: {comparison.title}", fontsize=13)
+        panels[-1, column_number].locator_params(axis="x", nbins=5)
+    figure.suptitle(wrapped(f"{_named(quantities)} over {along}: {comparison.title}"), fontsize=12)
     if handles := _handles(styles, any(map(_in_doubt, comparison.rows))):
         figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
     return figure
@@ -156,12 +157,12 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
 
 def _dots(comparison: Findings, quantities: list[Quantity]) -> Figure:
     """A dot for each run, where no axis has numbers: one line a combination, the quantities side by side."""
-    figure = new_figure(12.8, 2.2 + 0.32 * len(comparison.rows))
+    figure = new_figure(9.0, 2.2 + 0.32 * len(comparison.rows))
     panels = figure.subplots(1, len(quantities), sharey=True)
     for quantity, panel in zip(quantities, panels, strict=True):
         _dots_on(panel, comparison.rows, quantity)
     _name_lines(panels[0], comparison)
-    figure.suptitle(f"{_named(quantities)}: {comparison.title}", fontsize=13)
+    figure.suptitle(wrapped(f"{_named(quantities)}: {comparison.title}"), fontsize=12)
     return figure
 
 
@@ -174,6 +175,7 @@ def _dots_on(panel: Axes, rows: Sequence[Row], quantity: Quantity) -> None:
             words = row.result.get("status", "no value")
             panel.annotate(words, (0.02, line), xycoords=("axes fraction", "data"), va="center")
     panel.set_xlabel(quantity.axis)
+    panel.locator_params(axis="x", nbins=5)
     dress(panel)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import dress, new_figure
+from raceway.out.picture import dress, new_figure, wrapped
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def draw(content: ReadTables) -> Figure:
         panels[0].annotate(words, at, xytext=(0, 6), textcoords="offset points", ha="center", fontsize=8)
     handles = dict(zip(*reversed(panels[0].get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, frameon=False, fontsize=9)
-    figure.suptitle(content["title"].partition("\n")[0], fontsize=11)
+    figure.suptitle(wrapped(content["title"].partition("\n")[0]), fontsize=11)
     return figure
 
 

@@ -360,7 +360,7 @@ def _ratio(value: float | None) -> str:
 
 def _draw(curves: LawCurves) -> Figure:
     """Force and stiffness over the approach; of a law that loses energy the loop of the cycle and the damping, too."""
-    from raceway.out.picture import new_figure
+    from raceway.out.picture import new_figure, wrapped
 
     damped = curves.cycle.energy != 0.0 or bool(curves.damping.any())
     figure = new_figure(9.6, 7.2 if damped else 3.9)
@@ -382,8 +382,8 @@ def _draw(curves: LawCurves) -> Figure:
             for panel, values in ((force, curves.force), (damping, curves.damping)):
                 panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
         loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
-        damping.set(ylabel="damping [N s/m]", title="Damping, the force's derivative by the rate")
-        title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost, C {motion.damping:.4g} N s/m"
+        damping.set(ylabel="damping [N s/m]", title="Damping: force over rate")
+        title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost\nC {motion.damping:.4g} N s/m"
         loop.set(ylabel="force [N]", title=title)
         damping.legend(frameon=False, fontsize=8.5)
     force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
@@ -392,5 +392,5 @@ def _draw(curves: LawCurves) -> Figure:
     for panel in (force, stiffness):
         panel.legend(frameon=False, fontsize=8.5)
     title = f"{curves.law}, {contact.race} contact of ball {contact.ball}: {curves.title.partition(chr(10))[0]}"
-    figure.suptitle(title, fontsize=10.5)
+    figure.suptitle(wrapped(title), fontsize=11)
     return figure

@@ -7,7 +7,6 @@ import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import attrs
@@ -16,7 +15,7 @@ import numpy as np
 from raceway import __version__
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.out.picture import COLOURS, MARKERS, dress, new_figure
+from raceway.out.picture import COLOURS, MARKERS, dress, new_figure, wrapped
 from raceway.out.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
 from raceway.points.dataset import FINISHED, open_store
@@ -312,7 +311,7 @@ def draw(layout: _Layout) -> Figure:
         )
     heading = name if words in ("", name) else f"{name}: {words}"
     figure.suptitle(
-        "\n".join(line for text in (heading, *layout.title.splitlines(), layout.remark) for line in wrap(text, 84)),
+        wrapped("\n".join((heading, layout.title, layout.remark)), 84),
         fontsize=11.5,
     )
     return figure

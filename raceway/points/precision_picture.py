@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.out.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure
+from raceway.out.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure, wrapped
 from raceway.out.quantities import P0, PEAK_BALL_LOAD, K
 from raceway.storage.tables import Tables
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: Text, the point that it belongs to in the axes' data, its colour.
 _Label = tuple[str, tuple[float, float], str]
 
-_SIZE = 7.5
+_SIZE = 9.0
 #: Mean width of a letter and height of a line over the size of the letters.
 _WIDE, _HIGH = 0.56, 1.15
 #: Half the width of a marker, and from a point to its label, near and further away [points of 1/72 inch].
@@ -160,9 +160,9 @@ def _words(setting: Tables) -> str:
 
 def draw(result: Tables) -> Figure:
     """The figure of a study."""
-    figure = new_figure(12.8, 8.6)
+    figure = new_figure(8.4, 7.6)
     labels = draw_on(panel := figure.add_subplot(), result)
-    figure.suptitle(f"Error against run time: {result['title']}", fontsize=13)
+    figure.suptitle(wrapped(f"Error against run time: {result['title']}", 70), fontsize=12)
     if panel.get_legend_handles_labels()[1]:
         figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     put_beside(panel, labels)
@@ -196,7 +196,7 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
         panel.axhline(bound, color=GREY, linewidth=0.8, linestyle=":", label="bound of the reference, grey below")
     panel.set_xscale("log")
     panel.set_yscale("log")
-    panel.set_xlabel("time of the run, fastest repeat, compiling apart  [s]")
+    panel.set_xlabel("least time of a run [s]")
     panel.set_ylabel("relative error against the reference")
     dress(panel)
     return labels

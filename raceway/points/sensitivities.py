@@ -6,7 +6,6 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
@@ -18,7 +17,7 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import door, member
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
-from raceway.out.picture import new_figure
+from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
 from raceway.out.progress import telling
 from raceway.out.quantities import quantity_of, read_in
 from raceway.out.table import sections
@@ -241,9 +240,13 @@ def _bars(content: ReadTables) -> Figure:
         key for key in content["keys"] if _largest(key, names) >= _LEAST * max(_largest(k, names) for k in content["keys"])
     ]
     keys = sorted(keys, key=lambda key: -_largest(key, names))[:_MOST]
-    figure = new_figure(2.6 + 2.3 * len(names), 1.6 + 0.32 * max(len(keys), 3))
-    panels = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
-    for panel, name in zip(panels, names, strict=True):
+    columns = min(len(names), MOST_COLUMNS)
+    rows = -(-len(names) // columns)
+    figure = new_figure(2.6 + 2.3 * columns, 0.5 + (1.1 + 0.32 * max(len(keys), 3)) * rows)
+    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).flat
+    for panel in panels[len(names) :]:
+        panel.set_visible(False)
+    for panel, name in zip(panels, names, strict=False):
         shares = [key["influence"].get(name, 0.0) for key in keys]
         colours = [_MORE if share >= 0.0 else _LESS for share in shares]
         panel.barh(range(len(keys)), shares, color=colours, height=0.66)
@@ -255,10 +258,10 @@ def _bars(content: ReadTables) -> Figure:
                 side = "left" if share >= 0.0 else "right"
                 panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
         panel.set_title(name.replace("_", " "), fontsize=11)
-        panel.set_xlabel("% per % of the key", fontsize=9)
+        panel.set_xlabel("% per % of key", fontsize=9)
         panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
         panel.set_ylim(len(keys) - 0.4, -0.6)
-    figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
+    figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.out.picture import new_figure
+from raceway.out.picture import new_figure, wrapped
 from raceway.out.quantities import read_in
 from raceway.storage.tables import ReadTables
 from raceway.studies.fit.identify import Identified
@@ -26,14 +25,14 @@ def draw(content: ReadTables) -> Figure:
     """Two rows of panels, a column per quantity, and the region of the first two free numbers."""
     series = content["series"][:_MOST]
     columns = len(series) + 1
-    figure = new_figure(1.2 + 3.6 * columns, 5.2)
+    figure = new_figure(1.0 + 2.9 * columns, 5.2)
     panels = figure.subplots(2, columns, squeeze=False, height_ratios=(3, 1.4))
     for k, quantity in enumerate(series):
         _curve(panels[0][k], quantity)
         _residuals(panels[1][k], quantity)
     _region(panels[0][-1], content)
     _numbers(panels[1][-1], content)
-    figure.suptitle("\n".join(line for text in content["title"].splitlines() for line in wrap(text, 90)), fontsize=11)
+    figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
 
 
@@ -129,7 +128,7 @@ def _draw_signals(answer: Identified, first: Axes, means: Axes) -> None:
         means.plot(time, _MICRO * rotation.means(values), color=colour)
     _finish(first, "turns", "gap [µm]")
     _finish(means, "time [s]", "mean of a turn [µm]")
-    first.legend(loc="upper right", ncols=2, frameon=False)
+    first.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
 
 
 def draw_spectrum(answer: Identified, axes: Axes) -> None:
@@ -144,7 +143,7 @@ def draw_spectrum(answer: Identified, axes: Axes) -> None:
     shown = shown[np.argsort(order[shown])]
     axes.semilogy(order[shown], _MICRO * np.maximum(amplitudes[shown], 1e-14), color=_BLUE, linewidth=0.9)
     axes.set_xticks(range(-int(_ORDERS_SHOWN), int(_ORDERS_SHOWN) + 1))
-    _finish(axes, "order (positive: turning with the shaft)", "amplitude [µm]")
+    _finish(axes, "order, positive: forward", "amplitude [µm]")
 
 
 def draw_orbits(answer: Identified, axes: Axes) -> None:

@@ -355,7 +355,7 @@ _LEAST_PERCENT = 1e-4
 
 def _procedures(study: _RigStudy) -> Figure:
     """True K over speed, and what each correction makes of it."""
-    figure = new_figure(9.2, 3.8)
+    figure = new_figure(8.0, 4.2)
     loads = list(dict.fromkeys(point.axial for point in study.points))
     for panel, axial in zip(np.atleast_1d(figure.subplots(1, len(loads), sharey=True)), loads, strict=True):
         points = [point for point in study.points if point.axial == axial]
@@ -382,13 +382,13 @@ def _procedures(study: _RigStudy) -> Figure:
 def _causes(study: _RigStudy) -> Figure:
     """Error of K by one cause at a time: a dot for each speed and load, on a logarithmic scale."""
     names = list(dict.fromkeys((cause.kind, cause.what) for point in study.points for cause in point.causes))
-    figure = new_figure(9.2, 0.34 * len(names) + 1.1)
+    figure = new_figure(8.0, 0.38 * len(names) + 1.1)
     axes: Axes = figure.subplots()
     for row, name in enumerate(reversed(names)):
         errors = [100.0 * abs(c.error) for p in study.points for c in p.causes if (c.kind, c.what) == name]
         sizes = np.maximum(errors, _LEAST_PERCENT)
         axes.plot(sizes, np.full(len(sizes), row), "o", color=_KINDS[name[0]], markersize=5, alpha=0.75)
-    words = [fill(f"{kind}: {text}" if kind != "none" else text, 46) for kind, text in reversed(names)]
+    words = [fill(f"{kind}: {text}" if kind != "none" else text, 42) for kind, text in reversed(names)]
     axes.set_yticks(range(len(names)), words)
     axes.set_xscale("log")
     largest = 100.0 * max(abs(cause.error) for point in study.points for cause in point.causes)
@@ -399,7 +399,7 @@ def _causes(study: _RigStudy) -> Figure:
             f"{limit:g} %", (limit, 1.0), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
             ha="center", va="bottom", fontsize=8,
         )  # fmt: skip
-    label_axes(axes, "", "error of K by this cause alone [%]", "", 9.0)
+    label_axes(axes, "", "error of K alone [%]", "", 9.0)
     return figure
 
 

@@ -229,7 +229,7 @@ def contacts(bearing: Bearing, state: State, heading: str) -> Figure:
     """Section and ellipses of the ball with the largest load of both races."""
     z = len(state.azimuth)
     ball = int(np.argmax(state.load)) % z
-    figure = new_figure(12.8, 6.2)
+    figure = new_figure(9.6, 5.4)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.25))
     _section(figure.add_subplot(grid[:, 0]), bearing, state, ball)
     top = 1e-6 * float(max(state.peak[ball], state.peak[z + ball]))
@@ -267,7 +267,7 @@ def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
         axes.text(across, up, words, ha="left" if away > 0.0 else "right", va="center", fontsize=10)
     axes.axhline(middle[1], color="#8a949e", linewidth=0.6, linestyle=(0, (6, 3, 1, 3)))
     axes.set_aspect("equal")
-    axes.set_xlabel("along the axis, x [mm]")
+    axes.set_xlabel("x [mm]")
     axes.set_ylabel("radius [mm]")
     axes.set_title("section, rings as they stand unloaded", fontsize=11)
     axes.spines[["top", "right"]].set_visible(False)
@@ -299,7 +299,7 @@ def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: flo
         pressure = 1e-6 * state.peak[i] * np.sqrt(1.0 - part**2)
         across, along = a * part * np.cos(turn), b * part * np.sin(turn)
         axes.pcolormesh(across, along, pressure, cmap=scale.cmap, norm=norm, shading="gouraud", rasterized=True)
-        words = f"{state.load[i]:.4g} N, peak {1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
+        words = f"{state.load[i]:.4g} N\n{1e-6 * state.peak[i]:.4g} MPa, {2.0 * a:.3g} x {2.0 * b:.3g} mm"
     axes.set_aspect("equal")
     axes.set_xlim(-reach, reach)
     axes.set_ylim(-0.35 * reach, 0.35 * reach)

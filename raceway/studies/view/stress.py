@@ -209,7 +209,7 @@ def _drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
         near[side.index] = places, _NEAR * max(contact.semi_axes[0] for contact in sides)
     grid = _new_grid(pyvista, _Fields.of(result, near))
     races = [[side for side in sides if side.race == race] for race in dict.fromkeys(side.race for side in sides)]
-    figure = new_figure(15.6, 5.6 * len(races))
+    figure = new_figure(10.4, 4.4 * len(races))
     panels = figure.subplots(len(races), 3, squeeze=False, width_ratios=(1.0, 1.0, 0.75))
     cuts = quietly(pyvista, lambda: [_contact_section(grid, pair) for pair in races])
     for column, name in enumerate(("von Mises stress", "largest shear stress")):
@@ -294,7 +294,7 @@ def _draw(
 def _depth_axis(axes: Axes) -> None:
     """Depths below both surfaces, counted from where they touch."""
     axes.yaxis.set_major_formatter(lambda height, _: f"{abs(height):g}")
-    axes.set_ylabel("depth: in ring ↓  in ball ↑ [µm]")
+    axes.set_ylabel("depth, ring down [µm]")
 
 
 def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Grid) -> None:

@@ -7,7 +7,6 @@ import io
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -19,7 +18,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, largest_facts, race_words
 from raceway.out.answer import Answer, Part
-from raceway.out.picture import figure_png, given_axes
+from raceway.out.picture import figure_png, given_axes, wrapped
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import K, X
 from raceway.out.table import sections
@@ -230,11 +229,11 @@ def _images(
     result: Result, bearing: Bearing, moments: dict[str, tuple[State, str]], on_progress: OnProgress
 ) -> Iterator[tuple[str, _Image]]:
     """The bearing at rest and when a ball carries most, the contacts then, and what the whole record draws."""
-    title = _short(result.title)
+    title = wrapped(result.title, 70)
     for name, (state, when) in moments.items():
         on_progress(f"drawing {name}", 0, 0)
         loads, widened = _loads(state), _widened(bearing, state)
-        content = overview(bearing, state, f"{title}\n{when}: {loads}\n{widened}")
+        content = overview(bearing, state, wrapped(f"{result.title}\n{when}: {loads}\n{widened}", 72))
         alternative = f"the bearing cut open, balls coloured by their load, {when}"
         yield name, _Image(content, alternative, f"Loads {when}: {loads}; {widened}")
     on_progress("drawing contacts.png", 0, 0)
@@ -310,10 +309,6 @@ def _notes(bearing: Bearing) -> list[str]:
     if bearing.assumed:
         notes.append(f"The scene does not give {', '.join(bearing.assumed)} of the rings: usual proportions are drawn.")
     return notes
-
-
-def _short(title: str) -> str:
-    return "\n".join(part for line in title.splitlines() for part in wrap(line, 70))
 
 
 @door
