@@ -75,6 +75,7 @@ html_title = f"Raceway {release}"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_copyright = False
+html_show_search_summary = False  # it would be fetched, which pages opened as files may not
 # A page's source is copied beside it; with an address of the repository in [project.urls], its links lead there, to edit too.
 html_theme_options = {
     "source_repository": _PROJECT.get("urls", {}).get("Source", ""),

@@ -61,6 +61,7 @@ def test_the_search_answers_from_files(browser):
             " [...document.querySelectorAll('#search-results li a')].map((e) => e.href)"
         )
     )
+    assert not browser.driver.get_log("browser")
     assert any("sets.html" in title for title in titles) and all(title.startswith("file:") for title in titles)
 
 
