@@ -55,6 +55,7 @@ from .studies.catalogue.inferred import Inferred as Inferred
 from .studies.fit.fit import fit as fit
 from .studies.fit.fitted import Fitted as Fitted
 from .studies.fit.identify import Identified as Identified, identify as identify
+from .studies.fmu.export import FMU as FMU, export_fmu as export_fmu
 from .studies.rotor.export import (
     CoefficientFile as CoefficientFile,
     RossTable as RossTable,

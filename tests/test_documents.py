@@ -78,7 +78,7 @@ SLOW |= {"film", "fit", "follow", "measurements", "ross", "sensitivities", "stab
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}
 #: Languages of listings that nothing runs: text, and what the site reads.
-SHOWN = {"text", "{toctree}", "{eval-rst}"}
+SHOWN = {"text", "matlab", "modelica", "{toctree}", "{eval-rst}"}
 
 LISTINGS = {page: listings(page) for page in PAGES}
 ASKED = [command for found in LISTINGS.values() for listing in found for command in listing.commands()]

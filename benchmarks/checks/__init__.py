@@ -8,6 +8,7 @@ types                 what editors and type checkers see of the package
 words                 length of the documents, terms that the field does not know
 pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
+fmu                   exported FMUs against runs and kernels, a rotor on them, time of a step
 points                time of a point of ``raceway.function``, and equality with runs
 quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z

@@ -219,6 +219,21 @@ ANSWERS: tuple[Command | Later, ...] = (
         folder=None,
         pictures=None,
     ),
+    Command(
+        "export --fmu",
+        "raceway.studies.fmu.export:export_fmu",
+        "A bearing as an FMU (FMI 2.0, 3.0) for simulators: its map, or its force.",
+        "raceway export --fmu examples/b7206.toml --range load.axial=400:2000 \\\n"
+        "    --range excitation.speed_rpm=3000:15000\n"
+        "raceway export --fmu examples/minimal.toml --kind force",
+        {
+            "kind": Option(choices=("map", "force")),
+            "ranges": Option("range", "A.B=X:Y"),
+            "outputs": Option("output", "NAME"),
+        },
+        folder="-fmu",
+        pictures=None,
+    ),
 )
 TRUST = (
     Command(

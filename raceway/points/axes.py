@@ -372,22 +372,35 @@ def sampled(ranges: Vary, design: str, seed: int = 0) -> Design:
     if kind not in ("sobol", "lhs") or not 0 < count <= _MOST_SWEEP_POINTS or (kind == "sobol" and count & (count - 1)):
         message = f"must be sobol:N, N a power of 2 such as 1024, or lhs:N, at most {_MOST_SWEEP_POINTS} points"
         raise SceneError.at("design", design, message)
-    pairs = ranges.items() if isinstance(ranges, Mapping) else (text.split("=", 1) for text in ranges if "=" in text)
-    box = {
-        key.strip(): [parse_value(end) for end in ends.split(":")] if isinstance(ends, str) else tidy(ends)
-        for key, ends in pairs
-    }
-    if not box:
+    ends_of = box(ranges)
+    if not ends_of:
         raise SceneError.at("ranges", None, f"are missing: {design} fills ranges, such as load.axial=300:2000")
-    for key, ends in box.items():
-        numbers = isinstance(ends, list) and len(ends) == 2 and all(is_number(end) and math.isfinite(end) for end in ends)
-        if not numbers or not ends[0] < ends[1]:
-            raise SceneError.at(key, ends, f"must be a range low:high of numbers for {design}, such as 300:2000")
     from scipy.stats import qmc
 
-    engine = (qmc.Sobol if kind == "sobol" else qmc.LatinHypercube)(len(box), rng=np.random.default_rng(seed))
-    columns = qmc.scale(engine.random(count), *zip(*box.values(), strict=True)).T
-    return Design(tuple(Axis(key, tuple(column.tolist())) for key, column in zip(box, columns, strict=True)), listed=True)
+    engine = (qmc.Sobol if kind == "sobol" else qmc.LatinHypercube)(len(ends_of), rng=np.random.default_rng(seed))
+    columns = qmc.scale(engine.random(count), *zip(*ends_of.values(), strict=True)).T
+    return Design(
+        tuple(Axis(key, tuple(column.tolist())) for key, column in zip(ends_of, columns, strict=True)), listed=True
+    )
+
+
+def box(ranges: Vary) -> dict[str, tuple[float, float]]:
+    """Key -> low, high of texts ``KEY=low:high``, or of a mapping of keys to (low, high) or "low:high".
+
+    Raises
+    ------
+    SceneError
+        Ends that are no numbers in their order.
+    """
+    pairs = ranges.items() if isinstance(ranges, Mapping) else (text.partition("=")[::2] for text in ranges)
+    ends_of = {}
+    for key, text in pairs:
+        ends = [parse_value(end) for end in text.split(":")] if isinstance(text, str) else tidy(text)
+        numbers = isinstance(ends, list) and len(ends) == 2 and all(is_number(end) and math.isfinite(end) for end in ends)
+        if not numbers or not ends[0] < ends[1]:
+            raise SceneError.at(key, ends, "must be a range low:high of numbers, such as 300:2000")
+        ends_of[key.strip()] = (float(ends[0]), float(ends[1]))
+    return ends_of
 
 
 def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
