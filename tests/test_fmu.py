@@ -187,6 +187,12 @@ def test_sources_compile_without_a_warning_and_are_short(
             subprocess.run(command, cwd=folder / "sources", check=True)
 
 
+def test_a_title_is_no_code(tmp_path: Path) -> None:
+    scene = FORCES["centrifugal"] | {"title": '7*/ #error "x" <b>&\\'}
+    path = exported(tmp_path, scene, kind="force")[2]
+    assert validate_fmu(path) == [] and path.name.startswith("_7") and Instance(path)(*[0.0] * 7).size == 56
+
+
 def test_same_bearing_gives_the_same_bytes(maps: dict[int, Path], tmp_path: Path) -> None:
     again = exported(tmp_path, MAP, ranges=RANGES, tolerance=1e-4)
     assert all(again[version].read_bytes() == path.read_bytes() for version, path in maps.items())

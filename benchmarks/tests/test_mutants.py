@@ -25,9 +25,10 @@ def computes(path: Path) -> bool:
 
 @pytest.mark.parametrize("fault", [*FAULTS, *STRANGERS], ids=lambda fault: f"{fault.file}: {fault.does}")
 def test_a_fault_can_be_put_in_and_has_its_tests(fault):
-    source = (ROOT / fault.file).read_text(encoding="utf-8")
+    path = ROOT / fault.file
+    source = path.read_text(encoding="utf-8")
     harmed = fault.put(source)  # refuses what no longer occurs once
-    assert ast.dump(ast.parse(harmed)) != ast.dump(ast.parse(source))
+    assert harmed != source and (path.suffix != ".py" or ast.dump(ast.parse(harmed)) != ast.dump(ast.parse(source)))
     assert fault.tests and fault.does and not fault.misplaced()
 
 

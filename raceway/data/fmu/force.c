@@ -1,8 +1,11 @@
 /* Forces of a bearing with rigid rings and balls on its shaft.  Every ball finds its place between the races: its contact forces, the
-   centrifugal force and, where GYROSCOPIC, its gyroscopic moment balance in its meridian plane (axial a, radial r). */
+   centrifugal force and, where MOMENTS, its gyroscopic moment balance in its meridian plane (axial a, radial r). */
 #include <math.h>
 
-enum { COSINE, SINE, SIDE, LEVER, REST_AXIAL, REST_RADIAL, ARM, OFFSET_INNER, OFFSET_OUTER, CENTRIFUGAL, NUMBERS };
+/* Columns of at_rest and by_square: raceway.core.ring.kernels.layout's of a ball, then those of all balls. */
+enum { COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT, OWN_REST_AXIAL, OWN_REST_RADIAL, OWN_OFFSET_INNER,
+       OWN_OFFSET_OUTER, OWN_TILT_ARM, REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE, FRICTION, STICK,
+       SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER };
 enum { X, Y, Z, TILT_Y, TILT_Z, SPEED, CAGE_ANGLE };
 
 typedef struct { double a, r; } Vector;
@@ -67,17 +70,18 @@ static double law(int contact, double approach, double *stiffness)
 /* Gyroscopic moment [N m] of a ball that rolls without spin on the outer race, by the angles of both contacts. */
 static double moment(Vector i, Vector o, double size, double *by_inner, double *by_outer)
 {
-    double d = o.r + RATIO, t = o.a / d, t_o = (1.0 + RATIO * o.r) / (d * d), e = 1.0 + RATIO * o.r, c = 1.0 - RATIO * i.r;
-    double ro = (o.r + t * o.a) / e, ri = (i.r + t * i.a) / c, rolling = ro + ri, m = size * t / (RATIO * rolling);
-    double ro_o = (-o.a + t * o.r + t_o * o.a + ro * RATIO * o.a) / e, ri_i = (-i.a + t * i.r - ri * RATIO * i.a) / c, ri_o = t_o * i.a / c;
+    double q = at_rest[0][BALL_OVER_PITCH], d = o.r + q, t = o.a / d, t_o = (1.0 + q * o.r) / (d * d), e = 1.0 + q * o.r, c = 1.0 - q * i.r;
+    double ro = (o.r + t * o.a) / e, ri = (i.r + t * i.a) / c, rolling = ro + ri, m = size * t / (q * rolling);
+    double ro_o = (-o.a + t * o.r + t_o * o.a + ro * q * o.a) / e, ri_i = (-i.a + t * i.r - ri * q * i.a) / c, ri_o = t_o * i.a / c;
     *by_inner = -m * ri_i / rolling;
-    *by_outer = size * t_o / (RATIO * rolling) - m * (ro_o + ri_o) / rolling;
+    *by_outer = size * t_o / (q * rolling) - m * (ro_o + ri_o) / rolling;
     return m;
 }
 
 static void add_moment(double size, Contact *inner, Contact *outer)
 {
-    double by_i, by_o, m = moment(inner->n, outer->n, size, &by_i, &by_o), share_i = SHARE_INNER / DIAMETER, share_o = SHARE_OUTER / DIAMETER;
+    double by_i, by_o, m = moment(inner->n, outer->n, size, &by_i, &by_o), diameter = at_rest[0][DIAMETER];
+    double share_i = at_rest[0][SHARE_INNER] / diameter, share_o = at_rest[0][SHARE_OUTER] / diameter;
     inner->h = -share_i * m;
     if (fabs(inner->h) > inner->force) { /* no more than the normal force; the outer race carries the rest */
         double sign = m > 0.0 ? 1.0 : -1.0;
@@ -85,7 +89,7 @@ static void add_moment(double size, Contact *inner, Contact *outer)
         inner->by_length = -sign * inner->stiffness;
         outer->by_inner = sign * inner->stiffness;
         share_i = 0.0;
-        share_o = 2.0 / DIAMETER;
+        share_o = 2.0 / diameter;
         outer->h = sign * inner->force;
     }
     outer->h -= share_o * m;
@@ -110,7 +114,7 @@ static Matrix tangent(const Contact *c)
     Vector t = across(c->n);
     double w = c->length > 0.0 ? 1.0 / c->length : 0.0;
     Matrix m = sum(outer(c->stiffness, c->n, c->n), (c->force + c->by_angle) * w, outer(1.0, t, t));
-    return GYROSCOPIC ? sum(sum(m, -c->h * w, outer(1.0, c->n, t)), c->by_length, outer(1.0, t, c->n)) : m;
+    return MOMENTS ? sum(sum(m, -c->h * w, outer(1.0, c->n, t)), c->by_length, outer(1.0, t, c->n)) : m;
 }
 
 static Vector pull(const Contact *c) { return (Vector){c->force * c->n.a + c->h * c->n.r, c->force * c->n.r - c->h * c->n.a}; }
@@ -122,17 +126,24 @@ typedef struct { Vector force, couple_by_centre; Matrix by_centre; double couple
 typedef struct { Vector place, centre; Matrix follow; double reach; } Last;
 typedef Last Memory[BALLS];
 
-/* Ball k with the vector e from the outer to the inner groove centre; 0 where it finds no place. */
-static int place(int k, const double *b, Vector e, double size, Memory memory, Ball *ball)
+/* A number of the grooves at a square of the speed: of all balls, and what ball k has beyond that. */
+static double number(int k, int common, int own, double square)
 {
-    double length = sqrt(dot(e, e)), li = b[OFFSET_INNER], lo = b[OFFSET_OUTER], push = b[CENTRIFUGAL], slope = 0.0;
+    return at_rest[k][common] + at_rest[k][own] + square * (by_square[k][common] + by_square[k][own]);
+}
+
+/* Ball k with the vector e from the outer to the inner groove centre; 0 where it finds no place. */
+static int place(int k, Vector e, double square, Memory memory, Ball *ball)
+{
+    double length = sqrt(dot(e, e)), li = number(k, OFFSET_INNER, OWN_OFFSET_INNER, square), slope = 0.0;
+    double lo = number(k, OFFSET_OUTER, OWN_OFFSET_OUTER, square), push = square * by_square[k][CENTRIFUGAL], size = square * by_square[k][GYROSCOPIC];
     double seat = lo + (push > 0.0 ? pow(push / seats[k], SEAT_POWER) : 0.0);
     Vector p = {0.0, seat}, x = {e.a, e.r - seat}, step = {0.0, 0.0};
     memset(ball, 0, sizeof *ball);
     if (push <= 0.0 && length <= li + lo)
         return 1;
     if (length > li + lo && !(push > 0.0 && dot(x, x) <= li * li)) {
-        double share = (lo + shares[k] * (length - li - lo)) / length;
+        double share = (lo + at_rest[k][OUTER_SHARE] * (length - li - lo)) / length;
         p = (Vector){share * e.a, share * e.r};
     }
     Vector moved = {e.a - memory[k].centre.a, e.r - memory[k].centre.r};
@@ -148,7 +159,7 @@ static int place(int k, const double *b, Vector e, double size, Memory memory, B
         }
         x = (Vector){e.a - p.a, e.r - p.r};
         Contact o = contact(BALLS + k, p, lo, (Vector){0.0, 1.0}), i = contact(k, x, li, o.n);
-        if (GYROSCOPIC)
+        if (MOMENTS)
             add_moment(size, &i, &o);
         Vector inner = pull(&i), rest = pull(&o);
         rest = (Vector){inner.a - rest.a, inner.r - rest.r + push};
@@ -161,7 +172,7 @@ static int place(int k, const double *b, Vector e, double size, Memory memory, B
         Vector ti = across(i.n), to = across(o.n);
         double wi = i.length > 0.0 ? 1.0 / i.length : 0.0, wo = 1.0 / o.length;
         Matrix stays = tangent(&i), by_place = sum((Matrix){0.0, 0.0, 0.0, 0.0}, -1.0, stays), by_centre = stays;
-        if (GYROSCOPIC) {
+        if (MOMENTS) {
             by_place = sum(by_place, i.by_other * wo, outer(1.0, ti, to));
             by_centre = sum(sum(stays, -o.by_other * wi, outer(1.0, to, ti)), -o.by_inner, outer(1.0, to, i.n));
         }
@@ -176,7 +187,7 @@ static int place(int k, const double *b, Vector e, double size, Memory memory, B
         if (stride <= fmax(1e-7 * shallow, 1e-14 * lo)) {
             /* What this last step changes is added by the derivatives: what is left is of second order. */
             Vector change = times(by_place, step);
-            double groove = li + 0.5 * DIAMETER;
+            double groove = li + 0.5 * at_rest[k][DIAMETER];
             Vector couple_by_e = {-groove * (i.by_length * i.n.a + i.by_angle * wi * ti.a), -groove * (i.by_length * i.n.r + i.by_angle * wi * ti.r)};
             Vector couple_by_p = {-couple_by_e.a - groove * i.by_other * wo * to.a, -couple_by_e.r - groove * i.by_other * wo * to.r};
             Matrix follow = product(back, by_centre);
@@ -205,24 +216,23 @@ static int compute(const double *in, double *out, Memory memory)
     memset(out, 0, OUTPUTS * sizeof *out);
     out[6] = CAGE_RATIO * in[SPEED];
     for (int k = 0; k < BALLS; k++) {
-        double b[NUMBERS], c, s, u;
-        for (int n = 0; n < NUMBERS; n++)
-            b[n] = at_rest[k][n] + square * by_square[k][n];
-        c = b[COSINE] * turn_c - b[SINE] * turn_s;
-        s = b[SINE] * turn_c + b[COSINE] * turn_s;
-        u = in[TILT_Y] * s - in[TILT_Z] * c;
+        const double *b = at_rest[k];
+        double c = b[COSINE] * turn_c - b[SINE] * turn_s, s = b[SINE] * turn_c + b[COSINE] * turn_s, u = in[TILT_Y] * s - in[TILT_Z] * c;
+        double side = b[SIDE], lever = b[LEVER], arm = number(k, TILT_ARM, OWN_TILT_ARM, square);
+        double axial = number(k, REST_AXIAL, OWN_REST_AXIAL, square) + b[SHIFT] + square * by_square[k][SHIFT];
+        double radial = number(k, REST_RADIAL, OWN_REST_RADIAL, square);
         Ball ball;
-        Vector e = {b[REST_AXIAL] + b[SIDE] * (in[X] + b[ARM] * u), b[REST_RADIAL] + in[Y] * c + in[Z] * s - b[LEVER] * u};
-        if (!place(k, b, e, GYROSCOPIC_SIZE * square, memory, &ball))
+        Vector e = {axial + side * (in[X] + arm * u), radial + in[Y] * c + in[Z] * s - lever * u};
+        if (!place(k, e, square, memory, &ball))
             return -1;
-        Vector jacobian[5] = {{b[SIDE], 0.0}, {0.0, c}, {0.0, s}, {b[SIDE] * b[ARM] * s, -b[LEVER] * s}, {-b[SIDE] * b[ARM] * c, b[LEVER] * c}};
-        double turn[5] = {0.0, 0.0, 0.0, b[SIDE] * s, -b[SIDE] * c};
+        Vector jacobian[5] = {{side, 0.0}, {0.0, c}, {0.0, s}, {side * arm * s, -lever * s}, {-side * arm * c, lever * c}};
+        double turn[5] = {0.0, 0.0, 0.0, side * s, -side * c};
         for (int j = 0; j < 5; j++) {
             Vector force = times(ball.by_centre, jacobian[j]);
             for (int i = 0; i < 5; i++)
                 stiffness[5 * i + j] += dot(jacobian[i], force);
             out[j] -= dot(jacobian[j], ball.force);
-            if (GYROSCOPIC) {
+            if (MOMENTS) {
                 double couple = dot(ball.couple_by_centre, jacobian[j]);
                 for (int i = 3; i < 5; i++)
                     stiffness[5 * i + j] += turn[i] * couple;

@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 
 #: Terms of an axis at first, by how much they grow, and the power of 2 of further control points.
 _FIRST, _GROWTH, _SOBOL = 7, 1.5, 10
-#: Shares of the tolerance: of the last terms of an axis that grows no more, and of terms that are dropped.
+#: Shares of the tolerance: of the last two terms of an axis that grows no more, and of terms that are dropped.
 _ENOUGH, _DROPPED = 0.2, 0.02
 
 #: Values (m, n) of m quantities from the columns of d inputs (n,), and the sizes (m, n) that their errors are divided by.
@@ -39,15 +39,15 @@ class Interval:
 
     def at(self, place: np.ndarray) -> np.ndarray:
         """Inputs at places from -1 to 1."""
+        share = 0.5 * (place + 1.0)
         if self.logarithmic:
-            return np.asarray(self.low * (self.high / self.low) ** (0.5 * (place + 1.0)))
-        return np.asarray(self.low + 0.5 * (place + 1.0) * (self.high - self.low))
+            return np.asarray(self.low * (self.high / self.low) ** share).clip(self.low, self.high)
+        return np.asarray(self.low + share * (self.high - self.low)).clip(self.low, self.high)
 
-    def place(self, values: np.ndarray) -> np.ndarray:
-        """The places of inputs."""
-        if self.logarithmic:
-            return np.asarray(2.0 * np.log(values / self.low) / math.log(self.high / self.low) - 1.0)
-        return np.asarray(2.0 * (values - self.low) / (self.high - self.low) - 1.0)
+    def polynomials(self, values: np.ndarray, count: int) -> np.ndarray:
+        """T_0 ... at inputs (n,), as (n, count)."""
+        first, last, now = (np.log(x) if self.logarithmic else np.asarray(x) for x in (self.low, self.high, values))
+        return np.asarray(chebyshev.chebvander((2.0 * now - first - last) / (last - first), count - 1))
 
 
 @attrs.frozen(eq=False)
@@ -56,22 +56,32 @@ class Series:
 
     Attributes
     ----------
-    axes : of the inputs
-    terms : (m, n_1, ..., n_d) coefficients
-    error : (m,) largest difference at control points over the size of the quantity;  difference : (m,) the largest in its unit
-    fitted, controlled : numbers of points
+    axes : of the inputs;  terms : (m, n_1, ..., n_d) coefficients;  size : (m,) least size of the quantities at the nodes
+    error, difference : (m,) largest difference at control points over the size of the quantity, and in its unit
     """
 
     axes: tuple[Interval, ...]
     terms: np.ndarray
-    error: np.ndarray
-    difference: np.ndarray
-    fitted: int
-    controlled: int
+    size: np.ndarray
+    error: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
+    difference: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
+
+    def share(self, axis: int) -> np.ndarray:
+        """(n,) largest sum of the terms of one degree of an axis over the least size of the quantity."""
+        others = tuple(k for k in range(1, self.terms.ndim) if k != axis + 1)
+        return np.asarray(np.max(np.abs(self.terms).sum(axis=others) / self.size[:, np.newaxis], axis=0))
+
+    @property
+    def tails(self) -> np.ndarray:
+        """Of each axis the last two terms, relative."""
+        return np.array([self.share(k)[-2:].sum() for k in range(len(self.axes))])
 
     def __call__(self, columns: Sequence[np.ndarray]) -> np.ndarray:
         """(m, n) at inputs within the box."""
-        return _evaluate(self.axes, self.terms, columns)
+        values = np.broadcast_to(self.terms[..., np.newaxis], (*self.terms.shape, len(columns[0])))
+        for axis, column, count in reversed(list(zip(self.axes, columns, self.terms.shape[1:], strict=True))):
+            values = np.einsum("...kn,nk->...n", values, axis.polynomials(column, count))
+        return np.asarray(values)
 
 
 def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: int) -> Series:
@@ -82,51 +92,34 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
     axes : ``logarithmic`` of one says nothing yet
     tolerance : of the error, relative;  most : points of one fit
     """
-    counts, axes = [_FIRST] * len(axes), list(axes)
-    best = _interpolate(function, axes, counts)
+    counts, stalled = [_FIRST] * len(axes), np.zeros(len(axes), dtype=bool)
+    best = _interpolated(function, axes, counts)
     for k, axis in enumerate(axes):
         if axis.low > 0.0:
-            trial = [*axes[:k], attrs.evolve(axis, logarithmic=True), *axes[k + 1 :]]
-            found = _interpolate(function, trial, counts)
-            if found.tails[k] < best.tails[k]:
-                axes, best = trial, found
-    stalled = [False] * len(axes)
+            changed = [*best.axes[:k], attrs.evolve(axis, logarithmic=True), *best.axes[k + 1 :]]
+            trial = _interpolated(function, changed, counts)
+            best = trial if trial.tails[k] < best.tails[k] else best
     while True:
-        wanted = [
-            0.0 if stop or tail < _ENOUGH * tolerance else tail for tail, stop in zip(best.tails, stalled, strict=True)
-        ]
-        k = int(np.argmax(wanted))
+        missing = np.where(stalled | (best.tails < _ENOUGH * tolerance), 0.0, best.tails)
+        k = int(np.argmax(missing))
         more = [math.ceil(_GROWTH * n) if j == k else n for j, n in enumerate(counts)]
-        if not wanted[k] or math.prod(more) > most:
+        if not missing[k] or math.prod(more) > most:
             break
-        found = _interpolate(function, axes, more)
-        stalled[k] = found.tails[k] > 0.5 * best.tails[k]
-        if found.tails[k] < best.tails[k]:
-            counts, best = more, found
-    terms = best.terms
-    for k in range(len(axes)):
-        left = np.cumsum(_share(terms, k, best.size)[::-1])[::-1]
-        terms = terms.take(range(max(2, int(np.sum(left > _DROPPED * tolerance)))), axis=k + 1)
-    columns = _control(axes, counts)
+        trial = _interpolated(function, best.axes, more)
+        stalled[k] = trial.tails[k] > 0.5 * best.tails[k]
+        if trial.tails[k] < best.tails[k]:
+            counts, best = more, trial
+    columns = _control(best.axes, counts)
     values, size = function(columns)
-    difference = np.abs(_evaluate(axes, terms, columns) - values)
-    return Series(
-        tuple(axes), terms, np.max(difference / size, axis=1), np.max(difference, axis=1), math.prod(counts), len(columns[0])
-    )
+    for k in range(len(axes)):
+        left = np.cumsum(best.share(k)[::-1])[::-1]
+        terms = best.terms.take(range(max(2, int(np.sum(left > _DROPPED * tolerance)))), axis=k + 1)
+        best = attrs.evolve(best, terms=terms)
+    difference = np.abs(best(columns) - values)
+    return attrs.evolve(best, error=np.max(difference / size, axis=1), difference=np.max(difference, axis=1))
 
 
-@attrs.frozen(eq=False)
-class _Interpolation:
-    terms: np.ndarray
-    size: np.ndarray
-
-    @property
-    def tails(self) -> list[float]:
-        """Of each axis the last two terms, relative."""
-        return [float(_share(self.terms, k, self.size)[-2:].sum()) for k in range(self.terms.ndim - 1)]
-
-
-def _interpolate(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> _Interpolation:
+def _interpolated(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> Series:
     places = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in counts]
     values, size = function(_grid(axes, places))
     terms = values.reshape(-1, *counts)
@@ -134,13 +127,7 @@ def _interpolate(function: Quantities, axes: Sequence[Interval], counts: Sequenc
         weights = 2.0 / n * chebyshev.chebvander(place, n - 1).T
         weights[0] *= 0.5
         terms = np.moveaxis(np.tensordot(weights, terms, (1, k)), 0, k)
-    return _Interpolation(terms, size.min(axis=1))
-
-
-def _share(terms: np.ndarray, axis: int, size: np.ndarray) -> np.ndarray:
-    """(n,) largest sum of the terms of one degree of an axis over the least size of the quantity."""
-    others = tuple(k for k in range(1, terms.ndim) if k != axis + 1)
-    return np.asarray(np.max(np.abs(terms).sum(axis=others) / size[:, np.newaxis], axis=0))
+    return Series(tuple(axes), terms, size.min(axis=1))
 
 
 def _control(axes: Sequence[Interval], counts: Sequence[int]) -> list[np.ndarray]:
@@ -152,13 +139,5 @@ def _control(axes: Sequence[Interval], counts: Sequence[int]) -> list[np.ndarray
 
 
 def _grid(axes: Sequence[Interval], places: Sequence[np.ndarray]) -> list[np.ndarray]:
-    lines = [axis.at(place).clip(axis.low, axis.high) for axis, place in zip(axes, places, strict=True)]
+    lines = [axis.at(place) for axis, place in zip(axes, places, strict=True)]
     return [column.ravel() for column in np.meshgrid(*lines, indexing="ij")]
-
-
-def _evaluate(axes: Sequence[Interval], terms: np.ndarray, columns: Sequence[np.ndarray]) -> np.ndarray:
-    values = terms[..., np.newaxis]
-    for k in range(len(axes) - 1, -1, -1):
-        basis = chebyshev.chebvander(axes[k].place(columns[k]), terms.shape[k + 1] - 1)
-        values = np.einsum("...kn,nk->...n", np.broadcast_to(values, (*values.shape[:-1], len(basis))), basis)
-    return values

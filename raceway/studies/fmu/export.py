@@ -20,7 +20,7 @@ from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import slug, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.fmu.force import NOTES, SPIN, force_unit
-from raceway.studies.fmu.map import default_ranges, fit_map
+from raceway.studies.fmu.map import default_ranges, map_unit
 from raceway.studies.fmu.unit import Unit
 
 _VERSIONS = (2, 3)
@@ -50,10 +50,11 @@ class FMU(Answer):
 
     def to_dict(self) -> Tables:
         variables = [{"causality": part, **attrs.asdict(variable)} for variable, part in self.unit.variables]
+        unit = self.unit
         return {
             "title": self.title,
-            "model": self.unit.name,
-            "description": self.unit.words,
+            "model": unit.name,
+            "description": unit.words,
             "variables": variables,
             "notes": self.notes,
         }
@@ -140,15 +141,16 @@ def export_fmu(
     ['load.axial']
     """
     read = as_scene(scene, plugins=plugins)
-    title = read.title.partition("\n")[0]
-    name = re.sub(r"\W", "_", slug(title)) + f"_{member('kind', kind, ('map', 'force'))}"
+    title = "".join(filter(str.isprintable, read.title.partition("\n")[0]))
+    name = re.sub(r"\W|^(?=\d)", "_", slug(title), flags=re.ASCII) + f"_{member('kind', kind, ('map', 'force'))}"
     limits, asked = box(ranges), list(outputs)
     if kind == "map":
         names = asked or (["K", "C"] if read.excitation is not None else ["stiffness"])
-        unit = fit_map(read, limits or default_ranges(read), names, tolerance).unit(name)
+        unit = map_unit(read, name, limits or default_ranges(read), names, tolerance)
     elif asked or not limits.keys() <= {SPIN}:
         raise SceneError.at("kind", kind, f"has inputs and outputs of its own: no --outputs, and --range of {SPIN} only")
     else:
         unit = force_unit(read, name, limits[SPIN][1] if limits else None)
     notes = [] if limits else ["ranges are not set (--range): about the scene's own numbers"]
+    unit = attrs.evolve(unit, words=f"{title}: {unit.words}")
     return FMU(title, unit, [*(NOTES if kind == "force" else []), *notes])

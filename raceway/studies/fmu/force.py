@@ -25,7 +25,7 @@ from raceway.planning.resolve import resolve
 from raceway.scene.changes import with_numbers
 from raceway.scene.scene import Scene
 from raceway.studies.fmu.chebyshev import Interval, fit
-from raceway.studies.fmu.unit import Unit, Variable, c_array
+from raceway.studies.fmu.unit import Unit, Variable
 
 #: What to do instead.
 _MAP = "export the map instead (--kind map)"
@@ -34,6 +34,7 @@ NOTES = (
     "the force of the contacts alone: masses, loads, dampers and the shaft's stiffness are the simulator's; dashpots of [contact] are left out",
     "cage_angle 0: balls at their azimuths; its integral of cage_speed: ball passing",
 )
+Numbers = dict[str, np.ndarray | float]
 SPIN, _RPM = "kinematics.spin_speed_rpm", np.pi / 30.0
 #: Speed times pitch diameter [r/min mm] of the highest speed, where that is not set and the scene is slower: a usual limit.
 _DN = 1.0e6
@@ -47,15 +48,6 @@ _SHALLOWEST, _TABLE_ERROR, _MOST_TERMS, _DEEPEST = 1e-4, 1e-9, 200, 1.5
 _COARSEST = 1e-5
 #: Relative errors: a ball's last step is at most 1e-7 of its approach, of which forces keep the square, stiffness the first power.
 _OF_FORCE, _OF_STIFFNESS = 1e-9, 1e-6
-#: Numbers of a ball in C: entries of ``table``, and of ``scalars`` with what the ball has beyond them.
-_OF_TABLE = (layout.COSINE, layout.SINE, layout.SIDE, layout.LEVER)
-_OF_BOTH = (
-    (layout.REST_AXIAL, layout.OWN_REST_AXIAL),
-    (layout.REST_RADIAL, layout.OWN_REST_RADIAL),
-    (layout.TILT_ARM, layout.OWN_TILT_ARM),
-    (layout.OFFSET_INNER, layout.OWN_OFFSET_INNER),
-    (layout.OFFSET_OUTER, layout.OWN_OFFSET_OUTER),
-)
 _INPUTS = (
     *(Variable(name, "m", "displacement of the inner ring", 0.0) for name in "xyz"),
     *(Variable(name, "rad", "tilt of the inner ring about y, z", 0.0) for name in ("tilt_y", "tilt_z")),
@@ -64,21 +56,6 @@ _INPUTS = (
 )
 #: Of difference quotients of outputs by the inputs.
 _STEPS = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7, 1e-2, 1e-5])
-
-
-@attrs.frozen(eq=False)
-class _Law:
-    """The contact law in C: number of its code, arrays and further numbers, and the relative error of its force.
-
-    largest : force [N] that it is made for
-    """
-
-    code: int
-    arrays: dict[str, np.ndarray]
-    largest: float
-    error: float = 0.0
-    defined: dict[str, float] = attrs.field(factory=dict)
-    kinds: tuple[int, ...] = ()
 
 
 def force_unit(scene: Scene, name: str, highest_rpm: float | None = None) -> Unit:
@@ -93,67 +70,54 @@ def force_unit(scene: Scene, name: str, highest_rpm: float | None = None) -> Uni
     SceneError
         A scene whose force is no function of displacement and speed, or not of rigid bodies.
     """
-    still, now = attrs.evolve(scene, excitation=None), float(resolve(scene).spin_speed)
+    now = float(resolve(scene).spin_speed)
     rpm = highest_rpm or max(1.25 * now / _RPM, _DN / (1e3 * scene.bearing.pitch_diameter))
-    models = [_model(still, rpm * math.sqrt(part)) for part in (0.25, 0.5, 1.0)]
-    systems = [_system(model) for model in models]
-    (quarter, half, full), square = (_balls(system) for system in systems), (rpm * _RPM) ** 2
-    by_square = (full - quarter) / (0.75 * square)
-    at_rest = full - by_square * square
-    if np.max(np.abs(at_rest + 0.5 * square * by_square - half)) > _ROUNDING * np.max(np.abs(full)):
-        raise SceneError.at(SPIN, rpm, f"changes geometry or preload otherwise than by its square: {_MAP}")
-    basis, system = models[-1].bearing.basis, systems[-1]
-    races, pressure = (basis.inner, basis.outer), models[-1].bearing.static_pressure
-    limits = [float(np.min((pressure / race.peak_pressure(1.0)) ** 3)) for race in races]
-    law = _law(
-        system, _DEEPEST * max(float(np.max(race.approach(limit))) for race, limit in zip(races, limits, strict=True))
-    )
-    inner, outer = (min(limit, law.largest) for limit in limits)
-    entries = system.scalars
-    defined = {
-        "BALLS": system.ball_count,
-        "GYROSCOPIC": int(entries[layout.GYROSCOPIC] != 0.0),
-        "GYROSCOPIC_SIZE": entries[layout.GYROSCOPIC] / square,
-        "SHARE_INNER": entries[layout.SHARE_INNER],
-        "SHARE_OUTER": entries[layout.SHARE_OUTER],
-        "RATIO": entries[layout.BALL_OVER_PITCH] or 1.0,
-        "DIAMETER": entries[layout.DIAMETER],
-        "CAGE_RATIO": basis.geometry.cage_speed(1.0),
-        "HIGHEST_SPEED": rpm * _RPM,
-        "LIMIT_INNER": inner,
-        "LIMIT_OUTER": outer,
-        "LAW": law.code,
-        **law.defined,
-    }
-    arrays = {
-        "at_rest": at_rest,
-        "by_square": by_square,
-        "shares": system.table[:, layout.OUTER_SHARE],
-        "steps": _STEPS,
-        **law.arrays,
-    }
-    lines = [f"#define {key} {value if isinstance(value, int) else repr(float(value))}" for key, value in defined.items()]
-    lines += [f"static const int kinds[{len(law.kinds)}] = {{{', '.join(map(str, law.kinds))}}};"] if law.kinds else []
+    model, highest = _model(scene, rpm), rpm * _RPM
+    races, ring = (model.bearing.basis.inner, model.bearing.basis.outer), _system(model)
+    limits = [float(np.min((model.bearing.static_pressure / race.peak_pressure(1.0)) ** 3)) for race in races]
+    depth = _DEEPEST * max(float(np.max(race.approach(limit))) for race, limit in zip(races, limits, strict=True))
+    law, largest, error = _law(ring, depth)
+    inner, outer = (min(limit, largest) for limit in limits)
     ranges = f"speed 0 to {rpm:g} r/min, ball loads to {inner:.4g} N inside and {outer:.4g} N outside"
-    errors = {"force": max(law.error, _OF_FORCE), STIFFNESS.name: max(law.error, _OF_STIFFNESS)}
+    errors = {"force": max(error, _OF_FORCE), STIFFNESS.name: max(error, _OF_STIFFNESS)}
     return Unit(
         name,
-        f"{scene.title.splitlines()[0]}: force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",
+        f"force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",
         "force.c",
-        "\n".join([*lines, *(c_array(key, numbers) for key, numbers in arrays.items())]),
+        {
+            "BALLS": ring.ball_count,
+            "MOMENTS": int(not ring.conservative),
+            "CAGE_RATIO": float(model.bearing.basis.geometry.cage_speed(1.0)),
+            "HIGHEST_SPEED": highest,
+            "LIMIT_INNER": inner,
+            "LIMIT_OUTER": outer,
+            "steps": _STEPS,
+            **_by_speed(scene, rpm),
+            **law,
+        },
         f"beyond what the model is made for ({ranges}): computed all the same",
-        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=now, low=0.0, high=rpm * _RPM), _INPUTS[6]),
-        _outputs(system.ball_count),
+        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=now, low=0.0, high=highest), _INPUTS[6]),
+        _outputs(ring.ball_count),
         tuple(
-            Variable(f"relative_error.{kind}", "1", "of the largest, against Raceway's kernels", error)
-            for kind, error in errors.items()
+            Variable(f"relative_error.{kind}", "1", "of the largest, against Raceway's kernels", e)
+            for kind, e in errors.items()
         ),
     )
 
 
+def _by_speed(scene: Scene, rpm: float) -> Numbers:
+    """(Z, n) entries of ``table`` and ``scalars`` of each ball at rest, and what they grow by over the square of the speed."""
+    rings = [_system(_model(scene, rpm * math.sqrt(part))) for part in (0.25, 0.5, 1.0)]
+    quarter, half, full = (np.hstack([r.table, np.broadcast_to(r.scalars, (r.ball_count, layout.SCALARS))]) for r in rings)
+    growth = (full - quarter) / 0.75
+    if np.max(np.abs(full - 0.5 * growth - half)) > _ROUNDING * np.max(np.abs(full)):
+        raise SceneError.at(SPIN, rpm, f"changes geometry or preload otherwise than by its square: {_MAP}")
+    return {"at_rest": full - growth, "by_square": growth / (rpm * _RPM) ** 2}
+
+
 def _model(scene: Scene, rpm: float) -> Model:
     """At a speed; what its force also depends on is refused."""
-    model = build_model(with_numbers(scene, {SPIN: rpm}))
+    model = build_model(with_numbers(attrs.evolve(scene, excitation=None), {SPIN: rpm}))
     faults = {
         "bodies.kind": not isinstance(model.bearing, RigidBearing) and "are not rigid, or roll on lines",
         "contact.kind": renews(scene.contact.law) and "follows the running loads",
@@ -169,19 +133,11 @@ def _model(scene: Scene, rpm: float) -> Model:
 def _system(model: Model) -> System:
     system = compiled(model.system)
     assert system is not None, "rigid bodies have compiled forces"
-    return system
+    return system.without(layout.CAGE)  # an input
 
 
-def _balls(system: System) -> np.ndarray:
-    """(Z, 10) numbers of each ball, in the order of ``force.c``."""
-    table, scalars = system.table, system.scalars
-    grooves = [scalars[common] + table[:, own] for common, own in _OF_BOTH]
-    grooves[0] = grooves[0] + table[:, layout.SHIFT]
-    return np.column_stack([table[:, _OF_TABLE], *grooves, table[:, layout.CENTRIFUGAL]])
-
-
-def _law(system: System, depth: float) -> _Law:
-    """From forces at approaches up to ``depth`` [m]: a power law, or a table.
+def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
+    """From forces at approaches up to ``depth`` [m]: a power law or a table in C, its largest force [N], its relative error.
 
     Raises
     ------
@@ -199,7 +155,7 @@ def _law(system: System, depth: float) -> _Law:
         factors = values / approach ** (0.5 * power)
         if np.all(np.ptp(factors, axis=1) <= _EXACT * factors.max(axis=1)):
             factor = factors[:, -1][kinds]
-            return _Law(power, {"factors": factor, "seats": factor[outer]}, np.inf, defined={"SEAT_POWER": 2.0 / power})
+            return {"LAW": power, "SEAT_POWER": 2.0 / power, "factors": factor, "seats": factor[outer]}, np.inf, 0.0
 
     def ratios(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         approach = depth * np.exp(columns[0])
@@ -210,13 +166,15 @@ def _law(system: System, depth: float) -> _Law:
     error = float(2.0 * series.error.max())
     if not error < _COARSEST:
         raise SceneError.at("contact.kind", None, f"has a force that {_MOST_TERMS} terms give to {error:.1e} only: {_MAP}")
-    defined = {
-        "SEAT_POWER": 2.0 / 3.0, "TABLE_LOW": _SHALLOWEST * depth, "TABLE_HIGH": depth, "TABLE_TERMS": series.terms.shape[1]
-    }  # fmt: skip
-    seats = (values[:, -1] / depth**1.5)[kinds][outer]
-    return _Law(
-        0, {"tables": series.terms, "seats": seats}, float(values[:, -1].min()), error, defined, tuple(kinds.tolist())
-    )
+    terms, seats = series.terms, (values[:, -1] / depth**1.5)[kinds][outer]
+    table = {
+        "TABLE_LOW": _SHALLOWEST * depth,
+        "TABLE_HIGH": depth,
+        "TABLE_TERMS": terms.shape[1],
+        "tables": terms,
+        "kinds": kinds,
+    }
+    return {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table}, float(values[:, -1].min()), error
 
 
 def _force(system: System, params: np.ndarray, approach: float) -> np.ndarray:

@@ -13,10 +13,10 @@ from raceway.framework.registry import default_registry
 from raceway.out.quantities import KNOWN, STIFFNESS, C, K, entry_unit, plugin_quantities
 from raceway.points.derivatives import Columns
 from raceway.points.function import Function, PointStatus, function
-from raceway.scene.changes import continuous_keys, key_of, with_numbers
+from raceway.scene.changes import continuous_keys, key_of
 from raceway.scene.scene import Scene
-from raceway.studies.fmu.chebyshev import Interval, Series, fit
-from raceway.studies.fmu.unit import Unit, Variable, c_array
+from raceway.studies.fmu.chebyshev import Interval, fit
+from raceway.studies.fmu.unit import Unit, Variable
 
 _SPEED = "excitation.speed_rpm"
 #: Ranges of keys over their values, where nothing is said.
@@ -43,75 +43,18 @@ def default_ranges(scene: Scene) -> dict[str, tuple[float, float]]:
     keys = {key.path: key.value for key in continuous_keys(scene)}
     if _SPEED in keys:
         keys.pop("kinematics.spin_speed_rpm", None)
-    return {
-        path: (low * keys[path], high * keys[path]) for path, (low, high) in _RANGES.items() if keys.get(path, 0.0) > 0.0
-    }
+    positive = [path for path in _RANGES if keys.get(path, 0.0) > 0.0]
+    return {path: (_RANGES[path][0] * keys[path], _RANGES[path][1] * keys[path]) for path in positive}
 
 
-@attrs.frozen(eq=False)
-class Map:
-    """Quantities over keys.
-
-    Attributes
-    ----------
-    scene : at the middle;  keys : of the inputs
-    outputs : name -> unit and words;  series : of them, in this order
-    """
-
-    scene: Scene
-    keys: tuple[str, ...]
-    outputs: dict[str, tuple[str, str]]
-    series: Series
-
-    @property
-    def stated(self) -> np.ndarray:
-        """(m,) relative error that is stated: twice the largest difference at points that no fit used."""
-        return np.asarray(_SAFETY * self.series.error)
-
-    def unit(self, name: str) -> Unit:
-        """The FMU."""
-        inputs, axes = [key_of(self.scene, key) for key in self.keys], self.series.axes
-        errors = dict(zip(self.outputs, self.stated.tolist(), strict=True))
-        ranges = [f"{key.path} {axis.low:g} to {axis.high:g} {key.unit}" for key, axis in zip(inputs, axes, strict=True)]
-        terms = self.series.terms
-        numbers = [
-            f"#define TERMS {terms[0].size}",
-            f"#define MOST {max(terms.shape[1:])}",
-            f"static const int degrees[INPUTS] = {{{', '.join(map(str, terms.shape[1:]))}}};",
-            f"static const int logarithmic[INPUTS] = {{{', '.join(str(int(axis.logarithmic)) for axis in axes)}}};",
-            c_array("low", np.array([axis.low for axis in axes])),
-            c_array("high", np.array([axis.high for axis in axes])),
-            c_array("terms", terms.reshape(len(terms), -1)),
-        ]
-        return Unit(
-            name,
-            f"{self.scene.title.splitlines()[0]}: map over {', '.join(ranges)}; relative error at most {max(errors.values()):.1e}.",
-            "map.c",
-            "\n".join(numbers),
-            f"an input is out of range: its end stands for it ({'; '.join(ranges)})",
-            tuple(
-                Variable(key.path, key.unit, key.help, key.value, axis.low, axis.high)
-                for key, axis in zip(inputs, axes, strict=True)
-            ),
-            tuple(
-                Variable(
-                    output, unit, f"{words}; error at most {_SAFETY * difference:.1e} {unit}, relative {errors[output]:.1e}"
-                )
-                for (output, (unit, words)), difference in zip(self.outputs.items(), self.series.difference, strict=True)
-            ),
-            tuple(
-                Variable(f"relative_error.{output}", "1", "twice the largest at points that the fit did not use", error)
-                for output, error in errors.items()
-            ),
-        )
-
-
-def fit_map(scene: Scene, ranges: Mapping[str, tuple[float, float]], names: Sequence[str], tolerance: float) -> Map:
-    """The map of a scene.
+def map_unit(
+    scene: Scene, name: str, ranges: Mapping[str, tuple[float, float]], asked: Sequence[str], tolerance: float
+) -> Unit:
+    """The FMU of a scene's map.
 
     Parameters
     ----------
-    ranges : key -> low, high;  names : outputs of ``raceway.function``, numbers or "stiffness", or their symbols
+    ranges : key -> low, high;  asked : outputs of ``raceway.function``, numbers or "stiffness", by names or symbols
     tolerance : relative error that terms are added for
 
     Raises
@@ -121,19 +64,48 @@ def fit_map(scene: Scene, ranges: Mapping[str, tuple[float, float]], names: Sequ
     RacewayError
         A point within the ranges that has no answer.
     """
-    middle = {key: min(max(key_of(scene, key).value, low), high) for key, (low, high) in ranges.items()}
-    asked = function(scene, ranges, names)
-    f = function(scene, ranges, dict.fromkeys([*asked.outputs, *([K.name] if C.name in asked.outputs else [])]))
+    names = function(scene, ranges, asked).outputs
+    f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
-    outputs = _outputs(asked.outputs, _answer(f, corners))
+    outputs = _outputs(names, _answer(f, corners))
 
     def quantities(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        answer = _answer(f, columns)
-        values = np.stack([_value(answer, name) for name in outputs])
-        return values, np.stack([_size(scene, dict(zip(ranges, columns, strict=True)), answer, name) for name in outputs])
+        answer, inputs = _answer(f, columns), dict(zip(ranges, columns, strict=True))
+        values = np.stack([_value(answer, output.name) for output in outputs])
+        return values, np.stack([_size(scene, inputs, answer, output.name) for output in outputs])
 
     series = fit(quantities, [Interval(*ends) for ends in ranges.values()], tolerance, _MOST_POINTS)
-    return Map(with_numbers(scene, middle), tuple(ranges), outputs, series)
+    terms, axes, low, high = series.terms, series.axes, *np.array(list(ranges.values())).T
+    keys = [key_of(scene, path) for path in ranges]
+    words = "; ".join(f"{key.path} {a:g} to {b:g} {key.unit}" for key, a, b in zip(keys, low, high, strict=True))
+    errors, differences = _SAFETY * series.error, _SAFETY * series.difference
+    return Unit(
+        name,
+        f"map over {words}; relative error at most {errors.max():.1e}.",
+        "map.c",
+        {
+            "TERMS": terms[0].size,
+            "MOST": max(terms.shape[1:]),
+            "degrees": np.array(terms.shape[1:]),
+            "logarithmic": np.array([int(axis.logarithmic) for axis in axes]),
+            "low": low,
+            "high": high,
+            "terms": terms.reshape(len(terms), -1),
+        },
+        f"an input is out of range: its end stands for it ({words})",
+        tuple(
+            Variable(key.path, key.unit, key.help, float(np.clip(key.value, *ranges[key.path])), *ranges[key.path])
+            for key in keys
+        ),
+        tuple(
+            attrs.evolve(v, words=f"{v.words}; error at most {difference:.1e} {v.unit}, relative {error:.1e}")
+            for v, error, difference in zip(outputs, errors, differences, strict=True)
+        ),
+        tuple(
+            Variable(f"relative_error.{v.name}", "1", "twice the largest at points that the fit did not use", float(error))
+            for v, error in zip(outputs, errors, strict=True)
+        ),
+    )
 
 
 def _answer(f: Function, columns: list[np.ndarray]) -> Columns:
@@ -146,20 +118,22 @@ def _answer(f: Function, columns: list[np.ndarray]) -> Columns:
     return answer
 
 
-def _outputs(names: Sequence[str], answer: Columns) -> dict[str, tuple[str, str]]:
-    """Names of the map's outputs -> unit and words: numbers, and entries of the stiffness that are not rounding."""
+def _outputs(names: Sequence[str], answer: Columns) -> list[Variable]:
+    """Variables of the map: numbers, and entries of the stiffness that are not rounding."""
     known = KNOWN | {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
-    outputs = {}
+    outputs = []
     for name in names:
         if name == STIFFNESS.name:
-            mean = _diagonal_mean(answer)
-            for i, j in zip(*np.nonzero(np.max(np.abs(answer[name]) / mean, axis=0) > _ROUNDING), strict=True):
-                entry = COORDINATES[i], COORDINATES[j]
-                outputs[f"{name}.{'.'.join(entry)}"] = (entry_unit(STIFFNESS.unit, entry), STIFFNESS.words)
+            present = np.max(np.abs(answer[name]) / _diagonal_mean(answer), axis=0) > _ROUNDING
+            for row, column in zip(*np.nonzero(present), strict=True):
+                entry = COORDINATES[row], COORDINATES[column]
+                outputs.append(Variable(f"{name}.{'.'.join(entry)}", entry_unit(STIFFNESS.unit, entry), STIFFNESS.words))
         elif answer[name].ndim > 1:
             raise SceneError.at("outputs", name, "is an array: a map has numbers, or stiffness")
         else:
-            outputs[name] = (known[name].unit, known[name].words) if name in known else ("1", name)
+            outputs.append(
+                Variable(name, known[name].unit, known[name].words) if name in known else Variable(name, "1", name)
+            )
     return outputs
 
 

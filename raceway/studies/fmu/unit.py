@@ -1,4 +1,4 @@
-"""The files of an FMU: description of its variables, C sources, and a binary where a compiler exists.
+"""The files of an FMU: description of its variables, C sources, and a library where a compiler exists.
 
 References
 ----------
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import textwrap
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -35,20 +35,19 @@ _UNITS: dict[str, dict[str, float]] = {
     "kg m": {"kg": 1, "m": 1}, "kg m2": {"kg": 1, "m": 2}, "m/s": {"m": 1, "s": -1}, "rad/s": {"rad": 1, "s": -1},
     "r/min": {"rad": 1, "s": -1, "factor": np.pi / 30.0}, "deg": {"rad": 1, "factor": np.pi / 180.0},
 }  # fmt: skip
-#: System and machine -> the folders of binaries of FMI 2.0 and 3.0, and the ending of a library.
+#: System and machine -> the folders of libraries of FMI 2.0 and 3.0, and a library's ending.
 _PLATFORMS = {
     ("linux", "x86_64"): ("linux64", "x86_64-linux", ".so"),
     ("linux", "aarch64"): ("", "aarch64-linux", ".so"),
     ("darwin", "x86_64"): ("darwin64", "x86_64-darwin", ".dylib"),
     ("darwin", "arm64"): ("", "aarch64-darwin", ".dylib"),
 }
-_COMPILERS = ("cc", "gcc", "clang")
-_FLAGS = ("-std=c99", "-O3", "-fPIC", "-shared")
-_TAGS = {"ModelExchange": {}, "CoSimulation": {"canHandleVariableCommunicationStepSize": "true"}}
+_COMPILERS, _FLAGS = ("cc", "gcc", "clang"), ("-std=c99", "-O3", "-fPIC", "-shared")
 #: Characters of a line of C, of which the standard guarantees 4095.
 _LINE = 4000
 #: Of all files, so that the same bearing gives the same bytes.
 _DATE = (1980, 1, 1, 0, 0, 0)
+_IN_RANGE = {"name": "in_range", "description": "whether all inputs lie where the model is made for"}
 
 
 @attrs.frozen
@@ -62,37 +61,23 @@ class Variable:
     low: float | None = None
     high: float | None = None
 
-    @property
-    def attributes(self) -> dict[str, str]:
-        """Of its element, but for name and words."""
-        numbers = {
-            "unit": self.unit if self.unit in _UNITS else None,
-            "min": self.low,
-            "max": self.high,
-            "start": self.start,
-        }
-        return {
-            name: value if isinstance(value, str) else repr(float(value))
-            for name, value in numbers.items()
-            if value is not None
-        }
 
-
-@attrs.frozen
+@attrs.frozen(eq=False)
 class Unit:
     """An FMU of a bearing.
 
     Attributes
     ----------
     name : identifier in C;  words : what it is, with its error
-    source : file of the model in ``raceway/data/fmu``;  numbers : C text of its numbers;  beyond : what is logged out of range
+    source : file of the model in ``raceway/data/fmu``;  numbers : of the model, by their names in C: arrays, or constants
+    beyond : what is logged out of range
     inputs, outputs, constants : real variables, in this order by their value references
     """
 
     name: str
     words: str
     source: str
-    numbers: str
+    numbers: Mapping[str, np.ndarray | float]
     beyond: str
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
@@ -105,81 +90,63 @@ class Unit:
         return [(variable, part) for part, variables in parts.items() for variable in variables]
 
     @property
-    def computed(self) -> list[int]:
-        """Value references of the outputs, ``in_range`` at last."""
-        first = len(self.inputs)
-        return [*range(first, first + len(self.outputs)), len(self.variables)]
+    def _body(self) -> str:
+        """numbers.h without the token, which is its hash."""
+        words = {"MODEL": self.name, "MODEL_SOURCE": f'"{self.source}"', "BEYOND": f'"{self.beyond}"'}
+        counts = {"INPUTS": len(self.inputs), "OUTPUTS": len(self.outputs), "CONSTANTS": len(self.constants)}
+        starts = {part: np.array([v.start for v in getattr(self, part)]) for part in ("inputs", "constants")}
+        numbers = {"start": starts["inputs"], "constants": starts["constants"], **self.numbers}
+        return "\n".join(
+            [
+                f"/* {self.name} by Raceway {__version__}. */",
+                *(f"#define {name} {word}" for name, word in {**words, **counts}.items()),
+                f"int {self.name}_outputs(const double *inputs, double *outputs);",
+                *(_in_c(name, np.asarray(number)) for name, number in numbers.items()),
+            ]
+        )
 
     @property
     def token(self) -> str:
         """Names exactly these variables and numbers."""
-        return hashlib.sha256(f"{self!r}{__version__}".encode()).hexdigest()[:32]
-
-    def header(self) -> str:
-        """numbers.h."""
-        defined = {
-            "MODEL": self.name,
-            "MODEL_SOURCE": f'"{self.source}"',
-            "TOKEN": f'"{self.token}"',
-            "BEYOND": f'"{self.beyond}"',
-            "INPUTS": len(self.inputs),
-            "OUTPUTS": len(self.outputs),
-            "CONSTANTS": len(self.constants),
-        }
-        lines = [
-            f"/* {self.words}  Raceway {__version__}. */",
-            *(f"#define {name} {value}" for name, value in defined.items()),
-        ]
-        lines += [f"int {self.name}_outputs(const double *inputs, double *outputs);"]
-        lines += [c_array("start", np.array([v.start for v in self.inputs]))]
-        lines += [c_array("constants", np.array([v.start for v in self.constants]))]
-        return "\n".join([*lines, self.numbers, ""])
+        return hashlib.sha256(f"{self._body}{self.words}{self.variables}".encode()).hexdigest()[:32]
 
     def sources(self, version: int) -> dict[str, str]:
         """C files by their names; fmi2.c or fmi3.c includes the others."""
         folder = files("raceway") / "data" / "fmu"
-        names = (f"fmi{version}.c", "component.h", self.source)
-        return {name: (folder / name).read_text() for name in names} | {"numbers.h": self.header()}
+        texts = {name: (folder / name).read_text() for name in (f"fmi{version}.c", "component.h", self.source)}
+        return texts | {"numbers.h": f'{self._body}\n#define TOKEN "{self.token}"\n'}
 
     def pack(self, version: int) -> tuple[bytes, str]:
-        """The FMU, and why it has no binary; empty where it has one."""
+        """The FMU, and why it has no library; empty where it has one."""
         sources = self.sources(version)
         content = {f"sources/{name}": text.encode() for name, text in sources.items()}
-        content["modelDescription.xml"] = _xml(_description2(self) if version == 2 else _description3(self))
+        content["modelDescription.xml"] = _xml(_description(self, version))
         if version == 3:
             content["sources/buildDescription.xml"] = _xml(_build(self))
-        folder, why = _folder(version)
-        if folder:
+        *folders, ending = _PLATFORMS.get((sys.platform, platform.machine()), ("", "", ""))
+        library, why = b"", f"no folder is defined for {platform.machine()} under {sys.platform}"
+        if folder := folders[version - 2]:
             library, why = _compiled(sources, f"fmi{version}.c")
-            if library:
-                content[f"binaries/{folder}/{self.name}{_PLATFORMS[_machine()][2]}"] = library
+        if library:
+            content[f"binaries/{folder}/{self.name}{ending}"] = library
         packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        with zipfile.ZipFile(packed, "w") as archive:
             for name in sorted(content):
                 archive.writestr(zipfile.ZipInfo(name, _DATE), content[name], zipfile.ZIP_DEFLATED)
         return packed.getvalue(), why
 
 
-def c_array(name: str, numbers: np.ndarray) -> str:
-    """An array (n,) or (n, k) of doubles in C, exact, in lines that every compiler takes."""
-    text = json.dumps(numbers.tolist()).translate(str.maketrans("[]", "{}"))
-    sizes = "".join(f"[{size}]" for size in numbers.shape)
-    return textwrap.fill(
-        f"static const double {name}{sizes} = {text};", _LINE, break_long_words=False, break_on_hyphens=False
-    )
+def _in_c(name: str, number: np.ndarray) -> str:
+    """A constant, or an array, exact, in lines that every compiler takes."""
+    if not number.ndim:
+        return f"#define {name} {number.item()!r}"
+    kind, sizes = "double" if number.dtype.kind == "f" else "int", "".join(f"[{size}]" for size in number.shape)
+    text = json.dumps(number.tolist()).translate(str.maketrans("[]", "{}"))
+    line = f"static const {kind} {name}{sizes} = {text};"
+    return textwrap.fill(line, _LINE, break_long_words=False, break_on_hyphens=False)
 
 
-def _machine() -> tuple[str, str]:
-    return sys.platform, platform.machine()
-
-
-def _folder(version: int) -> tuple[str, str]:
-    """Of the binaries on this machine, or why there is none."""
-    folder = _PLATFORMS.get(_machine(), ("", "", ""))[version - 2]
-    return folder, "" if folder else f"FMI {version} has no binaries of {platform.machine()} under {sys.platform} here"
-
-
-def _compiled(sources: dict[str, str], face: str) -> tuple[bytes, str]:
+def _compiled(sources: Mapping[str, str], face: str) -> tuple[bytes, str]:
     """The library, or why there is none."""
     compiler = next(filter(None, map(shutil.which, _COMPILERS)), None)
     if compiler is None:
@@ -187,16 +154,11 @@ def _compiled(sources: dict[str, str], face: str) -> tuple[bytes, str]:
     with tempfile.TemporaryDirectory(prefix="raceway-fmu-") as folder:
         for name, text in sources.items():
             (Path(folder) / name).write_text(text)
-        library = Path(folder) / "library"
-        command = [compiler, *_FLAGS, face, "-o", library.name, "-lm"]
+        command = [compiler, *_FLAGS, face, "-o", "library", "-lm"]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
             return b"", f"{compiler} failed: {done.stderr.strip()[:200]}"
-        return library.read_bytes(), ""
-
-
-def _element(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:
-    return ET.SubElement(parent, tag, attributes)
+        return (Path(folder) / "library").read_bytes(), ""
 
 
 def _xml(root: ET.Element) -> bytes:
@@ -204,86 +166,72 @@ def _xml(root: ET.Element) -> bytes:
     return bytes(ET.tostring(root, encoding="UTF-8", xml_declaration=True))
 
 
-def _root(unit: Unit, version: str, token: str) -> ET.Element:
-    attributes = {
-        "fmiVersion": version, "modelName": unit.name, token: unit.token, "description": unit.words, "version": __version__,
-        "generationTool": f"Raceway {__version__}", "variableNamingConvention": "structured",
-    }  # fmt: skip
-    return ET.Element("fmiModelDescription", attributes)
-
-
-def _add_units(root: ET.Element, variables: Sequence[tuple[Variable, str]]) -> None:
-    definitions = _element(root, "UnitDefinitions")
-    for name in dict.fromkeys(variable.unit for variable, _ in variables if variable.unit in _UNITS):
-        exponents = {
-            base: str(exponent) if base == "factor" else str(int(exponent)) for base, exponent in _UNITS[name].items()
-        }
-        _element(_element(definitions, "Unit", name=name), "BaseUnit", **exponents)
-
-
-_FLAG = {
-    "name": "in_range",
-    "description": "whether all inputs lie where the model is made for",
-    "causality": "output",
-    "variability": "discrete",
-}
-_KINDS = {
-    "input": {"causality": "input", "variability": "continuous"},
-    "output": {"causality": "output", "variability": "continuous", "initial": "calculated"},
-    "constant": {"causality": "local", "variability": "constant", "initial": "exact"},
-}
-
-
-def _description2(unit: Unit) -> ET.Element:
-    root, variables = _root(unit, "2.0", "guid"), unit.variables
-    can = {"modelIdentifier": unit.name, "canGetAndSetFMUstate": "true", "providesDirectionalDerivative": "true"}
-    for tag, further in _TAGS.items():
-        _element(_element(_element(root, tag, **can, **further), "SourceFiles"), "File", name="fmi2.c")
-    _add_units(root, variables)
-    _element(root, "DefaultExperiment", startTime="0.0", stopTime="1.0")
-    listed = _element(root, "ModelVariables")
-    for reference, (variable, part) in enumerate(variables):
-        about = {"name": variable.name, "description": variable.words, "valueReference": str(reference)}
-        _element(_element(listed, "ScalarVariable", **about, **_KINDS[part]), "Real", **variable.attributes)
-    flag = _element(listed, "ScalarVariable", valueReference=str(len(variables)), initial="calculated", **_FLAG)
-    _element(flag, "Boolean")
-    structure, inputs = _element(root, "ModelStructure"), len(unit.inputs)
-    for tag in ("Outputs", "InitialUnknowns"):
-        unknowns = _element(structure, tag)
-        for k in unit.computed:
-            _element(unknowns, "Unknown", index=str(k + 1), dependencies=" ".join(str(j + 1) for j in range(inputs)))
-    return root
-
-
-def _description3(unit: Unit) -> ET.Element:
-    root, variables = _root(unit, "3.0", "instantiationToken"), unit.variables
-    can = {"modelIdentifier": unit.name, "canGetAndSetFMUState": "true", "providesDirectionalDerivatives": "true"}
-    for tag, further in _TAGS.items():
-        _element(root, tag, **can, **further)
-    _add_units(root, variables)
-    _element(root, "DefaultExperiment", startTime="0.0", stopTime="1.0")
-    listed = _element(root, "ModelVariables")
-    time = {
-        "name": "time",
-        "valueReference": str(len(variables) + 1),
-        "causality": "independent",
-        "variability": "continuous",
+def _add(parent: ET.Element, tag: str, **attributes: object) -> ET.Element:
+    """An element with those attributes that are not None."""
+    texts = {
+        name: value if isinstance(value, str) else repr(value) for name, value in attributes.items() if value is not None
     }
-    _element(listed, "Float64", **time)
-    for reference, (variable, part) in enumerate(variables):
-        about = {"name": variable.name, "description": variable.words, "valueReference": str(reference)}
-        kinds = {name: word for name, word in _KINDS[part].items() if part != "constant" or name != "initial"}
-        _element(listed, "Float64", **about, **kinds, **variable.attributes)
-    _element(listed, "Boolean", valueReference=str(len(variables)), **_FLAG)
-    structure, inputs = _element(root, "ModelStructure"), " ".join(map(str, range(len(unit.inputs))))
+    return ET.SubElement(parent, tag, texts)
+
+
+def _description(unit: Unit, version: int) -> ET.Element:
+    """modelDescription.xml, which both versions spell otherwise."""
+    second, token = version == 2, "guid" if version == 2 else "instantiationToken"
+    root = ET.Element("fmiModelDescription", {"fmiVersion": f"{version}.0", "modelName": unit.name, token: unit.token})
+    root.attrib |= {"description": unit.words, "version": __version__, "generationTool": f"Raceway {__version__}"}
+    root.set("variableNamingConvention", "structured")
+    can = (
+        ("canGetAndSetFMUstate", "providesDirectionalDerivative")
+        if second
+        else ("canGetAndSetFMUState", "providesDirectionalDerivatives")
+    )
+    for tag, further in {"ModelExchange": (), "CoSimulation": ("canHandleVariableCommunicationStepSize",)}.items():
+        kind = _add(root, tag, modelIdentifier=unit.name, **dict.fromkeys((*can, *further), "true"))
+        if second:
+            _add(_add(kind, "SourceFiles"), "File", name="fmi2.c")
+    units, used = _add(root, "UnitDefinitions"), dict.fromkeys(variable.unit for variable, _ in unit.variables)
+    for name in filter(_UNITS.__contains__, used):
+        _add(_add(units, "Unit", name=name), "BaseUnit", **_UNITS[name])
+    _add(root, "DefaultExperiment", startTime="0.0", stopTime="1.0")
+    listed, flag = _add(root, "ModelVariables"), len(unit.variables)
+    for reference, (v, part) in enumerate(unit.variables):
+        kinds = ("local", "constant") if part == "constant" else (part, "continuous")
+        about = {
+            "name": v.name,
+            "valueReference": reference,
+            "description": v.words,
+            "causality": kinds[0],
+            "variability": kinds[1],
+        }
+        numbers = {"unit": v.unit if v.unit in _UNITS else None, "min": v.low, "max": v.high, "start": v.start}
+        if second:
+            _add(_add(listed, "ScalarVariable", **about), "Real", **numbers)
+        else:
+            _add(listed, "Float64", **about, **numbers)
+    about = {**_IN_RANGE, "valueReference": flag, "causality": "output", "variability": "discrete"}
+    if second:
+        _add(_add(listed, "ScalarVariable", **about), "Boolean")
+    else:
+        _add(listed, "Boolean", **about)
+        _add(listed, "Float64", name="time", valueReference=flag + 1, causality="independent", variability="continuous")
+    structure, first = _add(root, "ModelStructure"), len(unit.inputs)
     for tag in ("Output", "InitialUnknown"):
-        for k in unit.computed:
-            _element(structure, tag, valueReference=str(k), dependencies=inputs)
+        parent = _add(structure, f"{tag}s") if second else structure
+        for k in (*range(first, first + len(unit.outputs)), flag):
+            place = {
+                "index" if second else "valueReference": k + second,
+                "dependencies": " ".join(str(j + second) for j in range(first)),
+            }
+            _add(parent, "Unknown" if second else tag, **place)
     return root
 
 
 def _build(unit: Unit) -> ET.Element:
+    """buildDescription.xml of FMI 3.0."""
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
-    sources = _element(_element(root, "BuildConfiguration", modelIdentifier=unit.name), "SourceFileSet", language="C99")
-    _element(sources, "SourceFile", name="fmi3.c")
+    _add(
+        _add(_add(root, "BuildConfiguration", modelIdentifier=unit.name), "SourceFileSet", language="C99"),
+        "SourceFile",
+        name="fmi3.c",
+    )
     return root
