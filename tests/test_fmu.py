@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import shutil
 import subprocess
@@ -135,6 +136,18 @@ def test_directional_derivatives(maps: dict[int, Path], forces: dict[int, Path],
 def test_rotor_on_the_force_follows_the_orbit(forces: dict[int, Path], version: int) -> None:
     """Steps of a 1440th of a turn: the method's own error is 1e-8."""
     assert jeffcott(Instance(forces[version]), TURNING) < 1e-6
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_plain_function_for_other_programs(maps: dict[int, Path], forces: dict[int, Path], version: int) -> None:
+    for path, point, none in ((maps[version], (700.0, 100.0, 9000.0), 0), (forces[version], (3e-5, *[0.0] * 6), -1)):
+        instance = Instance(path)
+        outputs = getattr(instance.fmu.dll, f"{instance.description.coSimulation.modelIdentifier}_outputs")
+        given, taken = (np.ascontiguousarray(point), np.zeros(len(instance.outputs)))
+        pointers = [array.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for array in (given, taken)]
+        assert outputs(*pointers) == 1 and taken == pytest.approx(instance(*point), rel=1e-12)
+        given[0] = np.nan
+        assert outputs(*pointers) == none
 
 
 def test_heavy_loads_are_flagged(forces: dict[int, Path]) -> None:
