@@ -1,7 +1,6 @@
 """A bearing as an FMU (Functional Mock-up Unit, FMI 2.0 and 3.0) for simulators.
 
-chebyshev   series of several quantities over a box of inputs, with their error at points that no fit used
-map         K, C, or any quantity of ``raceway.function``, over keys of a scene;  force: of a rigid bearing, from its kernels' numbers
+map         K, C, or any quantity of ``raceway.function``, over keys of a scene;  force: of a rigid bearing
 unit        the files: description of variables, C sources (``raceway/data/fmu``), library where a compiler exists
 export      ``raceway.export_fmu``, the front of ``raceway export --fmu``
 """

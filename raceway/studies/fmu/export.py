@@ -16,10 +16,11 @@ from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.wrapping import Words
 from raceway.points.axes import box
+from raceway.points.rigid_force import SPIN
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.storage.files import slug, write_whole
 from raceway.storage.tables import Tables
-from raceway.studies.fmu.force import NOTES, SPIN, force_unit
+from raceway.studies.fmu.force import NOTES, force_unit
 from raceway.studies.fmu.map import default_ranges, map_unit
 from raceway.studies.fmu.unit import Unit
 

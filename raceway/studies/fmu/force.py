@@ -1,51 +1,21 @@
-"""The force of a bearing with rigid rings and balls on its shaft: numbers of the rings' kernels, for C.
-
-Notes
------
-Numbers of geometry and balls are a + b W^2 in the speed W: centrifugal forces, gyroscopic moments, growth of the rings.  They are read from
-models at two speeds; a third speed shows whether that holds.
-"""
+"""The FMU of the force of a bearing with rigid rings and balls on its shaft."""
 
 from __future__ import annotations
-
-import math
 
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Model, build_model
-from raceway.bodies.rigid_bearing import RigidBearing
-from raceway.core.ring.kernels import layout
-from raceway.core.ring.ring import COORDINATES
-from raceway.core.ring.system import System, compiled
-from raceway.errors import SceneError
-from raceway.framework.duties import renews
 from raceway.out.quantities import STIFFNESS, entry_unit
-from raceway.planning.resolve import resolve
-from raceway.scene.changes import with_numbers
+from raceway.points.column_quantities import DIMENSIONS
+from raceway.points.rigid_force import rigid_force
 from raceway.scene.scene import Scene
-from raceway.studies.fmu.chebyshev import Interval, fit
 from raceway.studies.fmu.unit import Unit, Variable
 
-#: What to do instead.
-_MAP = "export the map instead (--kind map)"
 #: What users have to know beside.
 NOTES = (
     "the force of the contacts alone: masses, loads, dampers and the shaft's stiffness are the simulator's; dashpots of [contact] are left out",
     "cage_angle 0: balls at their azimuths; its integral of cage_speed: ball passing",
 )
-Numbers = dict[str, np.ndarray | float]
-SPIN, _RPM = "kinematics.spin_speed_rpm", np.pi / 30.0
-#: Speed times pitch diameter [r/min mm] of the highest speed, where that is not set and the scene is slower: a usual limit.
-_DN = 1.0e6
-#: Relative deviation from a + b W^2, and from a power law, that is rounding.
-_ROUNDING, _EXACT = 1e-11, 1e-12
-#: Twice the exponents of power laws that have C code of their own.
-_POWERS = (3, 4)
-#: Of a law's table: least over largest approach, relative error, most terms;  largest approach over Hertz's at the static limit.
-_SHALLOWEST, _TABLE_ERROR, _MOST_TERMS, _DEEPEST = 1e-4, 1e-9, 200, 1.5
-#: Relative error from which on a table is refused.
-_COARSEST = 1e-5
 #: Relative errors: a ball's last step is at most 1e-7 of its approach, of which forces keep the square, stiffness the first power.
 _OF_FORCE, _OF_STIFFNESS = 1e-9, 1e-6
 _INPUTS = (
@@ -54,135 +24,27 @@ _INPUTS = (
     Variable("speed", "rad/s", "of the shaft", 0.0),
     Variable("cage_angle", "rad", "by which the balls have travelled: 0, or the integral of cage_speed", 0.0),
 )
-#: Of difference quotients of outputs by the inputs.
-_STEPS = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7, 1e-2, 1e-5])
 
 
 def force_unit(scene: Scene, name: str, highest_rpm: float | None = None) -> Unit:
-    """The FMU of the force.
-
-    Parameters
-    ----------
-    highest_rpm : speed that it is made for [r/min]; None: a quarter above the scene's, or the usual limit of such bearings
-
-    Raises
-    ------
-    SceneError
-        A scene whose force is no function of displacement and speed, or not of rigid bodies.
-    """
-    now = float(resolve(scene).spin_speed)
-    rpm = highest_rpm or max(1.25 * now / _RPM, _DN / (1e3 * scene.bearing.pitch_diameter))
-    model, highest = _model(scene, rpm), rpm * _RPM
-    races, ring = (model.bearing.basis.inner, model.bearing.basis.outer), _system(model)
-    limits = [float(np.min((model.bearing.static_pressure / race.peak_pressure(1.0)) ** 3)) for race in races]
-    depth = _DEEPEST * max(float(np.max(race.approach(limit))) for race, limit in zip(races, limits, strict=True))
-    law, largest, error = _law(ring, depth)
-    inner, outer = (min(limit, largest) for limit in limits)
+    """See ``raceway.points.rigid_force.rigid_force``."""
+    force = rigid_force(scene, highest_rpm)
+    (inner, outer), rpm = force.limits, force.highest * 30.0 / np.pi
     ranges = f"speed 0 to {rpm:g} r/min, ball loads to {inner:.4g} N inside and {outer:.4g} N outside"
-    errors = {"force": max(error, _OF_FORCE), STIFFNESS.name: max(error, _OF_STIFFNESS)}
+    errors = {"force": max(force.error, _OF_FORCE), STIFFNESS.name: max(force.error, _OF_STIFFNESS)}
     return Unit(
         name,
         f"force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",
         "force.c",
-        {
-            "BALLS": ring.ball_count,
-            "MOMENTS": int(not ring.conservative),
-            "CAGE_RATIO": float(model.bearing.basis.geometry.cage_speed(1.0)),
-            "HIGHEST_SPEED": highest,
-            "LIMIT_INNER": inner,
-            "LIMIT_OUTER": outer,
-            "steps": _STEPS,
-            **_by_speed(scene, rpm),
-            **law,
-        },
+        force.numbers,
         f"beyond what the model is made for ({ranges}): computed all the same",
-        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=now, low=0.0, high=highest), _INPUTS[6]),
-        _outputs(ring.ball_count),
+        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=force.speed, low=0.0, high=force.highest), _INPUTS[6]),
+        _outputs(force.balls),
         tuple(
             Variable(f"relative_error.{kind}", "1", "of the largest, against Raceway's kernels", e)
             for kind, e in errors.items()
         ),
     )
-
-
-def _by_speed(scene: Scene, rpm: float) -> Numbers:
-    """(Z, n) entries of ``table`` and ``scalars`` of each ball at rest, and what they grow by over the square of the speed."""
-    rings = [_system(_model(scene, rpm * math.sqrt(part))) for part in (0.25, 0.5, 1.0)]
-    quarter, half, full = (np.hstack([r.table, np.broadcast_to(r.scalars, (r.ball_count, layout.SCALARS))]) for r in rings)
-    growth = (full - quarter) / 0.75
-    if np.max(np.abs(full - 0.5 * growth - half)) > _ROUNDING * np.max(np.abs(full)):
-        raise SceneError.at(SPIN, rpm, f"changes geometry or preload otherwise than by its square: {_MAP}")
-    return {"at_rest": full - growth, "by_square": growth / (rpm * _RPM) ** 2}
-
-
-def _model(scene: Scene, rpm: float) -> Model:
-    """At a speed; what its force also depends on is refused."""
-    model = build_model(with_numbers(attrs.evolve(scene, excitation=None), {SPIN: rpm}))
-    faults = {
-        "bodies.kind": not isinstance(model.bearing, RigidBearing) and "are not rigid, or roll on lines",
-        "contact.kind": renews(scene.contact.law) and "follows the running loads",
-        "contact.friction": scene.contact.friction > 0.0 and "has a memory of slips: set it to 0, or",
-        "bearing.preload_kind": model.system.sliding is not None and "lets rows slide on a spring",
-    }
-    for key, why in faults.items():
-        if why:
-            raise SceneError.at(key, None, f"{why}: {_MAP}")
-    return model
-
-
-def _system(model: Model) -> System:
-    system = compiled(model.system)
-    assert system is not None, "rigid bodies have compiled forces"
-    return system.without(layout.CAGE)  # an input
-
-
-def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
-    """From forces at approaches up to ``depth`` [m]: a power law or a table in C, its largest force [N], its relative error.
-
-    Raises
-    ------
-    SceneError
-        A law whose table has too many terms.
-    """
-    params, kinds = np.unique(system.law_params, axis=0, return_inverse=True)
-
-    def forces(approach: np.ndarray) -> np.ndarray:
-        return np.stack([_force(system, params, one) for one in approach], axis=1)
-
-    kinds, approach = kinds.ravel(), depth * np.geomspace(_SHALLOWEST, 1.0, 25)
-    values, outer = forces(approach), slice(system.ball_count, None)
-    for power in _POWERS:
-        factors = values / approach ** (0.5 * power)
-        if np.all(np.ptp(factors, axis=1) <= _EXACT * factors.max(axis=1)):
-            factor = factors[:, -1][kinds]
-            return {"LAW": power, "SEAT_POWER": 2.0 / power, "factors": factor, "seats": factor[outer]}, np.inf, 0.0
-
-    def ratios(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        approach = depth * np.exp(columns[0])
-        ratio = forces(approach) / approach**1.5
-        return ratio, np.abs(ratio)
-
-    series = fit(ratios, [Interval(math.log(_SHALLOWEST), 0.0)], _TABLE_ERROR, _MOST_TERMS)
-    error = float(2.0 * series.error.max())
-    if not error < _COARSEST:
-        raise SceneError.at("contact.kind", None, f"has a force that {_MOST_TERMS} terms give to {error:.1e} only: {_MAP}")
-    terms, seats = series.terms, (values[:, -1] / depth**1.5)[kinds][outer]
-    table = {
-        "TABLE_LOW": _SHALLOWEST * depth,
-        "TABLE_HIGH": depth,
-        "TABLE_TERMS": terms.shape[1],
-        "tables": terms,
-        "kinds": kinds,
-    }
-    return {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table}, float(values[:, -1].min()), error
-
-
-def _force(system: System, params: np.ndarray, approach: float) -> np.ndarray:
-    """(n,) of contacts at rest with parameters (n, k) at one approach [m]."""
-    n, memory = len(params), system.law_state.shape[1]
-    state, out = np.zeros((n, memory)), np.zeros((3, n))
-    system.law(np.full(n, -approach), np.zeros(n), np.ascontiguousarray(params), state, state.copy(), 1.0, *out)
-    return out[0]
 
 
 def _outputs(balls: int) -> tuple[Variable, ...]:
@@ -203,7 +65,7 @@ def _outputs(balls: int) -> tuple[Variable, ...]:
             entry_unit(STIFFNESS.unit, (a, b)),
             "tangent: what the force loses by a displacement",
         )
-        for a in COORDINATES
-        for b in COORDINATES
+        for a in DIMENSIONS["dof"]
+        for b in DIMENSIONS["dof"]
     ]
     return (*forces, *moments, *further, *loads, *entries)

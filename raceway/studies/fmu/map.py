@@ -7,18 +7,18 @@ from collections.abc import Mapping, Sequence
 import attrs
 import numpy as np
 
-from raceway.core.ring.ring import COORDINATES
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.out.quantities import KNOWN, STIFFNESS, C, K, entry_unit, plugin_quantities
+from raceway.points.chebyshev import Interval, fit
+from raceway.points.column_quantities import DIMENSIONS
 from raceway.points.derivatives import Columns
 from raceway.points.function import Function, PointStatus, function
 from raceway.scene.changes import continuous_keys, key_of
 from raceway.scene.scene import Scene
-from raceway.studies.fmu.chebyshev import Interval, fit
 from raceway.studies.fmu.unit import Unit, Variable
 
-_SPEED = "excitation.speed_rpm"
+_DOF, _SPEED = DIMENSIONS["dof"], "excitation.speed_rpm"
 #: Ranges of keys over their values, where nothing is said.
 _RANGES = {
     "load.axial": (0.5, 2.0),
@@ -126,7 +126,7 @@ def _outputs(names: Sequence[str], answer: Columns) -> list[Variable]:
         if name == STIFFNESS.name:
             present = np.max(np.abs(answer[name]) / _diagonal_mean(answer), axis=0) > _ROUNDING
             for row, column in zip(*np.nonzero(present), strict=True):
-                entry = COORDINATES[row], COORDINATES[column]
+                entry = _DOF[row], _DOF[column]
                 outputs.append(Variable(f"{name}.{'.'.join(entry)}", entry_unit(STIFFNESS.unit, entry), STIFFNESS.words))
         elif answer[name].ndim > 1:
             raise SceneError.at("outputs", name, "is an array: a map has numbers, or stiffness")
@@ -141,7 +141,7 @@ def _value(answer: Columns, output: str) -> np.ndarray:
     name, _, entry = output.partition(".")
     if not entry:
         return answer[name]
-    row, column = map(COORDINATES.index, entry.split("."))
+    row, column = map(_DOF.index, entry.split("."))
     return np.asarray(answer[name][:, row, column])
 
 
