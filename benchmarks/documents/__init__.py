@@ -103,7 +103,7 @@ _NOTES = {
 
 def scene_page() -> str:
     """The text of docs/scene.md; third-party plug-ins of this installation are left out."""
-    registry, shown = Registry(third_party=False), dict[str, str]()
+    registry, shown = Registry(third_party=False), dict[str, tuple[str, str]]()
     parts = [_HEAD]
     for name, kind in _ORDER:
         parts.append(f"## [{name}]\n")
@@ -126,25 +126,29 @@ def scene_page() -> str:
     return "\n".join(parts)
 
 
-def _tables(cls: type, path: str, title: str, shown: dict[str, str]) -> list[str]:
+def _tables(cls: type, path: str, title: str, shown: dict[str, tuple[str, str]]) -> list[str]:
     """Tables of a class and of those in it; a row that another table has, by ``shown``, is named with that table's title."""
-    rows, same, inner = [], dict[str, list[str]](), []
+    rows, same, inner = [], dict[str, list[str]](), list[tuple[str, str, type]]()
     for field in keys(cls):
         listed = table_of_list(field.type)
         if (table := field.type if attrs.has(field.type) else listed) is not None:
             name = f"[[{path}.{field.name}]]" if listed else f"[{path}.{field.name}]"
-            inner += [f"### {name}\n\n{field.metadata.get('help', '')}\n", *_tables(table, path, name, shown)]
+            inner.append((name, field.metadata.get("help", ""), table))
             continue
         key, unit = f"`{field.name}`", field.metadata.get("unit", "")
-        cells = f"{key} [{unit}]" if unit else key, _default(field.default), _range(field.metadata.get("rule", ""))
-        row = "| " + " | ".join((*cells, field.metadata.get("help", ""))) + " |"
-        if (other := shown.setdefault(row, title)) == title:
-            rows.append(row)
+        name, default = f"{key} [{unit}]" if unit else key, _default(field.default)
+        meaning = f"{_range(field.metadata.get('rule', ''))} | {field.metadata.get('help', '')} |"
+        other, first = shown.setdefault(f"{name} {meaning}", (title, default))
+        if other == title or default not in ("", first):
+            rows.append(f"| {name} | {default} | {meaning}")
         else:
-            same.setdefault(other, []).append(key)
+            same.setdefault(other if default == first else f"{other}, whose value is the default", []).append(key)
     parts = ["\n".join(["| key | default | range | meaning |", "|---|---|---|---|", *rows]) + "\n"] if rows else []
     parts += [f"As {other}: {', '.join(names)}.\n" for other, names in same.items()]
-    return [*(parts or ["No keys.\n"]), *inner]
+    parts = parts or ["No keys.\n"]
+    for name, words, table in inner:
+        parts += [f"### {name}\n\n{words}\n", *_tables(table, path, name, shown)]
+    return parts
 
 
 #: Words of a rule and their signs, in this order.

@@ -119,9 +119,9 @@ class Row:
         help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
         rule=optional(at_least(0.0)),
     )
-    preset: str | None = option(None, help="name in the catalogue; other keys of the row override it")
+    preset: str | None = option(None, help="name in the catalogue; other keys override it")
     ball_diameter: float | None = option(
-        None, unit="m", help="D; default: the bearing's, as all that follow", rule=optional(length())
+        None, unit="m", help="D", rule=optional(length())
     )
     pitch_diameter: float | None = option(None, unit="m", help="d_m", rule=optional(length()))
     ball_count: int | None = option(None, help="Z", rule=optional(at_least(1)))
@@ -135,10 +135,10 @@ class Row:
     bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
     outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
     width: float | None = option(None, unit="m", help="width", rule=optional(length()))
-    dynamic_rating: float | None = option(None, unit="N", help="C of the row", rule=optional(positive()))
-    static_rating: float | None = option(None, unit="N", help="C0 of the row", rule=optional(positive()))
+    dynamic_rating: float | None = option(None, unit="N", help="dynamic load rating C of one row; default: the catalogue's, else ISO 281", rule=optional(positive()))
+    static_rating: float | None = option(None, unit="N", help="static load rating C0 of one row; default: the catalogue's, else ISO 76", rule=optional(positive()))
     first_ball_azimuth_deg: float | None = option(
-        None, unit="deg", help="azimuth of the row's first ball from +y towards +z", rule=optional(finite())
+        None, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=optional(finite())
     )
 
 
