@@ -120,9 +120,7 @@ class Row:
         rule=optional(at_least(0.0)),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
-    ball_diameter: float | None = option(
-        None, unit="m", help="D", rule=optional(length())
-    )
+    ball_diameter: float | None = option(None, unit="m", help="D", rule=optional(length()))
     pitch_diameter: float | None = option(None, unit="m", help="d_m", rule=optional(length()))
     ball_count: int | None = option(None, help="Z", rule=optional(at_least(1)))
     conformity_inner: float | None = option(
@@ -135,8 +133,18 @@ class Row:
     bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
     outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
     width: float | None = option(None, unit="m", help="width", rule=optional(length()))
-    dynamic_rating: float | None = option(None, unit="N", help="dynamic load rating C of one row; default: the catalogue's, else ISO 281", rule=optional(positive()))
-    static_rating: float | None = option(None, unit="N", help="static load rating C0 of one row; default: the catalogue's, else ISO 76", rule=optional(positive()))
+    dynamic_rating: float | None = option(
+        None,
+        unit="N",
+        help="dynamic load rating C of one row; default: the catalogue's, else ISO 281",
+        rule=optional(positive()),
+    )
+    static_rating: float | None = option(
+        None,
+        unit="N",
+        help="static load rating C0 of one row; default: the catalogue's, else ISO 76",
+        rule=optional(positive()),
+    )
     first_ball_azimuth_deg: float | None = option(
         None, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=optional(finite())
     )
