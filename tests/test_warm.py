@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 import raceway as rw
 from raceway.plugins.heat import Temperatures
+from raceway.points.dataset import open_store
 from validation.warm import (
     MEASURED,
     energy_imbalance,
@@ -148,9 +149,60 @@ def test_runaway_advises_by_the_preload():
     """Of a pair whose heat can not leave; a sprung one is not told to take springs."""
     closed = dict.fromkeys(("shaft_ambient", "housing_ambient"), 1e-9) | {"oil_flow": 1e-14}
     for kind in ("rigid", "spring"):
-        with pytest.raises(rw.ConvergenceError, match="more heat is made than can leave") as failure:
+        with pytest.raises(
+            rw.ConvergenceError, match="more heat is made than can leave|steady temperatures exceed 400 °C"
+        ) as failure:
             rw.run(warm_pair(closed, bearing={"preload_kind": kind}))
         assert ("by a spring" in str(failure.value)) == (kind == "rigid")
+
+
+def test_a_fold_and_the_hottest_temperature_are_told_apart():
+    """Hardly cooled rings on a spring reach 400 °C by and by; a rigid pair loses its steady state long before."""
+    poor = dict.fromkeys(("housing_ambient", "shaft_ambient"), 0.2) | {"oil_flow": "0.1 cm3/min"}
+    poor |= dict.fromkeys(("inner_oil", "outer_oil", "balls_oil"), 0.05)
+    spring = {"preset": "7014C", "preload_kind": "spring"}
+    hot = warm_pair(poor, bearing=spring, kinematics={"spin_speed_rpm": 20_000.0})
+    for scene, words in ((runaway_pair(300.0), "a fold"), (hot, "exceed 400 °C")):
+        with pytest.raises(rw.ConvergenceError, match=words):
+            rw.run(scene)
+
+
+def test_a_temperature_beside_heat_has_no_effect_and_says_so():
+    given, plain = rw.run(warm_pair(lubricant={"temperature_c": 80.0})), rw.run(warm_pair())
+    assert given.stiffness.tolist() == plain.stiffness.tolist()
+    assert any("`lubricant.temperature_c` has no effect: [heat] computes it" in text for text in given.warnings)
+    assert not any("has no effect" in text for text in plain.warnings)
+    assert [mistake.path for mistake in rw.check(warm_pair({"oil_inlet_c": 150.0})).mistakes] == ["heat.oil_inlet_c"]
+
+
+def test_points_warn_of_oil_beyond_its_data_as_runs_do(tmp_path):
+    speeds = [10_000.0, 36_000.0]
+    scene = warm_pair({"oil_inlet_c": 25.0, "oil_flow": "300 cm3/min", "ambient_c": 25.0})
+    run = rw.run({**scene, "kinematics": {"spin_speed_rpm": speeds[1]}})
+    key = "kinematics.spin_speed_rpm"
+    cold, hot = rw.function(scene, [key], ["kyy"])(speeds)["reason"]
+    assert cold == "" and hot in run.warnings
+    rw.sweep(scene, {key: speeds}, store=tmp_path / "s")
+    with open_store(tmp_path / "s") as store:
+        assert [(row["status"], row["reason"], row["warnings"]) for row in store.rows()] == [
+            ("computed", "", []),
+            ("computed", "", [hot]),
+        ]
+
+
+def test_a_motion_says_that_the_heat_gives_its_k_no_band():
+    moving = {"excitation": {"kind": "bidirectional", "speed_rpm": 12_000.0, "unbalance": 1e-4}, "load": {"axial": 500.0}}
+    still = warm_pair(bearing={"arrangement": "single", "preload": 0.0}, **moving)
+    assert "at one set of temperatures" in rw.run(still).to_dict()["heat"]["band"]["not_computed"]
+    assert "not_computed" not in rw.run(warm_pair()).to_dict()["heat"]["band"]
+
+
+def test_oil_by_the_flow_warns_beyond_the_speeds_of_its_measurements():
+    runs = [
+        rw.run(warm_pair({"oil_flow": 3e-5}, bearing={"preload_kind": "spring"}, kinematics={"spin_speed_rpm": rpm}))
+        for rpm in (20_000.0, 30_000.0)
+    ]
+    assert [any("Parker 1984" in text for text in run.warnings) for run in runs] == [True, False]
 
 
 def test_an_inner_ring_that_oil_wets_is_colder():

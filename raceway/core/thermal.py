@@ -183,6 +183,10 @@ def oil_convection(
     return 0.0986 * np.sqrt(rate) * conductivity * np.cbrt(prandtl) + 2.0 * conductivity / ball_diameter
 
 
+#: Range of n d_m [mm r/min] of the measurements behind ``jet_oil_fraction`` that are known here.
+JET_SPEEDS = (1.3e6, 3.35e6)
+
+
 def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Number:
     """Volume of oil over that of the space around the balls of one row, 1 at most.
 
@@ -195,10 +199,12 @@ def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Num
     XCAV = 1e5 W^0.37 / (n d_m^1.7), in cm3/min, r/min and mm, empirical, of jet lubricated ball bearings: with it the program SHABERTH has
     their measured heat, with a law of drag as that of ``Lubricant.drag_coefficient``.  Heat of such bearings is no independent check of it.
     That it goes with 1/n means that oil stays for a number of turns, some 40.
+    Its own range is not known here, for the paper was not seen.  Its bearing of 35 mm bore (d_m 46.5 mm) was run with jets of 303 to
+    1894 cm3/min (Schuller) at 28 000 to 72 000 r/min: n d_m ``JET_SPEEDS``.
 
     References
     ----------
-    Parker, NASA TP-2275 (1984), as others cite it.
+    Parker, NASA TP-2275 (1984), as others cite it; Schuller, Pinel, Signer, NASA TP-1732 (1980), summary.
     """
     turns = 30.0 / np.pi * np.maximum(speed, 1e-9)
     return np.minimum(1e5 * (6e7 * flow) ** 0.37 / (turns * (1e3 * pitch_diameter) ** 1.7), 1.0)

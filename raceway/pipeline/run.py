@@ -308,7 +308,9 @@ def _stated(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Si
     if scene.heat is not None:
         from raceway.pipeline.warm import band_of_heat, friction_band
 
-        stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
+        band = stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
+        if simulation is not None:
+            band["not_computed"] = "the motion is computed at one set of temperatures; kyy at rest has a band"
     return stated
 
 

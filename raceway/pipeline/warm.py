@@ -52,9 +52,10 @@ _HOTTEST = 400.0
 _SPEEDS, _ROUNDS = 17, 3
 
 
-_WHY_RUNAWAY = "more heat is made than can leave, however warm the bearing becomes until there"
 #: Reason of points without steady temperatures.
-RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: {_WHY_RUNAWAY}"
+RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: more heat is made than can leave, however warm the bearing becomes until there"
+#: Part of the highest temperature that steady ones reach at the limit speed where it is no fold that ends them.
+_AT_LIMIT = 0.9
 
 
 #: Temperatures (m, 6) that follow from columns of keys at points (m,), with factors of friction and conductances.
@@ -203,19 +204,29 @@ def _at_row(scene: Scene, columns: Mapping[str, np.ndarray], row: int | np.intp)
     return attrs.evolve(resolve(with_columns(scene, numbers)), scene=scene)
 
 
-def speed_limit(scene: Scene) -> float:
-    """Least speed [r/min], up to that of a scene with [heat], at which it has no steady temperatures."""
+def speed_limit(scene: Scene) -> tuple[float, float]:
+    """Least speed [r/min], up to that of a scene with [heat], at which it has no steady temperatures, and the highest just below it [C]."""
     key = "kinematics.spin_speed_rpm" if scene.kinematics.spin_speed_rpm is not None else "excitation.speed_rpm"
-    low, high = 0.0, resolve(scene).spin_speed * 30.0 / np.pi
+    low, high, hottest = 0.0, resolve(scene).spin_speed * 30.0 / np.pi, np.nan
     for _ in range(_ROUNDS):
         speeds = np.linspace(low, high, _SPEEDS + 1)[1:]
-        first = int(np.argmax(warm(scene, {key: speeds}, make_plan(scene)).runaway))
-        low, high = (speeds[first - 1] if first else low), speeds[first]
-    return float(high)
+        warmth = warm(scene, {key: speeds}, make_plan(scene))
+        first = int(np.argmax(warmth.runaway))
+        if first:
+            low, hottest = speeds[first - 1], warmth.temperatures[first - 1].max()
+        high = speeds[first]
+    return float(high), float(hottest)
 
 
 def _runaway_words(scene: Scene) -> str:
-    words = f"no steady temperature below {_HOTTEST:g} °C above {speed_limit(scene):.5g} r/min: {_WHY_RUNAWAY}. "
+    speed, hottest = speed_limit(scene)
+    if np.isnan(hottest):
+        words = f"{RUNAWAY}. "
+    elif hottest > _AT_LIMIT * _HOTTEST:
+        words = f"above {speed:.5g} r/min steady temperatures exceed {_HOTTEST:g} °C, at which steel softens and oil burns. "
+    else:
+        words = f"no steady temperature above {speed:.5g} r/min, where the bearing reaches {hottest:.4g} °C: beyond, heat outgrows what leaves "
+        words += "(thermal runaway, a fold) or closes the bearing. "
     if scene.bearing.preloaded and scene.bearing.preload_kind == "rigid":
         words += "A rigid preload grows as the inner ring warms: preload it less or by a spring. "
     if scene.lubricant is not None and not scene.lubricant.thins:

@@ -38,6 +38,8 @@ PARTS = {
 }
 #: Volume of oil over that of the space around the balls where nothing says how much there is.
 _LITTLE_OIL = 0.01
+#: Share of the torque from which the drag of the balls is worth a warning.
+_NOTED = 0.1
 #: Palmgren's f0 of an oil bath: deep groove and angular contact; half of it for oil and air, twice for jets.
 _BATH = (2.0, 3.3)
 #: Palmgren's f1 at a tenth of the static rating: 0.0005 0.1^0.55 and 0.001 0.1^0.33.
@@ -139,11 +141,13 @@ class Friction:
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         """Of balls that slip sideways; of those that skid every run warns."""
         ratio = float(self.losses(points).gyroscopic.max())
+        mixture = _beyond_jets(points) if values["torque_drag_nm"][0] > _NOTED * values["torque_nm"][0] else []
         if ratio <= 1.0:
-            return []
+            return mixture
         return [
+            *mixture,
             f"the gyroscopic moment is {ratio:.3g} times what lubricant.traction_limit holds: balls slip sideways, and friction and "
-            "heat are larger than stated. Give more load or lighter balls"
+            "heat are larger than stated. Give more load or lighter balls",
         ]
 
     @staticmethod
@@ -186,6 +190,23 @@ def _oil_fraction(points: SolvedPoints) -> Number:
 
     by_row = [jet_oil_fraction(heat.oil_flow / len(rows), points.speed, b.pitch_diameter) for b in rows]
     return np.stack(by_row, axis=-1)[:, None, points.row]
+
+
+def _beyond_jets(points: SolvedPoints) -> list[str]:
+    """Warning of an oil fraction by the flow at speeds that its correlation was not measured at."""
+    from raceway.core.thermal import JET_SPEEDS
+
+    heat, oil = points.problem.heat, points.problem.lubricant
+    if heat is None or isinstance(heat.oil_flow, str) or oil is None or not isinstance(oil.oil_fraction, str):
+        return []
+    n_dm = float(points.speed[0]) * 30e3 / pi * max(float(row.pitch_diameter) for row in points.problem.bearing.of_rows)
+    low, high = JET_SPEEDS
+    if low <= n_dm <= high:
+        return []
+    return [
+        f"the oil between the balls ('auto', Parker 1984) is of jets at n d_m = {1e-6 * low:g} to {1e-6 * high:g} million mm r/min, here "
+        f"{1e-6 * n_dm:.2g}: drag and heat are estimates. Give lubricant.oil_fraction where it is known"
+    ]
 
 
 def ball_contacts(points: SolvedPoints) -> BallContacts:

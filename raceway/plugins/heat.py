@@ -66,8 +66,7 @@ class Temperatures:
     @staticmethod
     def example_scene() -> Tables:
         heat = {"oil_inlet_c": 40.0, "oil_flow": 1e-5}
-        oil = {"oil": "VG 32", "temperature_c": 40.0}
-        return {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "lubricant": oil, "heat": heat}
+        return {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "lubricant": {"oil": "VG 32"}, "heat": heat}
 
     def why_not(self, problem: Problem) -> str:
         return "" if problem.heat is not None else "a table [heat] says what carries the heat off"
@@ -98,22 +97,10 @@ class Temperatures:
 
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         """Where the oil does not thin, or is beyond the temperatures of its viscosity."""
-        from raceway.scene.lubricant import COLDEST, HOTTEST
-
         oil = points.problem.lubricant
         if oil is not None and not oil.thins:
             return [NO_THINNING]
-        if oil is None or oil.temperature_c is None or COLDEST <= oil.temperature_c <= HOTTEST:
-            return []
-        advice = (
-            "Give more oil (heat.oil_flow)"
-            if oil.temperature_c > HOTTEST
-            else "Oil or surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)"
-        )
-        return [
-            f"the oil in the contacts is at {oil.temperature_c:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
-            f"along Walther's line. {advice}"
-        ]
+        return [] if oil is None or oil.temperature_c is None else list(filter(None, [beyond_oil(oil.temperature_c)]))
 
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
@@ -132,7 +119,22 @@ class Temperatures:
                 ends = [None if end is None else factor * end for end in band[name]]
                 value, _, remark = _within(ends, 0.0, unit).partition(": ")
                 rows.append((label, value, remark or "within the bands"))
+        if why := band.get("not_computed"):
+            rows.append(("K, C, torque", "no band", f"of the heat: {why}"))
         return rows
+
+
+def beyond_oil(temperature_c: float) -> str:
+    """Warning of an oil beyond the temperatures that its viscosity is known at; empty within them."""
+    from raceway.scene.lubricant import COLDEST, HOTTEST
+
+    if COLDEST <= temperature_c <= HOTTEST:
+        return ""
+    cold = "Oil or surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)"
+    return (
+        f"the oil in the contacts is at {temperature_c:.4g} °C: its viscosity is known from {COLDEST:g} to {HOTTEST:g} °C and is continued "
+        f"along Walther's line. {'Give more oil (heat.oil_flow)' if temperature_c > HOTTEST else cold}"
+    )
 
 
 def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:

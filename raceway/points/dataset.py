@@ -188,7 +188,11 @@ def points_of(store: SweepStore) -> Points:
             damaged += (last - first) * (row.reason == DAMAGED)
             continue
         points.status[first:last] = _STATUS[row.content.pop("status")]
-        points.reasons.update({int(number): reason for number, reason in json.loads(row.reason).items()})
+        for number, reason in ((int(key), words) for key, words in json.loads(row.reason).items()):
+            if points.status[number] == "computed":  # with numbers, of which it warns
+                points.warnings[number] = [reason]
+            else:
+                points.reasons[number] = reason
         for name, column in row.content.items():
             put(name, slice(first, last), column, column.shape[1:])
     for number in numbers or sorted(k for k in store.keys("done") | store.keys("failed") if isinstance(k, int)):

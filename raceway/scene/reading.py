@@ -227,14 +227,16 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
-    _start_at_inlet(plain)
     _complete_by_preset(plain)
+    started = _at_inlet(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
             parts[name] = None
         elif name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
-            parts[name] = structure(plain.get(name, {}), cls, name, mistakes)
+            parts[name] = structure(started.get(name, {}), cls, name, mistakes)
+    if started is not plain:
+        mistakes[:] = [_of_inlet(mistake) for mistake in mistakes]
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
@@ -270,11 +272,20 @@ def _complete_by_preset(tables: Tables) -> None:
         tables["tolerances"] = {"class": entry.tolerance_class, **tolerances}
 
 
-def _start_at_inlet(tables: Tables) -> None:
-    """Temperatures that [heat] computes begin with that of the oil's inlet."""
+def _at_inlet(tables: Tables) -> Tables:
+    """The tables with the temperature of the oil that [heat] begins with, that of its inlet."""
     heat, oil = tables.get("heat", {}), tables.get("lubricant", {})
-    if "oil_inlet_c" in heat and ("oil" in oil or "viscosity_40" in oil):
-        tables["lubricant"] = {"temperature_c": heat["oil_inlet_c"], **oil}
+    if "oil_inlet_c" not in heat or not ("oil" in oil or "viscosity_40" in oil):
+        return tables
+    return {**tables, "lubricant": {**oil, "temperature_c": heat["oil_inlet_c"]}}
+
+
+def _of_inlet(mistake: Mistake) -> Mistake:
+    """A mistake in the oil's temperature as one of the key that gives it."""
+    if mistake.path != "lubricant" or not mistake.message.startswith("`temperature_c` = "):
+        return mistake
+    text = mistake.message.partition(" = ")[2]
+    return Mistake("heat.oil_inlet_c", None, text)
 
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
