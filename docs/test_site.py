@@ -76,3 +76,5 @@ def test_a_page_fits_both_widths_and_asks_for_files_alone(browser, page):
         assert not look.console and not [address for address in look.asked if not address.startswith("file:")]
         buttons = browser.run("return document.querySelectorAll('.highlight button.copybtn').length")
         assert buttons or page == "gallery.html"
+        source = browser.run("return document.querySelector('.view-this-page a').href")
+        assert Path(source.removeprefix("file://")).is_file()
