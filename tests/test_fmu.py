@@ -290,6 +290,8 @@ def test_refusals_of_a_map() -> None:
         rw.export_fmu(scene, ranges={"load.axial": (400.0, 800.0)}, outputs=["ball_load"])
     with pytest.raises(rw.RacewayError, match="no answer at load.axial = 0"):
         rw.export_fmu(scene, ranges={"load.axial": (0.0, 800.0)}, outputs=["kyy"])
+    with pytest.raises(rw.RacewayError, match="several motions exist there, .* Narrow its ranges"):
+        rw.export_fmu(MAP, ranges={"load.axial": (220.0, 300.0), "excitation.force": (500.0, 600.0)})
     with pytest.raises(SceneError, match="range low:high"):
         rw.export_fmu(scene, ranges=["load.axial"])
     with pytest.raises(SceneError, match="of its own"):

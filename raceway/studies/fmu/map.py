@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 
 import attrs
 import numpy as np
@@ -12,7 +13,6 @@ from raceway.framework.registry import default_registry
 from raceway.out.quantities import KNOWN, STIFFNESS, C, K, entry_unit, plugin_quantities
 from raceway.points.chebyshev import Interval, fit
 from raceway.points.column_quantities import DIMENSIONS
-from raceway.points.derivatives import Columns
 from raceway.points.function import Function, PointStatus, function
 from raceway.scene.changes import continuous_keys, key_of
 from raceway.scene.scene import Scene
@@ -29,6 +29,9 @@ _RANGES = {
 }
 #: Points of one fit.
 _MOST_POINTS = 20_000
+#: Share of points, or two, that may need a run of their own.
+_IRREGULAR = 0.02
+_NARROW = "Narrow its ranges with --range."
 #: The stated error over the largest difference at control points.
 _SAFETY = 2.0
 #: Loss factor w C / K below which an error of C is taken of what C would be there.
@@ -67,12 +70,15 @@ def map_unit(
     names = function(scene, ranges, asked).outputs
     f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
-    outputs = _outputs(names, _answer(f, corners))
+    scales = _columns(f, names, corners).items()
+    outputs = [
+        _variable(name) for name, (value, scale) in scales if name in names or np.any(np.abs(value) > _ROUNDING * scale)
+    ]
 
     def quantities(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        answer, inputs = _answer(f, columns), dict(zip(ranges, columns, strict=True))
-        values = np.stack([_value(answer, output.name) for output in outputs])
-        return values, np.stack([_size(scene, inputs, answer, output.name) for output in outputs])
+        found = _columns(f, names, columns)
+        values, sizes = (np.stack([found[output.name][k] for output in outputs]) for k in range(2))
+        return values, np.maximum(np.abs(values), _SMALL * sizes)
 
     series = fit(quantities, [Interval(*ends) for ends in ranges.values()], tolerance, _MOST_POINTS)
     terms, axes, low, high = series.terms, series.axes, *np.array(list(ranges.values())).T
@@ -108,55 +114,47 @@ def map_unit(
     )
 
 
-def _answer(f: Function, columns: list[np.ndarray]) -> Columns:
-    """Of the function; a point without answer is refused."""
-    answer = f.columns(dict(zip(f.inputs, columns, strict=True)))
+def _variable(name: str) -> Variable:
+    """Of a quantity, or of the entry of one."""
+    name_of, *entry = name.split(".")
+    quantity = (KNOWN | {n: q for n, (_, q) in plugin_quantities(default_registry()).items()}).get(name_of)
+    return Variable(name, entry_unit(quantity.unit, entry), quantity.words) if quantity else Variable(name, "1", name)
+
+
+def _columns(f: Function, names: Iterable[str], columns: list[np.ndarray]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Values (n,) of numbers and of entries of the stiffness, by their names, and their scales (n,).
+
+    Notes
+    -----
+    A scale is the largest value; of an entry of the stiffness the geometric mean of its diagonal entries; of C that of a loss factor.
+    """
+    inputs = dict(zip(f.inputs, columns, strict=True))
+    answer = f.columns(inputs)
+
+    def point(row: int) -> str:
+        return ", ".join(f"{key} = {column[row]:g}" for key, column in inputs.items())
+
     lost = np.flatnonzero(answer["status"] > PointStatus.RUN)
     if lost.size:
-        point = ", ".join(f"{key} = {column[lost[0]]:g}" for key, column in zip(f.inputs, columns, strict=True))
-        raise RacewayError(f"the map has no answer at {point}: {answer['reason'][lost[0]]}. Narrow its ranges with --range.")
-    return answer
-
-
-def _outputs(names: Sequence[str], answer: Columns) -> list[Variable]:
-    """Variables of the map: numbers, and entries of the stiffness that are not rounding."""
-    known = KNOWN | {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
-    outputs = []
+        raise RacewayError(f"the map has no answer at {point(lost[0])}: {answer['reason'][lost[0]]}. {_NARROW}")
+    irregular = np.flatnonzero(answer["status"] == PointStatus.RUN)
+    if not f.why_slow and irregular.size > max(2.0, _IRREGULAR * len(answer["status"])):
+        raise RacewayError(
+            f"at {irregular.size} of {len(answer['status'])} points the compiled loop finds no regular solution, first at "
+            f"{point(irregular[0])}: several motions exist there, over which no map is smooth. {_NARROW}"
+        )
+    found = {}
     for name in names:
+        value = answer[name]
         if name == STIFFNESS.name:
-            present = np.max(np.abs(answer[name]) / _diagonal_mean(answer), axis=0) > _ROUNDING
-            for row, column in zip(*np.nonzero(present), strict=True):
-                entry = _DOF[row], _DOF[column]
-                outputs.append(Variable(f"{name}.{'.'.join(entry)}", entry_unit(STIFFNESS.unit, entry), STIFFNESS.words))
-        elif answer[name].ndim > 1:
+            diagonal = np.sqrt(np.abs(np.einsum("nii->in", value)))
+            for i, j in product(range(5), repeat=2):
+                found[f"{name}.{_DOF[i]}.{_DOF[j]}"] = value[:, i, j], diagonal[i] * diagonal[j]
+        elif value.ndim > 1:
             raise SceneError.at("outputs", name, "is an array: a map has numbers, or stiffness")
         else:
-            outputs.append(
-                Variable(name, known[name].unit, known[name].words) if name in known else Variable(name, "1", name)
-            )
-    return outputs
-
-
-def _value(answer: Columns, output: str) -> np.ndarray:
-    name, _, entry = output.partition(".")
-    if not entry:
-        return answer[name]
-    row, column = map(_DOF.index, entry.split("."))
-    return np.asarray(answer[name][:, row, column])
-
-
-def _size(scene: Scene, inputs: Columns, answer: Columns, output: str) -> np.ndarray:
-    """What an error of an output is divided by: its own size where that has any."""
-    value = np.abs(_value(answer, output))
-    if output == C.name:
-        rpm = inputs.get(_SPEED, scene.excitation.speed_rpm if scene.excitation else 0.0)
-        return np.maximum(value, _LOSS * np.abs(answer[K.name]) / (np.pi / 30.0 * np.asarray(rpm)))
-    if output.startswith(f"{STIFFNESS.name}."):
-        value = np.maximum(value, _SMALL * _value({STIFFNESS.name: _diagonal_mean(answer)}, output))
-    return np.maximum(value, _SMALL * value.max() or 1.0)
-
-
-def _diagonal_mean(answer: Columns) -> np.ndarray:
-    """(n, 5, 5) geometric means of the diagonal entries of a row and a column."""
-    diagonal = np.sqrt(np.abs(np.einsum("nii->ni", answer[STIFFNESS.name])))
-    return diagonal[:, :, np.newaxis] * diagonal[:, np.newaxis, :]
+            found[name] = value, np.full_like(value, np.abs(value).max() or 1.0)
+    if C.name in found:
+        rpm = inputs.get(_SPEED, f.scene.excitation.speed_rpm if f.scene.excitation else 0.0)
+        found[C.name] = answer[C.name], _LOSS / _SMALL * np.abs(answer[K.name]) / (np.pi / 30.0 * np.asarray(rpm))
+    return found
