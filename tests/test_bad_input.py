@@ -40,19 +40,19 @@ SCENES = {
     "ball larger than the pitch circle": ("bearing.ball_diameter=0.05", "bearing", "must be smaller than `pitch_diameter`"),
     "preset with a typo": ("bearing.preset=B7206G", "bearing.preset", "say which); the nearest: B7206E, B7206C"),
     "length whose square is no number": ("bearing.row_distance=1e300", "bearing.row_distance", "less than 1000"),
-    "force of zero": ("excitation.unbalance=0", "excitation", "leave the table out"),
+    "force of zero": ("excitation.unbalance=0", "excitation", "delete the table"),
     "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "use 'resultant'"),
     "largest number": (
         "integrator.kind=central_difference integrator.steps_per_turn=96 excitation.amplitude=constant excitation.force=1.7e308",
         "integrator.steps_per_turn",
-        "steps a turn are needed",
+        "steps per turn are needed",
     ),
     "clearance against angle": (
         "bearing.radial_clearance=1e-4 bearing.contact_angle_deg=15.0",
         "bearing",
         "Give one of them",
     ),
-    "no load": ("load.axial=0", "load.axial", "nothing loads the bearing"),
+    "no load": ("load.axial=0", "load.axial", "no load acts"),
     "window": (
         "identifier.kind=order_tracking identifier.window_turns=20.0",
         "identifier.window_turns",
@@ -187,7 +187,7 @@ def test_a_step_above_the_stable_limit_is_refused_with_a_number_that_works(tmp_p
     explicit = ("run", ARTICLE, "--set", "integrator.kind=central_difference", "--out", tmp_path, "--set")
     found = invoke(*explicit, "integrator.steps_per_turn=10")
     assert found.exit_code == 1 and "above the stable limit" in found.stderr
-    least = found.stderr.split("Take at least ")[1].split(",")[0]
+    least = found.stderr.split("Use at least ")[1].split(",")[0]
     again = invoke(*explicit, f"integrator.steps_per_turn={least}")
     assert again.exit_code == 0, again.stderr
 
@@ -232,7 +232,7 @@ def test_a_singular_equilibrium_names_the_free_motion(tmp_path):
     scene = ["--set", "load.axial=0", "--set", "load.radial=[100.0, 0.0]", "--set", "supports.tilt=free"]
     found = invoke("run", MINIMAL, *scene, "--set", "bearing.ball_count=2", "--out", tmp_path)
     assert found.exit_code == 1
-    assert "the equilibrium is singular: nothing holds the ring against" in found.stderr
+    assert "the equilibrium is singular: no stiffness against" in found.stderr
     assert "tilt" in found.stderr
     assert (tmp_path / "failure.json").exists()
 
@@ -314,7 +314,7 @@ def test_pipes_and_devices_are_no_scenes(tmp_path):
     os.mkfifo(tmp_path / "pipe.toml")
     for path in (tmp_path / "pipe.toml", "/dev/zero"):
         found = invoke("check", path)
-        assert found.exit_code == 2 and "is no file" in found.stderr
+        assert found.exit_code == 2 and "is not a regular file" in found.stderr
 
 
 def test_consoles_that_are_closed_or_know_ascii_only(tmp_path):

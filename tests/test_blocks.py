@@ -114,7 +114,7 @@ def test_what_the_loop_leaves_is_run_and_what_a_rule_refuses_says_so(tmp_path: P
     with open_store(tmp_path / "s") as store:
         assert store.status() == {"waiting": 0, "done": 11, "failed": 1, "computed": 11, "total": 12}
         rows = list(store.rows())
-    assert "nothing loads the bearing" in rows[11]["reason"] and rows[11]["point"]["load.axial"] == 0.0
+    assert "no load acts" in rows[11]["reason"] and rows[11]["point"]["load.axial"] == 0.0
     assert rows[3]["values"]["p0"] == float(swept.p0[3]) and not rows[11]["values"]
     with pytest.raises(rw.SceneError, match=r"load\.axial"):
         prepare(STATIC, grid(["load.axial=300,inf"]), tmp_path / "t")

@@ -122,7 +122,7 @@ TOLD = {
     "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),
-    "export": ("moments on the ring", "r/min"),
+    "export": ("moments by translation", "r/min"),
     "view --mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
     "dev plugins": ("newmark", "hertz"),
     "dev new-scene": ("raceway run",),
@@ -518,7 +518,7 @@ def test_a_run_that_fails_on_a_full_disk_fails_as_a_run(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "write_bytes", full)
     found = invoke("run", MINIMAL, "--set", "load.axial=0", "--out", tmp_path, "-v")
     assert found.exit_code == 1, "the failure of the numbers is what counts"
-    for told in ("run failed: ", "nothing loads the bearing", "the last good state is lost", os.strerror(errno.ENOSPC)):
+    for told in ("run failed: ", "no load acts", "the last good state is lost", os.strerror(errno.ENOSPC)):
         assert told in found.stderr
 
 

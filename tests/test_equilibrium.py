@@ -112,7 +112,7 @@ def test_pure_radial_load_on_an_angular_contact_bearing():
 def test_one_loaded_ball_leaves_a_motion_free():
     tables = static(0.0, "locked", 10.0)
     tables["bearing"]["ball_diameter"], tables["bearing"]["ball_count"] = 9.525e-3, 3
-    with pytest.raises(ConvergenceError, match="nothing holds the ring against z") as caught:
+    with pytest.raises(ConvergenceError, match="no stiffness against z") as caught:
         settled(tables)
     assert loose(model_of(tables), caught.value.state["q"])
 
@@ -121,12 +121,12 @@ def test_load_along_a_free_motion_is_named():
     tables = static(1000.0, "locked")
     tables["bearing"]["ball_count"] = 2
     tables["load"]["radial"] = [0.0, 50.0]
-    with pytest.raises(ConvergenceError, match="nothing holds the ring against the load along z"):
+    with pytest.raises(ConvergenceError, match="no stiffness against the load along z"):
         settled(tables)
 
 
 def test_no_load_is_refused():
-    with pytest.raises(ConvergenceError, match="nothing loads the bearing"):
+    with pytest.raises(ConvergenceError, match="no load acts"):
         solve_equilibrium(model_of(static(0.0, "locked")))
 
 

@@ -78,7 +78,7 @@ def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
     tables["contact"] |= {"friction": 0.03}
     rubbing = run(tables).error
     assert rubbing["transient"] is None and rubbing["total"] is None
-    assert rubbing["how"]["total"].startswith("not estimated: that of the transient is not known (a steady motion")
+    assert rubbing["how"]["total"].startswith("not estimated: the error of the transient is unknown (a steady motion")
 
 
 def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatch):
@@ -152,7 +152,7 @@ def test_without_a_steady_motion_a_free_vibration_that_a_window_sees_states_no_m
 
 
 def test_a_second_run_that_vibrates_by_more_than_its_steps_change_is_made_with_closer_steps():
-    """Lift-off under 100 N: 180 steps a turn leave the orbit and differ by 150 times what 240 steps do."""
+    """Lift-off under 100 N: 180 steps per turn leave the orbit and differ by 150 times what 240 steps do."""
     case = named("lift-off, 100 N, tilt free")
     estimate, true, _ = judge(case)
     assert right(estimate, true), (estimate, true)

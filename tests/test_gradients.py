@@ -246,7 +246,7 @@ def test_a_contact_at_the_edge_is_told():
         model, still = settled(b7206c(load={"axial": 400.0, "radial": [middle, 0.0]}))
         low, high = (middle, high) if still.contact_force[: model.system.ball_count].min() > 0.0 else (low, middle)
     found = static_gradient(model, still, key_of(model.scene, "load.axial"))
-    assert "open or to close" in found.remark
+    assert "opens or closes" in found.remark
 
 
 BAD = [

@@ -109,7 +109,7 @@ def test_a_laws_memory_is_carried_round_the_cycle(hunt_crossley):
     touch = w * np.sqrt(x**2 - contact.approach**2)
     turn = quad(lambda p: max(contact.approach + x * np.cos(p), 0.0) ** 1.5 * np.sin(p) ** 2, 0.0, 2.0 * np.pi)[0]
     expected = 8.0 * 0.2 / (5.0 * 0.8 * touch) * contact.hertz_factor * w * x**2 * turn
-    # First touch is seen at the next of 720 samples a turn, and the law begins over 0.1 µm of roughness.
+    # First touch is seen at the next of 720 samples per turn, and the law begins over 0.1 µm of roughness.
     assert loop.energy == pytest.approx(expected, rel=0.01)
     assert loop.opens
 
@@ -123,11 +123,11 @@ def test_a_laws_memory_is_carried_round_the_cycle(hunt_crossley):
         ("hertz", None, (), {"amplitude": 0.0}, "`amplitude` = 0.0: must be a finite number above 0"),
         ("hertz", None, (), {"frequency": float("nan")}, "`frequency` = nan: must be a finite number above 0"),
         ("film", None, (), {}, "no viscosity is given"),
-        ("film", None, ("contact.viscosity=0.03",), {}, "nothing turns"),
+        ("film", None, ("contact.viscosity=0.03",), {}, "needs the running speed"),
         ("unilateral", None, (), {}, "supports 'nodal'"),
-        ("hertz", None, ("bodies.kind=condensed",), {}, "take bodies.kind = 'rigid'"),
-        ("hertz", None, ("contact.damping=band",), {}, "give contact.time_constant"),
-        ("hertz", None, ("load.axial=50", "load.radial=[500, 0]"), {"ball": 6}, "ball 6 carries nothing at the inner race"),
+        ("hertz", None, ("bodies.kind=condensed",), {}, "use bodies.kind = 'rigid'"),
+        ("hertz", None, ("contact.damping=band",), {}, "set contact.time_constant"),
+        ("hertz", None, ("load.axial=50", "load.radial=[500, 0]"), {"ball": 6}, "ball 6 is unloaded at the inner race"),
     ],
 )  # fmt: skip
 def test_bad_input_is_told(name, scene, changes, options, told):

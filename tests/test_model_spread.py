@@ -166,4 +166,4 @@ def test_rows_pressed_together_by_less_than_the_centrifugal_force_slide():
     assert not any("Hirano" in w for w in rw.run({**fast, "load": {"axial": 400.0}}).warnings)
     pair = {**fast, "bearing": {"preset": "B7206C", **SPRUNG, "preload": 100.0}, "load": {"axial": 0.0}}
     (both,) = (w for w in rw.run(pair).warnings if "Hirano" in w)
-    assert "row 1 is" in both and "row 2 is" in both
+    assert "row 1 carries" in both and "row 2 carries" in both

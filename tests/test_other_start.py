@@ -1,4 +1,4 @@
-"""With friction an answer depends on how the motion began: the stated error covers what another start gives."""
+"""With friction an answer depends on the start of the motion: the stated error covers what another start gives."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ def test_the_stated_errors_cover_what_another_start_gives(kind, friction):
     # Not the free vibration of the other run, which is its own error.
     assert found["ramp"].error["total"] < 0.05
     for one in found.values():
-        assert "remembers how the motion began" in one.error["how"]["transient"]
-        assert any("depends on how the motion began" in text for text in one.warnings)
+        assert "the motion depends on its start" in one.error["how"]["transient"]
+        assert any("depends on the start of the motion" in text for text in one.warnings)
 
 
 def test_without_another_start_no_error_is_stated(monkeypatch):
@@ -55,7 +55,10 @@ def test_without_another_start_no_error_is_stated(monkeypatch):
     monkeypatch.setattr(other_start, "simulate", none)
     found = solved()
     assert found.error["transient"] is None and found.error["total"] is None
-    assert any("how far the answer depends on the motion's start is not known" in text for text in found.warnings)
+    assert any(
+        "the dependence of the answer on the start of the motion, and so its error, is unknown" in text
+        for text in found.warnings
+    )
     assert any("no step is found" in text for text in found.warnings)
 
 

@@ -51,7 +51,7 @@ def test_recorded_samples_divide_the_turn(turns, steps_per_turn):
 def test_a_long_run_and_its_run_with_half_the_steps_keep_whole_turns():
     short, long = (computed(integrator={"turns": turns, "steps_per_turn": 60}) for turns in (12, 1300))
     assert len(long.simulation.whole.time) == 1300 * 60 // _stride(60, 1300)
-    # The same steady orbit: what differs is what is left of the start, far below the error of 60 steps a turn.
+    # The same steady orbit: what differs is what is left of the start, far below the error of 60 steps per turn.
     assert long.identification.equivalent_stiffness == pytest.approx(short.identification.equivalent_stiffness, rel=1e-4)
 
 
@@ -168,7 +168,7 @@ def test_rows_that_run_at_a_low_angle_by_their_make_or_growth_are_no_unseated_on
 def test_the_body_that_lags_most_is_named_where_the_stated_error_is_less():
     lags = {"inner_supported_error": 0.02, "outer_supported_error": 0.05, "ball_along_grooves_error": None}
     (text,) = inertia_warnings({"inertia": lags}, 0.03)
-    assert text.startswith("the outer ring follows at once") and "= 0.05 of" in text
+    assert text.startswith("the outer ring is quasi-static") and "= 0.05 of" in text
     assert len(inertia_warnings({"inertia": lags}, None)) == 1
     assert (
         inertia_warnings({"inertia": lags}, 0.06)
@@ -241,7 +241,7 @@ def test_an_error_that_is_not_known_is_a_warning_with_its_reason():
     (text,) = [w for w in computed(integrator={"turns": 1}).warnings if "the error of Z" in w]
     assert (
         text
-        == "the error of Z is not estimated: that of the transient is not known (a single turn contains no measure of a transient)"
+        == "the error of Z is not estimated: the error of the transient is unknown (a single turn contains no measure of a transient)"
     )
     assert not computed(integrator={"turns": 3}).warnings
 

@@ -85,14 +85,14 @@ def test_expectations_judge(limit, good, bad):
 
 def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
     def refuse():
-        raise ConvergenceError("nothing loads the bearing")
+        raise ConvergenceError("no load acts")
 
     rows = Rows("c")
     row = rows.check("q", refuse, "", Limit.at_most(1.0))
-    assert row.verdict == FAILED and "unexpectedly: nothing loads" in row.note and row.observed is None
-    assert rows.refused("nothing loads", "", refuse).verdict == AS_EXPECTED
+    assert row.verdict == FAILED and "unexpectedly: no load acts" in row.note and row.observed is None
+    assert rows.refused("no load", "", refuse).verdict == AS_EXPECTED
     assert rows.refused("another message", "", refuse).verdict == FAILED
-    assert rows.refused("nothing loads", "", lambda: 1.0).note == "it was computed instead"
+    assert rows.refused("no load", "", lambda: 1.0).note == "it was computed instead"
     assert (
         rows.warned("edge", "", ["beyond the edge"]).verdict == AS_EXPECTED and rows.warned("edge", "", []).verdict == FAILED
     )
@@ -197,7 +197,7 @@ def test_explicit_steps_hold_up_to_the_predicted_limit(name):
 def test_the_safe_limit_holds_on_large_orbits():
     rows = rows_named("orbit at the safe limit", integrator="central_difference")
     assert any(row.setting["contacts open"] for row in rows)
-    # Half the orbit's size, the catalogue's bound: errors of 30 steps a turn are percents, near parametric resonances of opening
+    # Half the orbit's size, the catalogue's bound: errors of 30 steps per turn are percents, near parametric resonances of opening
     # contacts a quarter (docs/stability.md); an unstable motion is off by many times the orbit.
     assert all(row.verdict == AS_EXPECTED for row in rows)
 
@@ -357,7 +357,7 @@ def test_an_interruption_keeps_finished_cases(tmp_path):
     ("words", "message"),
     [
         (("--only", "chater"), "no case is called so"),
-        (("--set", "load.axial=1"), "none is given"),
+        (("--set", "load.axial=1"), "no scene is given"),
         ((ARTICLE, "--set", "load.axal=1"), "load.axal"),
         (("nowhere.toml",), "no such file"),
     ],

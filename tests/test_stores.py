@@ -81,7 +81,7 @@ def test_a_list_is_drawn_as_points():
     data = as_list(made({SPEED: SPEEDS, LOAD: MANY})).isel(point=slice(0, 50))
     for kind in ("curves", "map"):
         drawn(layout(select(data, {}), kind=kind))
-    with pytest.raises(RacewayError, match="fill no grid, and a surface needs one"):
+    with pytest.raises(RacewayError, match="fill no grid, which a surface needs"):
         layout(select(data, {}), kind="surface")
 
 
@@ -109,7 +109,7 @@ def test_entries_of_arrays_have_their_own_unit():
         (
             {SPEED: SPEEDS, "supports.tilt": ["free", "locked"]},
             {"kind": "map", "y": "supports.tilt"},
-            "has words for values",
+            "has words as values",
         ),
         ({SPEED: SPEEDS, LOAD: MANY, "contact.damping": MANY[:7]}, {"kind": "curves"}, "choose one with --at"),
         ({SPEED: SPEEDS[:1]}, {}, "nothing varies in this part of the sweep"),
@@ -260,7 +260,7 @@ def test_export_says_what_is_lost_and_for_which_ross(store, tmp_path, monkeypatc
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")
     assert found.exit_code == 0, found.stderr
     assert "ROSS is not installed: written for ROSS 3" in found.stderr
-    assert "moments on the ring" in found.stdout
+    assert "moments by translation" in found.stdout
     assert "kyy = kzz" in found.stdout and "r/min" in found.stdout and "rad/s" not in found.stdout.partition("note")[0]
     monkeypatch.setattr(ross_file, "version", lambda _name: "2.3.0")
     found = invoke("export", store, "--ross", tmp_path / "b.json", "--at", "load.axial=600")

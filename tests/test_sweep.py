@@ -325,7 +325,7 @@ def test_points_that_fail_keep_their_reason_and_are_tried_again_when_asked(tmp_p
     design = grid(["supports.tilt=locked", "load.axial=0,500", "excitation.kind=bidirectional,unidirectional"])
     found = swept(tmp_path / "s", design)
     assert [status for _, status, _, _ in found] == ["failed", "failed", "run", "run"]
-    assert "nothing loads the bearing" in found[0][2] and not found[0][3]
+    assert "no load acts" in found[0][2] and not found[0][3]
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == found
     with pytest.raises(KeyboardInterrupt):
         swept(tmp_path / "s", design, Stopping(after=0), resume=True, retry_failed=True)
@@ -371,7 +371,7 @@ def test_warnings_of_points_are_kept_and_summed_up(tmp_path):
     ]  # fmt: skip
     out = tmp_path / "s"
     shown = invoke(*words, "--out", out, "--resume", "--csv")
-    assert shown.exit_code == 0 and "holds no sweep to go on with: it is begun anew" in shown.stderr
+    assert shown.exit_code == 0 and "holds no sweep to resume: a new one is started" in shown.stderr
     with open_store(out) as store:
         told = [row["warnings"] for row in store.rows()]
         counts = store.to_xarray()["warnings"].values
@@ -395,7 +395,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
         ({"plugins": {**wanted["plugins"], "contact_law:mine": "raceway-mine 1.0"}}, "contact law 'mine' of raceway-mine 1.0 is missing"),
         ({"plugins": {**wanted["plugins"], "contact_law:hertz": "raceway 9.9"}}, f"contact law 'hertz' is of raceway {__version__} instead of raceway 9.9"),
         ({"numpy": "1.0", "program": "x"}, "instead of 1.0"),
-        ({"program": "y"}, "under the same version"),
+        ({"program": "y"}, "at the same version"),
     ):  # fmt: skip
         answer = Work(Point(SCENE), (), {**wanted, **changed})([(0, {"load.axial": 500.0})])
         assert isinstance(answer, Refused) and words in answer.reason

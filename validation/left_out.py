@@ -160,7 +160,7 @@ def tilts() -> Rule:
 
 
 def coupled() -> Rule:
-    part = "effect of balls on each other through the rings"
+    part = "interaction of balls through the rings"
     why = "stated in the plan: less than 1e-3 of a contact's compliance"
     return _forced(part, part, ("bodies.kind=condensed",), 1e-3, why)
 
@@ -241,7 +241,7 @@ def compliances() -> Rule:
             structural.kept = kept
         return np.array(found if times == count else found * count)
 
-    what = "a compliance for each ball and contact"
+    what = "a compliance per ball and contact"
     return compared(what, "bodies.kind=condensed", lambda: run(1), lambda: run(count), repeats=1, must_save=True)
 
 

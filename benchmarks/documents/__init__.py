@@ -137,13 +137,13 @@ def _tables(cls: type, path: str, title: str, shown: dict[str, tuple[str, str]])
             continue
         key, unit = f"`{field.name}`", field.metadata.get("unit", "")
         name, default = f"{key} [{unit}]" if unit else key, _default(field.default)
-        meaning = f"{_range(field.metadata.get('rule', ''))} | {field.metadata.get('help', '')} |"
-        other, first = shown.setdefault(f"{name} {meaning}", (title, default))
+        allowed, words = _range(field.metadata.get("rule", "")), field.metadata.get("help", "")
+        other, first = shown.setdefault(f"{name} {allowed} {words}", (title, default))
         if other == title or default not in ("", first):
-            rows.append(f"| {name} | {default} | {meaning}")
+            rows.append(f"| {name} | {'; '.join(filter(None, (default, allowed)))} | {words} |")
         else:
             same.setdefault(other if default == first else f"{other}, whose value is the default", []).append(key)
-    parts = ["\n".join(["| key | default | range | meaning |", "|---|---|---|---|", *rows]) + "\n"] if rows else []
+    parts = ["\n".join(["| key | default; range | meaning |", "|---|---|---|", *rows]) + "\n"] if rows else []
     parts += [f"As {other}: {', '.join(names)}.\n" for other, names in same.items()]
     parts = parts or ["No keys.\n"]
     for name, words, table in inner:

@@ -149,7 +149,7 @@ def _check_shapes(shapes, scene, plan):
         2
         + 2 * (plan.balls == "tangential")
         + 2 * (scene.bodies.name == "condensed")
-        + 2 * plan.keeps("effect of balls on each other through the rings")
+        + 2 * plan.keeps("interaction of balls through the rings")
     )
     # Compliances of bodies and between balls stand behind the scalars.
     assert shapes["table"] == [z, COLUMNS]
@@ -168,7 +168,7 @@ def test_every_part_of_a_scene_is_decided_with_a_reason():
     parts = (
         "tilts", "centrifugal force", "friction", "gyroscopic moments of the balls", "gyroscopic moments of ring and rotor",
         "orbiting balls", "elastic rings and balls", ("time integration", "steady orbit"), "contact damping", "further rows", "pictures",
-        "other mirror half", "a compliance for each ball and contact", "stress recovery", "history of every step",
+        "other mirror half", "a compliance per ball and contact", "stress recovery", "history of every step",
     )  # fmt: skip
     for changes in (
         (),
@@ -191,7 +191,7 @@ def test_every_part_of_a_scene_is_decided_with_a_reason():
             assert sum(part.part.startswith(words) for part in decided) == 1, words
     condensed = make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",)))
     left_out = {part.part for part in condensed.left_out}
-    assert {"other mirror half", "stress recovery", "a compliance for each ball and contact"} <= left_out
+    assert {"other mirror half", "stress recovery", "a compliance per ball and contact"} <= left_out
     fine = make_plan(load_scene(ARTICLE, ("integrator.steps_per_turn=2880",)))
     assert "history of every step" in {part.part for part in fine.left_out}
 

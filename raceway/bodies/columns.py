@@ -113,12 +113,12 @@ def why_not(scene: Scene, moving: bool) -> str:
         "bodies are in full": scene.bodies.name not in ("rigid", "condensed", "cylindrical_rollers"),
         "rollers move": moving and problem.traits.line_contacts,
         "contacts have surface points": deform and scene.contact.discretisation != "resultant",
-        "balls act on each other through elastic rings": deform and scene.bodies.balls_meet(problem),
+        "balls interact through elastic rings": deform and scene.bodies.balls_meet(problem),
         "the contact law has a memory": law.state_size > 0,
         "contacts rub": scene.contact.friction > 0.0,
         "dashpots are given as a band": scene.contact.in_a_band,
         "an axial displacement is held": scene.supports.axial == "displacement" and not problem.traits.line_contacts,
-        "rows are on a spring, or ground one by one": bearing.preloaded
+        "rows are on a spring, or ground individually": bearing.preloaded
         and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
         "balls orbit": moving and scene.kinematics.orbiting,
         "the speed changes": problem.spin_changes,
@@ -131,7 +131,7 @@ def why_not(scene: Scene, moving: bool) -> str:
 def why_no_column(scene: Scene, key: str) -> str:
     """Why the numbers at a continuous key can not be a column; empty where they can."""
     if key.startswith("bearing.") and scene.kinematics.ring_growth:
-        return "each point's rings grow by sections of their own"
+        return "the growth of the rings differs by point"
     if key in _SHAPES and scene.bodies.name == "condensed":
         return f"{key} changes the finite elements"
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 #: The part by which balls feel each other.
-BETWEEN_BALLS = "effect of balls on each other through the rings"
+BETWEEN_BALLS = "interaction of balls through the rings"
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
 _BYTES_PER_NODE = 25_000
@@ -68,7 +68,7 @@ def _section_faults(problem: Problem) -> list[Mistake]:
         return []
     why = (
         f"would take {cost.bytes / 2**30:.1f} GiB for some {cost.nodes} nodes of a ring's section, above "
-        f"{_BYTES_LIMIT / 2**30:.0f} GiB: take larger elements, or fewer nodes_per_semi_axis"
+        f"{_BYTES_LIMIT / 2**30:.0f} GiB: use larger elements, or fewer nodes_per_semi_axis"
     )
     return [Mistake("mesh.element_size", getattr(problem.mesh, "element_size", None), why)]
 
@@ -86,7 +86,7 @@ def _seat_faults(problem: Problem) -> list[Mistake]:
         gives = load / (seat * pi * diameter * b.width)
         if gives > _GIVES * b.ball_diameter:
             why = (
-                f"gives way by {1e3 * gives:.3g} mm under {load:.4g} N, too much for balls in grooves: check its unit, N/m3 "
+                f"deflects by {1e3 * gives:.3g} mm under {load:.4g} N, too much for balls in grooves: check its unit, N/m3 "
                 "(500 N/mm3 is 5e11)"
             )
             faults.append(Mistake(f"supports.{key}", seat, why))
@@ -102,7 +102,7 @@ _LIMIT = 4 * 2**30
 _SETUP_S, _EQUILIBRIUM_S, _STEP_S = (1.0, 0.07), (0.020, 0.0068), (0.010, 0.0012)
 #: The orbit of a first guess, over a step.
 MOTION = 150.0
-#: Evaluations of a step with friction over those without: 3 and 1 (B7206C, 1 kN, 200 N rotating, 48 steps a turn).
+#: Evaluations of a step with friction over those without: 3 and 1 (B7206C, 1 kN, 200 N rotating, 48 steps per turn).
 _RUBBING = 3.0
 
 
@@ -153,17 +153,17 @@ _INSTEAD = "use discretisation = 'resultant'"
 _PATCHES: tuple[Rule[Problem], ...] = (
     Rule(
         "contact.kind", lambda s: s.contact.law.state_size > 0,
-        f"remembers what a contact did, but surface points of condensed bodies travel with the contact: {_INSTEAD}",
+        f"has a memory, but surface points of condensed bodies move with the contact: {_INSTEAD}",
     ),
     Rule(
         "integrator.kind",
         lambda s: s.excitation is not None and "record" in s.identifier.method.needs and not s.integrator.method.implicit,
-        "is explicit and takes contacts at surface points through too many steps: use 'newmark' or 'quasi_static', or "
+        "is explicit and needs too many steps for contacts at surface points: use 'newmark' or 'quasi_static', or "
         f"{_INSTEAD}",
     ),
     Rule(
         "mesh.nodes_per_semi_axis", lambda s: _patch_cost(s).bytes > _LIMIT,
-        lambda s: f"would take {_patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: take fewer points",
+        lambda s: f"would take {_patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: use fewer points",
     ),
 )  # fmt: skip
 
@@ -201,16 +201,16 @@ class Condensed:
             faults.append(Mistake("mesh.kind", problem.mesh.name, why))
         for key in ("bore", "outer_diameter", "width"):
             if attrs.asdict(problem.bearing, recurse=False)[key] is None:
-                why = "is needed by elastic rings: give it, or take bodies.kind = 'rigid'"
+                why = "is needed by elastic rings: give it, or use bodies.kind = 'rigid'"
                 faults.append(Mistake(f"bearing.{key}", None, why))
         if not problem.bearing.equal_rows:
-            why = "condensed bodies have one section for the rings of all rows: leave out what differs, or take bodies.kind = 'rigid'"
+            why = "condensed bodies have one ring section for all rows: delete differing keys, or use bodies.kind = 'rigid'"
             faults.append(Mistake("bearing.row", None, why))
         grown = {f"mounting.{key}": value for key, value in problem.mounting.changes.items()}
         if problem.kinematics.ball_growth:
             grown["kinematics.ball_growth"] = 1.0
         for key, value in grown.items() if _nodal(problem) else ():
-            why = "changes the shapes that surface points lie on: take contact.discretisation = 'resultant', or kinematics.radial_expansion"
+            why = "changes the surfaces of the points: use contact.discretisation = 'resultant', or kinematics.radial_expansion"
             faults.append(Mistake(key, value, why))
         unmeshed = unrefined(problem, "sections of condensed bodies")
         faults += unmeshed
@@ -239,19 +239,19 @@ class Condensed:
             parts.keep("pressures at surface points", why)
             moves = problem.recorded and problem.integrator.method.inertial and problem.kinematics.ball_inertia
             part, why = "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time"
-            parts.decide(moves, part, why, "their slowest mode lies at some kHz: they follow at once")
+            parts.decide(moves, part, why, "their slowest mode lies at some kHz: they are quasi-static")
         else:
             why_not = (
                 "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
             )
             parts.decide(self.balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
             if problem.excitation is not None:
-                why = "rings and balls follow quasi-statically; `model.inertia` of the result states the error"
+                why = "rings and balls are quasi-static; `model.inertia` of the result states the error"
                 parts.leave_out("inertia of the bodies' deformation", why)
-        parts.leave_out("a compliance for each ball and contact", "balls are equal and rings are bodies of revolution")
+        parts.leave_out("a compliance per ball and contact", "balls are equal and rings are bodies of revolution")
         why = "rings and balls are symmetric about each plane through their axis: a harmonic is one real system"
         parts.leave_out("other mirror half", why)
-        parts.leave_out("stress recovery", "no stress inside the bodies is asked for")
+        parts.leave_out("stress recovery", "no stress inside the bodies is requested")
 
     def unused(self, tables: SceneTables) -> list[tuple[str, str]]:
         """Points stick by themselves."""

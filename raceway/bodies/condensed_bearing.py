@@ -134,7 +134,7 @@ def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> Elas
     direct, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
     if not abs(direct) * basis.ball_load < b.ball_diameter:
         soft, steel = min(("balls", b.balls), ("rings", b.rings), key=lambda part: part[1].young)
-        why = f"is too soft for {basis.ball_load:.3g} N a ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
+        why = f"is too soft for {basis.ball_load:.3g} N per ball: its contacts would be as large as the ball. Steel has 2.1e11 Pa"
         raise SceneError.at(f"bearing.{soft}.young", steel.young, why)
     return attrs.evolve(bodies, ball_direct=direct, ball_opposite=opposite)
 
@@ -311,7 +311,7 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
             "contact.kind",
             problem.contact.kind,
             f"its contact of {1e-6 * stiffness:.3g} N/µm is stiffer than elastic bodies allow: they take "
-            f"{-1e9 * compliance:.3g} nm/N off it, as they give less than half-spaces do. {remedy}",
+            f"{-1e9 * compliance:.3g} nm/N off it, since they are stiffer than half-spaces. {remedy}",
         )
 
 
@@ -347,10 +347,10 @@ def _refuse_dashpots(problem: Problem, plan: ScenePlan, stiff: RigidBearing, bod
     bound = 0.5 * plan.time_step_s / (1.5 * compliance)
     words = f"makes contacts stiffer within a step of {plan.time_step_s:.3g} s than elastic bodies allow: they take {1e9 * compliance:.3g} nm/N off them"
     if problem.contact.dashpot > bound:
-        why = f"{words}. Take at most {bound:.3g} N s/m, or fewer steps a turn"
+        why = f"{words}. Use at most {bound:.3g} N s/m, or fewer steps per turn"
         raise SceneError.at("contact.damping", problem.contact.damping, why)
     load = float(_typical_load(stiff.basis))
     stiffness = max(1.5 * load / float(ellipse.approach(load)) for ellipse in (stiff.basis.inner, stiff.basis.outer))
     if problem.time_constant * stiffness > bound:
-        why = f"{words}. Take at most {bound / stiffness:.3g} s, or fewer steps a turn"
+        why = f"{words}. Use at most {bound / stiffness:.3g} s, or fewer steps per turn"
         raise SceneError.at("contact.time_constant", problem.time_constant, why)

@@ -54,8 +54,8 @@ def beyond_the_groove(problem: Problem, basis: Basis, inner: np.ndarray, outer: 
             assumed = "" if problem.bearing.shoulder_height else ", assumed 0.2 D"
             warnings.append(
                 f"the contact ellipse on the {word} race reaches {np.degrees(reach):.1f} deg, beyond the groove's edge at "
-                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is cut off there in reality, at this "
-                f"contact angle from {begins:.3g} N a ball"
+                f"{np.degrees(edge):.1f} deg (bearing.shoulder_height = {depth:.3g} m{assumed}): it is truncated there in reality, at this contact "
+                f"angle from {begins:.3g} N per ball"
             )
     return warnings
 
@@ -87,8 +87,8 @@ def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str,
         half = ellipse.semi_axes(load)[0] / radius
         if half.max(initial=0.0) >= 0.5 * np.pi:
             raise ConvergenceError(
-                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball long, more than half "
-                f"its circumference, under {load[np.argmax(half)]:.3g} N a ball: no such contact exists. Check units and loads "
+                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball, more than half its "
+                f"circumference, under {load[np.argmax(half)]:.3g} N per ball: no such contact exists. Check units and loads "
                 "(bearing.rings.young in Pa, lengths in m)",
                 state,
             )

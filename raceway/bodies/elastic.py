@@ -206,7 +206,7 @@ def _own_bytes() -> float:
     return inf if limit == resource.RLIM_INFINITY else float(limit - resident)
 
 
-_OTHER = "or take bodies.kind = 'condensed'"
+_OTHER = "or use bodies.kind = 'condensed'"
 _ONE_ROW = f"elastic bodies are one row of balls: use 'single', {_OTHER}"
 _SHAPES = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {_OTHER}"
 #: What elastic bodies cannot do, each with the way out.
@@ -217,11 +217,11 @@ _RULES: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "contact.friction", lambda s: s.contact.discretisation == "resultant" and s.contact.friction > 0.0,
-        f"what a coarse mesh gives way along the surface is not known well enough: set it 0, use 'nodal', {_OTHER}",
+        f"the tangential compliance of a coarse mesh is too uncertain: set it 0, use 'nodal', {_OTHER}",
     ),
     Rule(
         "contact.kind", lambda s: is_constraint(s.contact.law),
-        f"is a condition, not a pressure that a penetration makes: use 'hertz' or 'penalty', {_OTHER}",
+        f"is a constraint, not a pressure over penetration: use 'hertz' or 'penalty', {_OTHER}",
     ),
     Rule(
         "kinematics.orbiting", lambda s: s.kinematics.orbiting,
@@ -229,12 +229,12 @@ _RULES: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "kinematics.gyroscopic", lambda s: s.kinematics.gyroscopic != "none",
-        f"balls of elastic bodies do not turn: set it 'none', {_OTHER}",
+        f"balls of elastic bodies do not rotate: set it 'none', {_OTHER}",
     ),
     Rule("bearing.arrangement", lambda s: len(s.bearing.rows) > 1 and not s.bearing.row, _ONE_ROW),
     Rule(
         "kinematics.ball_growth", lambda s: s.kinematics.ball_growth,
-        f"balls of elastic bodies do not turn: set it false, {_OTHER}",
+        f"balls of elastic bodies do not rotate: set it false, {_OTHER}",
     ),
     Rule(
         "bearing.tilt_arm", lambda s: s.bearing.tilt_arm != "groove",
@@ -251,7 +251,7 @@ def _memory_faults(problem: Problem) -> list[Mistake]:
         return []
     why = (
         f"gives {cost.cells} elements, whose matrices would take about {cost.bytes / 2**30:.1f} GiB, above "
-        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): take larger elements or fewer "
+        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): use larger elements or fewer "
         "nodes_per_semi_axis, or bodies.kind = 'condensed'"
     )
     return [Mistake("mesh.kind", problem.mesh.name, why)]
@@ -325,26 +325,24 @@ class Elastic:
             "elastic rings and balls", f"bodies.kind is elastic: finite elements of rings and balls, every node{size}"
         )
         nodal = problem.contact.discretisation == "nodal"
-        why = "elastic bodies touch at the points of the balls' surfaces"
+        why = "elastic bodies touch at points of the ball surfaces"
         why_not = (
-            "contact.discretisation is resultant: one force a contact, whose law replaces what the mesh below it gives way"
+            "contact.discretisation is resultant: one force per contact, whose law replaces the compliance of the mesh below"
         )
         parts.decide(nodal, "pressures at surface points", why, why_not)
-        parts.keep("ideal cage", "holds each ball at its azimuth and keeps it from turning")
-        why_not = "balls do not orbit: the cage holds them, their centrifugal force acts where the plan states it"
+        parts.keep("ideal cage", "holds each ball at its azimuth without rotation")
+        why_not = "balls do not orbit: the cage holds them; their centrifugal force is a separate part"
         parts.leave_out("travel of the balls", why_not)
-        parts.keep("a compliance for each ball and contact", "every node of every ball and ring is an unknown")
-        why = "every node of both halves: the forces may have any direction; a half model is no part of this program"
+        parts.keep("a compliance per ball and contact", "every node of every ball and ring is an unknown")
+        why = "both halves are meshed: the forces may have any direction, and half models are not supported"
         parts.keep("other mirror half", why)
         count = problem.bearing.ball_count
-        why = f"the {count} balls are one ball turned, and each ring {count} equal sectors: one of each is factored"
+        why = f"the {count} balls are equal, each ring has {count} equal sectors: one of each is factored"
         if nodal and _equal_sectors(problem):
             parts.leave_out("factors of equal balls and sectors", why)
         elif nodal:
             why = f"mesh.kind is {problem.mesh.name}: " if problem.mesh is not None else ""
-            why += (
-                "a ring is factored as a whole unless its sectors turn out to be equal, and each ball that is no turned copy"
-            )
+            why += "each ring is factored completely unless its sectors are equal, and each ball that differs"
             parts.keep("factors of equal balls and sectors", why)
         why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"

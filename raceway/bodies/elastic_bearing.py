@@ -94,7 +94,7 @@ def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) ->
             "contact.kind",
             problem.contact.kind,
             f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
-            f"{1e9 * contact.local.max():.3g} nm/N itself: nothing is left for the law. {remedy}, or take "
+            f"{1e9 * contact.local.max():.3g} nm/N alone: no compliance remains for the law. {remedy}, or take "
             "contact.discretisation = 'nodal'",
         )
 

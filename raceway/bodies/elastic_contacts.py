@@ -212,14 +212,14 @@ class ElasticResultants(ElasticBodies):
         unsure = self._uncertainty(model, equilibrium)
         if unsure > _UNSURE:
             sentences.append(
-                f"the mesh is too coarse to determine its own compliance under a contact to better than {100 * unsure:.2g} % of the "
-                "contact's: take a smaller mesh.element_size, or bodies.kind = 'condensed'"
+                f"the mesh is too coarse to determine its compliance below a contact to better than {100 * unsure:.2g} % of the "
+                "contact's: use a smaller mesh.element_size, or bodies.kind = 'condensed'"
             )
         turned = self._turned(model, equilibrium)
         if turned > _FAR_RAD:
             sentences.append(
-                f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, where the mesh's own compliance "
-                "was looked at: compare with bodies.kind = 'condensed', which follows the angle"
+                f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, at which the mesh compliance "
+                "was computed: compare with bodies.kind = 'condensed', which depends on the angle"
             )
         return sentences + super().warnings(model, equilibrium)
 

@@ -31,7 +31,7 @@ _SETS = {
         f"{ring}_ring": {"raceway": "the groove, on which balls press", "seat": "its fit on the shaft or in the housing"}
         for ring in ("inner", "outer")
     },
-    "ball": {"surface": "its whole surface, which presses on the grooves"},
+    "ball": {"surface": "its complete surface, which presses on the grooves"},
 }
 #: Coarse facets of a ball may miss its poles by a few percent.
 _OTHER_SIZE = 0.05
@@ -77,7 +77,7 @@ def check_sets(mesher: Mesher, meshes: Mapping[str, HexMesh], supports: Supports
         key, value = ("mesh.kind", mesher.name) if path is None else (f"mesh.{body}", path)
         mesh = next((mesh for name, mesh in meshes.items() if name.startswith(body)), None)
         if mesh is None:
-            body_words = "one ball, a copy of which stands at each place" if body == "ball" else "this ring"
+            body_words = "one ball, copied to each azimuth" if body == "ball" else "this ring"
             raise MeshError.at(f"mesh.{body}", path, f"is required with elastic bodies: the file of {body_words}")
         held = "seat" if getattr(supports, body.replace("_ring", "_seat"), "") == "rigid" else ""  # its nodes are enough
         for name, where in sets.items():
@@ -109,7 +109,7 @@ def _sizes(bearing: Bearing, name: str, points: np.ndarray) -> list[tuple[str, f
 def _refusal(mesher: Mesher, name: str, fault: str, ratio: float) -> MeshError:
     path = str(getattr(mesher, "ball" if name.startswith("ball") else name, ""))
     if path.lower().endswith((".step", ".stp")):
-        return MeshError(f"{fault}: '{path}' names its own unit; write it again in the right one")
+        return MeshError(f"{fault}: '{path}' states its unit; write it again in the right one")
     present: float | None = getattr(mesher, "scale", None)
     if present is None:
         return MeshError(f"{fault}: mesher '{mesher.name}' must return metres")
@@ -135,8 +135,8 @@ def locking(problem: Problem) -> list[str]:
         poisson = getattr(problem.bearing, part).poisson
         if poisson >= least:
             warnings.append(
-                f"bearing.{part}.poisson = {poisson:g}: elements lock near 0.5, contacts at surface points are too stiff by "
-                f"{'tens of percent' if one_point or poisson > 0.495 else 'percents'} whatever the mesh; take bodies.kind = "
+                f"bearing.{part}.poisson = {poisson:g}: elements lock near 0.5; contacts at surface points are too stiff by "
+                f"{'tens of percent' if one_point or poisson > 0.495 else 'percents'} whatever the mesh; use bodies.kind = "
                 "'condensed' with contact.discretisation = 'resultant', or rigid bodies, whose contacts are Hertz's"
             )
     return warnings
@@ -203,7 +203,7 @@ def unrefined(problem: Problem, who: str) -> list[Mistake]:
     """A mesh without cells along a contact, which some bodies need; ``who``: in words."""
     if problem.mesh is None or refined(problem):
         return []
-    why = f"{who} need cells along a contact: take at least 1, or elastic bodies with contact.discretisation = 'resultant'"
+    why = f"{who} need cells along a contact: use at least 1, or elastic bodies with contact.discretisation = 'resultant'"
     return [Mistake("mesh.nodes_per_semi_axis", 0, why)]
 
 

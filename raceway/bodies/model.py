@@ -247,7 +247,9 @@ def build_model(scene: Scene, plan: ScenePlan | None = None) -> Model:
     """
     plan = make_plan(scene) if plan is None else plan
     if scene.heat is not None and plan.problem.mounting is scene.mounting:
-        raise SceneError.at("heat", None, "is for runs, functions, sweeps and bands: give [mounting] its temperatures here")
+        raise SceneError.at(
+            "heat", None, "is supported by runs, functions, sweeps and bands: set the temperatures of [mounting] here"
+        )
     return model_of(plan.problem if plan.problem.scene is scene else resolve(scene), plan)
 
 

@@ -163,8 +163,8 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
         shift = trial
     key = "preload" if problem.bearing.second_preload is None else "second_preload"
     raise ConvergenceError(
-        f"no place of the second row was found at which it carries the spring of `bearing.{key}` = {preload:g} N under these "
-        "loads: raise the preload, or take preload_kind = 'rigid'.",
+        f"no position of the second row was found at which it carries the spring of `bearing.{key}` = {preload:g} N under these "
+        "loads: raise the preload, or use preload_kind = 'rigid'.",
         {"q": q},
     )
 
@@ -175,8 +175,8 @@ def _refuse_travel(problem: Problem, slid: float) -> None:
     if travel is not None and abs(slid) > travel:
         raise ConvergenceError(
             f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where the preload sets them before mounting, beyond "
-            f"`bearing.spring_travel` = {travel:g} m: they meet their stop, and the preload is no longer the spring's. Give it more "
-            "travel, load it less, or take preload_kind = 'rigid'."
+            f"`bearing.spring_travel` = {travel:g} m: they reach their stop, and the preload is no longer the spring's. Allow more travel, "
+            "reduce the load, or use preload_kind = 'rigid'."
         )
 
 
@@ -294,8 +294,8 @@ def lost_preload(model: Model) -> str:
         for key, value in model.problem.mounting.changes.items()
     )
     return (
-        f"The preload of {max(bearing.preload, *(row.preload or 0.0 for row in bearing.row), 0.0):g} N is gone: both rows are loose, as {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
-        "since the preload was set. Raise bearing.preload, shrink it less, or take preload_kind = 'spring'."
+        f"The preload of {max(bearing.preload, *(row.preload or 0.0 for row in bearing.row), 0.0):g} N is lost: both rows are loose, because {shrunk if not warm else f'the grooves have grown apart ({warm})'} "
+        "since the preload was set. Raise bearing.preload, reduce the shrinkage, or use preload_kind = 'spring'."
     )
 
 

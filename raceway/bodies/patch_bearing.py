@@ -156,7 +156,7 @@ class _NodalBearing(Bearing):
             },
             "inertia": inertia_table(model, equilibrium),
             "penetration_share": float(share.max(initial=0.0)),
-            "tangent": "mean over all places of the points under the ellipses, which takes away its ripple",
+            "tangent": "mean over all positions of the points under the ellipses, which removes the ripple",
         }
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
@@ -214,8 +214,8 @@ class _NodalBearing(Bearing):
             edge, angle = (high, angle) if high - angle < angle - low else (-low, -angle)
             begins = load_at_edge(ellipse, radius, edge - angle)
             sentences.append(
-                f"{len(truncated)} contact(s) on the {word} race are cut off by the groove's edge at {np.degrees(edge):.1f} deg: at "
-                f"{np.degrees(angle):.1f} deg that begins at {begins:.3g} N a ball; the pressure at the edge depends on the mesh"
+                f"{len(truncated)} contact(s) on the {word} race are truncated by the groove's edge at {np.degrees(edge):.1f} deg: at "
+                f"{np.degrees(angle):.1f} deg that begins at {begins:.3g} N per ball; the pressure at the edge depends on the mesh"
             )
         columns = self.ball_columns(model, equilibrium)
         loaded = equilibrium.contact_force[:z] > 0.05 * equilibrium.contact_force[:z].max(initial=1e-300)
@@ -223,7 +223,7 @@ class _NodalBearing(Bearing):
         if least < _ENOUGH:
             sentences.insert(
                 0,
-                f"only {least:.1f} points lie along a semi-axis of a loaded contact: take more mesh.nodes_per_semi_axis for its "
+                f"only {least:.1f} points lie along a semi-axis of a loaded contact: use more mesh.nodes_per_semi_axis for its "
                 "pressure, which is off by percents below 3",
             )
         return sentences

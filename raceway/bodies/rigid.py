@@ -30,14 +30,14 @@ class Rigid:
         """Seats and meshes, which rigid bodies have none of; surface points."""
         faults = []
         if problem.mesh is not None:
-            why = "rigid bodies have no mesh: leave the table out, or give [bodies] a kind that deforms"
+            why = "rigid bodies have no mesh: delete the table, or set bodies.kind to deformable bodies"
             faults.append(Mistake("mesh", None, why))
         if problem.contact.discretisation == "nodal" and "nodal" in problem.contact.law.discretisations:
             why = "rigid bodies have no surface points: use 'resultant'"
             faults.append(Mistake("contact.discretisation", "nodal", why))
         for key, seat in (("outer_seat", problem.supports.outer_seat), ("inner_seat", problem.supports.inner_seat)):
             if seat != "rigid":
-                why = "rigid rings have rigid seats: leave it out, or bodies.kind = 'condensed'"
+                why = "rigid rings have rigid seats: delete it, or use bodies.kind = 'condensed'"
                 faults.append(Mistake(f"supports.{key}", seat, why))
         return faults
 
@@ -52,7 +52,7 @@ class Rigid:
     def decide(self, problem: Problem, parts: Decisions) -> None:
         """No part of a body that deforms."""
         parts.leave_out("elastic rings and balls", "bodies.kind is rigid: only contacts deform")
-        for part in ("a compliance for each ball and contact", "other mirror half", "stress recovery"):
+        for part in ("a compliance per ball and contact", "other mirror half", "stress recovery"):
             parts.leave_out(part, _NO_MESH)
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:

@@ -59,7 +59,7 @@ class RollerBearing(Bearing):
         """A contact as wide as half a roller."""
         if self.over_edges(model, force, force, force[None]).any():
             raise ConvergenceError(
-                f"{force.max():.3g} N a roller make a contact as wide as half a roller: check the units", state
+                f"{force.max():.3g} N per roller make a contact as wide as half a roller: check the units", state
             )
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
@@ -83,7 +83,7 @@ class RollerBearing(Bearing):
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Not known."""
-        return None, f"law '{model.problem.contact.kind}' was found by experiment: what it is off by is not estimated"
+        return None, f"law '{model.problem.contact.kind}' is empirical: its error is not estimated"
 
 
 def _clearance(problem: Problem) -> Number:

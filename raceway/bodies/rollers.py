@@ -77,15 +77,17 @@ class CylindricalRollers:
                 faults.append(Mistake(path, value, why))
 
         b, supports, contact, moving = problem.bearing, problem.supports, problem.contact, problem.kinematics
-        nothing = "cylindrical rollers carry no axial load: something else holds the ring, supports.axial = 'displacement'"
+        nothing = (
+            "cylindrical rollers carry no axial load: another bearing locates the ring, supports.axial = 'displacement'"
+        )
         refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
         refuse(
             problem.load.axial != 0.0,
             "load.axial",
             problem.load.axial,
-            "cylindrical rollers carry no axial load: leave it out",
+            "cylindrical rollers carry no axial load: delete it",
         )
-        why = "is no law of line contacts: use 'line'"
+        why = "is not a law of line contacts: use 'line'"
         refuse(not line_contact(contact.law), "contact.kind", contact.kind, why)
         refuse(
             contact.discretisation != "resultant",
@@ -96,12 +98,12 @@ class CylindricalRollers:
         refuse(contact.friction > 0.0, "contact.friction", contact.friction, "is not computed for rollers: set it to 0")
         gyroscopic = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
         refuse(moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, gyroscopic)
-        why = "takes the ring of a ball bearing: give the growth itself by kinematics.radial_expansion"
+        why = "assumes the ring of a ball bearing: set the growth by kinematics.radial_expansion"
         refuse(moving.ring_growth, "kinematics.ring_growth", True, why)
-        refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers come in one row: use 'single'")
-        why = "a line contact has none: give bearing.radial_clearance alone"
+        refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers are in one row: use 'single'")
+        why = "a line contact has none: set bearing.radial_clearance only"
         refuse(bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, why)
-        refuse(problem.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: leave the table out")
+        refuse(problem.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: delete the table")
         for key, seat in (("outer_seat", supports.outer_seat), ("inner_seat", supports.inner_seat)):
             refuse(seat != "rigid", f"supports.{key}", seat, "rigid rings have rigid seats: use 'rigid'")
         return faults

@@ -105,8 +105,8 @@ def renew(
             if trial == 0:  # at standstill
                 raise
             raise ConvergenceError(
-                f"contact law '{problem.contact.kind}' at the running speed: {why}. Give more load or a lower "
-                "speed, or options of the law that move its contacts less from those at standstill",
+                f"contact law '{problem.contact.kind}' at the running speed: {why}. Raise the load, lower the speed, "
+                "or choose options of the law that change its contacts less from standstill",
                 why.state,
             ) from why
         now = system.without(CAGE).evaluate(q, ball=ball)
@@ -123,7 +123,7 @@ def renew(
             system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force
     raise ConvergenceError(
-        f"contact law '{problem.contact.kind}': loads and parameters do not meet in {_LIMIT} equilibria",
+        f"contact law '{problem.contact.kind}': loads and parameters do not converge in {_LIMIT} equilibria",
         {"q": q, "ball": ball},
     )
 

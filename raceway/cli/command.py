@@ -224,7 +224,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         title = str(changed_tables(scene, changes, registry)[0]["title"]) if (scene := arguments.get("scene")) else ""
         arguments["changes"] = changes
     elif changes:
-        raise SceneError.at("--set", changes[0], "changes a scene, and none is given: name one, or leave it out")
+        raise SceneError.at("--set", changes[0], "changes a scene, but no scene is given: name one, or omit the option")
     if about.named_by:
         title = Path(arguments[about.named_by]).stem + "".join(title.partition("\n")[1:])
     folder = out

@@ -242,7 +242,7 @@ def sweep(
     tables = plain_tables(scene, *settings, registry=registry)
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
     if (resume or retry_failed) and not exists(folder):
-        warnings.warn(f"`{folder}` holds no sweep to go on with: it is begun anew", stacklevel=2)
+        warnings.warn(f"`{folder}` holds no sweep to resume: a new one is started", stacklevel=2)
     prepared = prepare(tables, listed, folder, plugins, resume or retry_failed or plan)
     if plan:
         return workload(prepared, pool)

@@ -119,11 +119,11 @@ class Film(Oil):
         if reduction.min() >= _STRONG:
             return []
         speed = 0.0 if pairs.entraining_speed is None else float(pairs.entraining_speed.max())
-        beyond = f", beyond the {_LOADING:g} that the formula was checked to" if loading.max() > _LOADING else ""
+        beyond = f", beyond the {_LOADING:g} to which the formula was checked" if loading.max() > _LOADING else ""
         leaves = "leaves"
-        remedy = "Measure the oil's contact.temperature_viscosity and contact.conductivity, or take a thinner oil"
+        remedy = "Measure the oil's contact.temperature_viscosity and contact.conductivity, or use a thinner oil"
         if self.inlet_heating == "none":
-            leaves, remedy = "would leave", "Take it off by contact.inlet_heating = 'murch_wilson'"
+            leaves, remedy = "would leave", "Include it by contact.inlet_heating = 'murch_wilson'"
         return [
             f"the heat of the inlets {leaves} {reduction.min():.2g} of the film, at {1e3 * self.dynamic_viscosity:.3g} mPa s and "
             f"{speed:.3g} m/s (thermal loading {loading.max():.3g}{beyond}): published formulas differ by up to a fifth there. {remedy}"
@@ -137,8 +137,8 @@ class Film(Oil):
         sentence = f"Lambda = h_min / roughness is {thinnest:.2g} at the thinnest film"
         if thinnest < _BOUNDARY:
             return [
-                f"boundary lubrication: {sentence}, below {_BOUNDARY:g}: the surfaces touch, and the film of smooth surfaces is not what "
-                "carries. Take a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
+                f"boundary lubrication: {sentence}, below {_BOUNDARY:g}: the surfaces touch, and the smooth-surface film does not carry the "
+                "load. Use a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
             ]
         return [f"mixed lubrication: {sentence}, below {_MIXED:g}: asperities carry a part"] if thinnest < _MIXED else []
 

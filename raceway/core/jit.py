@@ -90,7 +90,7 @@ def _kernel_folder() -> OpenFolder | None:
         return folder
     warnings.warn(
         f"compiled kernels cannot be cached in {current_folder()} ({folder}); compiling in memory, which costs some ten seconds "
-        "a run. Set RACEWAY_CACHE_DIR to a folder of your own that can be written.",
+        "a run. Set RACEWAY_CACHE_DIR to a writable folder of yours.",
         RuntimeWarning,
         stacklevel=2,
     )
@@ -379,7 +379,7 @@ class Kernel(_Dispatcher):
         if "_nrt" in self.targetoptions:
             try:
                 numba.njit(self.signature, error_model="numpy")(self.py_func)
-                return "it creates arrays, which no kernel may; use the arrays that it is given, or scalars"
+                return "it creates arrays, which kernels must not: use its array arguments, or scalars"
             except (numba.core.errors.NumbaError, TypeError):
                 pass
         lines = [line.strip() for line in str(why).splitlines() if line.strip()]
@@ -454,9 +454,7 @@ def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
     for value in values:
         if isinstance(value, np.ndarray):
             if not value.flags.c_contiguous:
-                raise PluginError(
-                    f"kernel `{name}` got an array that is not C-contiguous: hand over np.ascontiguousarray(...)"
-                )
+                raise PluginError(f"kernel `{name}` got an array that is not C-contiguous: pass np.ascontiguousarray(...)")
         elif isinstance(value, tuple):
             _refuse_strided(value, name)
 

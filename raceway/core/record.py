@@ -347,7 +347,7 @@ def unbounded(schedule: Schedule, when: str, limit: float, state: dict[str, Any]
     """The error for a motion that grows without bound, with the stable limit of explicit steps [s] where one is known."""
     hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
     return StabilityError(
-        f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Take more `integrator.steps_per_turn`, add "
+        f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Use more `integrator.steps_per_turn`, add "
         "damping, or move away from a resonance.",
         state,
     )
@@ -501,7 +501,7 @@ class Recorder:
             else ""
         )
         return ConvergenceError(
-            f"{why} {self.schedule.when(self._done)}{history}. Take more `integrator.steps_per_turn`.",
+            f"{why} {self.schedule.when(self._done)}{history}. Use more `integrator.steps_per_turn`.",
             {**self._last_good(), "residuals": np.array(residuals)},
         )
 

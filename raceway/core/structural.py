@@ -365,9 +365,9 @@ def _compliance(contact: Contact, patch: Patch, ellipse: Ellipse, load: float, a
         centre = centre + change
         if np.abs(change).max() < 1e-9 * hertz:
             if pressed.truncated:
-                raise ConvergenceError("the groove's edge cuts the contact off", {})
+                raise ConvergenceError("the groove's edge truncates the contact", {})
             return (float(normal @ centre) - offset - hertz) / load + float(normal @ patch.race.crossing[0] @ normal)
-    raise ConvergenceError("no approach found for a single contact", {"place": centre})
+    raise ConvergenceError("the approach of a single contact did not converge", {"place": centre})
 
 
 #: Harmonics that are looked at; the lowest mode of a free ring is its second, that of a mounted one the 0th or 1st.

@@ -529,10 +529,10 @@ class Assembly:
         for index, body in enumerate(self.bodies):
             if body.held.any() or body.foundation is not None or body.frame is not None or index in caged:
                 continue
-            why = "it touches nothing" if index not in touching else "contact without friction does not hold them"
+            why = "it touches nothing" if index not in touching else "frictionless contact does not constrain them"
             free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
             sentences.append(
-                f"{body.name}: {free} ({why}); hold it by the cage, by fixed nodes, or by a bed under one of its surfaces"
+                f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
             )
         return sentences
 

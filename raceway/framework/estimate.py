@@ -52,20 +52,20 @@ class Estimate(Enum):
         f"{SUM[1]} at {{rpm:.6g}} r/min",
     )
     MESH_UNKNOWN = (
-        "not estimated: that of the mesh is not known, and is the largest",
-        "the error of the mesh is not known",
+        "not estimated: the error of the mesh is unknown and the largest",
+        "the error of the mesh is unknown",
     )
     TURNS_DIFFER = (
         "not estimated: no steady motion was found, and the turns that are used do not repeat",
         "the turns do not repeat",
     )
-    PART_UNKNOWN = ("not estimated: {reasons}", "that of the {part} is not known")
-    BEYOND_PLAN = ("the run went far beyond its plan",)
+    PART_UNKNOWN = ("not estimated: {reasons}", "the error of the {part} is unknown")
+    BEYOND_PLAN = ("the run far exceeded its plan",)
     STATIC_SCENE = ("the scene is static: nothing is identified",)
 
     # The time step.
     NO_TIME_STEP = (
-        "no time step; residual that the equilibrium is solved to",
+        "no time step; residual of the equilibrium",
         "no time step: residual of the equilibrium",
     )
     OF_INTEGRATOR = (
@@ -78,26 +78,26 @@ class Estimate(Enum):
         "a second run would cost as much",
     )
     SECOND_RUN_TOO_LARGE = (
-        "not estimated: the record of a second run with {steps} steps a turn would not fit",
-        "no room for a second run, {steps} steps a turn",
+        "not estimated: the record of a second run with {steps} steps per turn would not fit",
+        "no room for a second run, {steps} steps per turn",
     )
-    SECOND_RUN_FAILED = ("the run with {steps} steps a turn failed: {why}", "the run with {steps} steps a turn failed")
-    SECOND_RUN_WITHOUT_Z = ("the run with {steps} steps a turn gives no dynamic stiffness",)
+    SECOND_RUN_FAILED = ("the run with {steps} steps per turn failed: {why}", "the run with {steps} steps per turn failed")
+    SECOND_RUN_WITHOUT_Z = ("the run with {steps} steps per turn gives no dynamic stiffness",)
     RESIDUAL = (
-        "residual that each equilibrium is solved to; more of them change less",
+        "residual of each equilibrium; more of them change less",
         "residual of each equilibrium",
     )
     SECOND_SERIES = (
-        "series of {count} instead of {steps} equilibria a turn: harmonics beyond them",
-        "second series, {count} instead of {steps} equilibria a turn",
+        "series of {count} instead of {steps} equilibria per turn: harmonics beyond them",
+        "second series, {count} instead of {steps} equilibria per turn",
     )
     SECOND_SERIES_TOO_LARGE = (
-        "not estimated: the record of a second series with {count} equilibria a turn would not fit",
-        "no room for a second run, {count} equilibria a turn",
+        "not estimated: the record of a second series with {count} equilibria per turn would not fit",
+        "no room for a second run, {count} equilibria per turn",
     )
     SECOND_SERIES_FAILED = (
-        "the series of {count} equilibria a turn failed: {why}",
-        "the series of {count} equilibria a turn failed",
+        "the series of {count} equilibria per turn failed: {why}",
+        "the series of {count} equilibria per turn failed",
     )
 
     # The transient.
@@ -115,7 +115,7 @@ class Estimate(Enum):
     STEADY_SPEEDS_UNKNOWN = ("a steady motion of each speed could not be solved for",)
     TURN_BY_TURN = (
         "largest deviation of a single turn from all turns that are used",
-        "how far single turns differ",
+        "spread of single turns",
     )
     SINGLE_TURN = ("a single turn contains no measure of a transient",)
     LEAKAGE = (
@@ -127,16 +127,16 @@ class Estimate(Enum):
         "free vibration that does not close the turn",
     )
     OTHER_START = (
-        "friction remembers how the motion began: {size:.2g} between this start and '{kind}'; and {transient}",
+        "friction: the motion depends on its start: {size:.2g} between this start and '{kind}'; and {transient}",
         "friction: {size:.2g} between this start and '{kind}'",
     )
     OTHER_START_FAILED = (
-        "friction remembers how the motion began, and runs from other starts failed: {why}",
-        "friction remembers how the motion began",
+        "friction: the motion depends on its start, and runs from other starts failed: {why}",
+        "friction: the motion depends on its start",
     )
     OTHER_START_WITHOUT_Z = (
-        "friction remembers how the motion began, and start '{kind}' gives no dynamic stiffness",
-        "friction remembers how the motion began",
+        "friction: the motion depends on its start, and start '{kind}' gives no dynamic stiffness",
+        "friction: the motion depends on its start",
     )
 
     # The identification.

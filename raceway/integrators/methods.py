@@ -110,7 +110,7 @@ class QuasiStatic:
 
 @attrs.frozen
 class Periodic:
-    """The motion that repeats itself every turn, by collocation at Gauss points; its mesh follows the error.
+    """The motion that repeats every turn, by collocation at Gauss points; its mesh follows the error.
 
     Notes
     -----
@@ -154,8 +154,8 @@ class Periodic:
                 raise
             # Only the corrector of a branch that fails at its first point, the resting ring, leaves no state.
             raise ConvergenceError(
-                "no motion of the period of the force was found: the one that grows out of rest ends at 0 % of the force, where "
+                "no motion with the period of the force was found: the branch from rest ends at 0 % of the force, where "
                 f"its branch begins ({why}). Use integrator.kind = 'quasi_static' for speeds far below the natural frequencies; "
-                "at others a transient integrator with start = 'ramp' shows what the ring does.",
+                "at others a transient integrator with start = 'ramp' shows the motion of the ring.",
                 {"q": start.q.copy()},
             ) from why

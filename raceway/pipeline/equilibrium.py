@@ -58,7 +58,7 @@ def _refuse_no_load(model: Model) -> None:
     loaded = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
     if not loaded and model.system.free[0] > 0.0:
         raise ConvergenceError(
-            "nothing loads the bearing: every motion is free and there is no stiffness to find. Set `load.axial`, or hold "
+            "no load acts on the bearing: all motions are free and the stiffness is undefined. Set `load.axial`, or hold "
             'the ring with supports.axial = "displacement" under an axial load.'
         )
 
@@ -88,7 +88,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
     why = lost_preload(model) or f"Hold it ({held}) or load more balls."
     raise ConvergenceError(
-        f"the equilibrium is singular: nothing holds the ring against {' with '.join(names)}. {why}",
+        f"the equilibrium is singular: no stiffness against {' with '.join(names)}. {why}",
         {"q": q},
     )
 
@@ -115,12 +115,10 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
     if problem.contact.friction > 0.0 and model.traits.every_node:
         warnings.append(
-            "equilibria of elastic bodies are without friction, and so is their stiffness: contact.friction acts in motion"
+            "equilibria and static stiffness of elastic bodies are frictionless: contact.friction acts in motions only"
         )
     elif problem.contact.friction > 0.0:
-        warnings.append(
-            "friction is on: balls that do not roll add a tangential stiffness which turning bearings do not have"
-        )
+        warnings.append("friction is on: balls that do not roll add a tangential stiffness, which rotating bearings lack")
     return (*warnings, *model.bearing.edge_warnings(model, inner, outer, force))
 
 
@@ -165,7 +163,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
 
 
 def motion_table(model: Model, record: Record) -> Tables:
-    """The table ``motion`` of result.json: mean axial displacement, and the largest of each race in the turns that are used.
+    """The table ``motion`` of result.json: mean axial displacement, and the largest of each race in the evaluated turns.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 Notes
 -----
-A method of order p leaves an error c dt^p.  A second run with n' instead of n steps a turn gives c, so that the error of
+A method of order p leaves an error c dt^p.  A second run with n' instead of n steps per turn gives c, so that the error of
 the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 
 A series of equilibria has no such order.  Each equilibrium is exact, and over a whole turn the Fourier line of N samples errs by the
@@ -42,7 +42,7 @@ from raceway.planning.resolve import fits
 from raceway.plugins.identifiers import Fft1x
 from raceway.storage.tables import Tables
 
-#: Least steps a turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
+#: Least steps per turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
 _LEAST_STEPS = 8
 _MOST_OF_LIMIT = 0.95
 #: A second run whose step differs by less than this tells nothing.
@@ -51,7 +51,7 @@ _LEAST_RATIO = 1.1
 _CLOSER = 2.0 / 3.0
 #: Turns of a second run with more steps, which is shorter so that it costs no more than the first.
 _LEAST_TURNS = 4
-#: Least equilibria a turn of a second series.
+#: Least equilibria per turn of a second series.
 _LEAST_EQUILIBRIA = 181
 #: Largest deviation of a turn from all turns over |Z| up to which turns repeat.
 _REPEATS = 1e-2
@@ -129,11 +129,11 @@ def error_warnings(error: Tables, identified: bool) -> list[str]:
     if names:
         size, name = max((error[name], name) for name in names)
         cause = "its estimated error" if name == "total" else f"the error of {name.replace('_', ' ')}"
-        number, lost = ("Z", "K and C say") if identified else ("the stiffness", "it says")
-        warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {lost} nothing")
+        number, lost = ("Z", "K and C carry") if identified else ("the stiffness", "it carries")
+        warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {lost} no information")
     elif contact >= _OTHER_LAW:
         warnings.append(
-            f"the contact law is off Hertz's by {contact:.2g}, which is not part of the stated error: {error['how']['contact']}"
+            f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {error['how']['contact']}"
         )
     why = error["how"]["total"]
     if identified and why.estimate in _TOTAL_UNKNOWN:
@@ -163,7 +163,7 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
     unknown = {name.replace("_", " "): parts[name].how for name in needed if parts[name].size is None}
     if not unknown:
         return None
-    reasons = " and ".join(f"that of the {name} is not known ({how})" for name, how in unknown.items())
+    reasons = " and ".join(f"the error of the {name} is unknown ({how})" for name, how in unknown.items())
     return Estimate.PART_UNKNOWN(reasons=reasons, part=next(iter(unknown)))
 
 
@@ -183,7 +183,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
 
     Parameters
     ----------
-    second_steps : steps a turn of the second run; None: chosen here
+    second_steps : steps per turn of the second run; None: chosen here
     """
     model, method, first = run.model, run.model.problem.integrator.method, run.motion
     if method.steady:
@@ -222,7 +222,7 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
     shift = change / ratio / abs(run.value)
     if not np.isfinite(abs(shift)):
         return Part(None, Estimate.SECOND_RUN_WITHOUT_Z(steps=count)), second
-    words = "half as many steps" if 2 * count == steps else f"{count} instead of {steps} steps a turn"
+    words = "half as many steps" if 2 * count == steps else f"{count} instead of {steps} steps per turn"
     return Part(float(abs(shift)), Estimate.SECOND_RUN(change=words, order=method.order), -shift), second
 
 
@@ -235,7 +235,7 @@ def _other_steps(steps: int, least: float = 0.0) -> int:
 
     Parameters
     ----------
-    least : steps a turn that the stable limit asks for; 0 for an implicit method
+    least : steps per turn that the stable limit asks for; 0 for an implicit method
     """
     fewer = max(steps // 2, _LEAST_STEPS, ceil(least))
     return fewer if steps >= _LEAST_RATIO * fewer else ceil(1.5 * steps)
@@ -278,7 +278,7 @@ def _more_equilibria(steps: int) -> int:
 
 
 def _finer_value(run: Identified, count: int) -> complex:
-    """Z [N/m] of a series of ``count`` equilibria a turn.
+    """Z [N/m] of a series of ``count`` equilibria per turn.
 
     Raises
     ------
@@ -414,5 +414,5 @@ def misfit_warnings(model: Model, error: Tables) -> list[str]:
         return []
     return [
         f"Z is not of the form K - m w^2 + j w C over these whirl speeds (misfit {error['identification']:.2g} of |Z|; free tilts, "
-        "gyroscopic moments, a resonance): K and C are those of no speed, take identifier 'fft_1x' at each"
+        "gyroscopic moments, a resonance): K and C belong to no speed: use identifier 'fft_1x' at each"
     ]

@@ -77,10 +77,10 @@ _LEAST = {"m": 1e-9, "N": 0.02, "N m": 1e-4, "deg": 1e-3, "r/min": 1.0, "K": 1e-
 _ELSE, _PART = 1e-7, 1e-3
 #: Second difference over the first that calls for a smaller step, and that is a kink; rounding of a stiffness.
 _UNEVEN, _KINK, _ROUNDING = 5e-4, 0.02, 1e-11
-_BENDS = "the model has a kink there: to either side derivatives are others"
+_BENDS = "one-sided derivatives differ at this value"
 _NONE_LEFT = "no intervals: every tolerance is left out"
-_SOME_LEFT = "intervals are of the other tolerances alone, as some are left out: wider ones are likely"
-_AT_THE_EDGE = "a contact is about to open or to close there: derivatives beyond it are others"
+_SOME_LEFT = "some tolerances are left out: wider intervals are likely"
+_AT_THE_EDGE = "a contact opens or closes near this value: derivatives beyond it differ"
 #: Arrays of a system that forces at rest and in motion depend on.
 _ARRAYS = ("scalars", "table", "stiffness", "load", "law_params", "mass", "damping", "force_params")
 #: Samples of a turn with which the force's period is checked; tolerance of the orbit where the scene's integrator has none, and of
@@ -181,14 +181,14 @@ class _SteadyOrbit:
         """
         period = model.excitation.period_s
         if period is None:
-            why = "a force whose speed changes has no steady orbit: take 'unidirectional' or 'bidirectional'"
+            why = "a force whose speed changes has no steady orbit: use 'unidirectional' or 'bidirectional'"
             raise SceneError.at("excitation.kind", model.excitation.name, why)
         refuse(model.system, Schedule(period / _SAMPLES, _SAMPLES, 1))
         system = surrogate(model.system)
         q = equilibrium.displacement
         problem = problem_of(system, 2.0 * np.pi / period, q)
         if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
-            why = "balls that orbit pass at another frequency than the force: no motion repeats itself every turn"
+            why = "the ball-pass frequency of orbiting balls differs from that of the force: no motion repeats every turn"
             raise SceneError.at("kinematics.orbiting", True, why)
         tolerance = float(getattr(model.problem.integrator.method, "tolerance", _TOLERANCE))
         return cls(model, find(problem, q, equilibrium.stiffness_rows_held, min(tolerance, _TOLERANCE)))
@@ -199,7 +199,7 @@ class _SteadyOrbit:
         table = orbit_tables([self.orbit])[0]
         if table["stable"]:
             return ""
-        return f"the steady orbit is unstable, {growth_of_disturbances(table)}: a ring leaves it, and what holds of it holds of no lasting motion"
+        return f"the steady orbit is unstable, {growth_of_disturbances(table)}: the ring leaves it, and its derivatives belong to no lasting motion"
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -323,7 +323,7 @@ class Gradients:
         why = {key.path: refused([key], -1.0) for key in keys if key.value == 0.0}
         inside = [key for key in keys if not why.get(key.path)]
         why |= ends(inside, 1.0) | ends(inside, -1.0)
-        zero = "is 0, the end of its range: it switches a part on, which is no small change"
+        zero = "is 0, the end of its range: it switches a part of the model on"
         return {
             key.path: NoDerivative(f"is at the end of its range: {why[key.path]}" if key.value else zero)
             for key in keys
@@ -383,7 +383,7 @@ class Gradients:
         """
         if self.model.scene.heat is not None:
             raise NoDerivative(
-                "moves the steady temperatures, too, which are not solved for here. Sample it, raceway band --samples"
+                "also changes the steady temperatures, which derivatives do not solve for. Sample it: raceway band --samples"
             )
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
@@ -438,7 +438,7 @@ def refuse_points(problem: Problem) -> None:
     """Raise ``SceneError`` for bodies whose contacts are pressures at surface points, or are not compiled."""
     traits = problem.traits
     if not (traits.compiled and traits.resultants):
-        why = "surface points open and close one by one: their forces have no derivative. Take contact.discretisation = 'resultant'"
+        why = "surface points open and close one by one: their forces have no derivative. Use contact.discretisation = 'resultant'"
         raise SceneError.at("bodies.kind", problem.bodies.name, f"{why} on rigid or condensed bodies")
 
 
@@ -460,7 +460,7 @@ def _changed(model: Model, neighbour: Model) -> bool:
     systems = surrogate(model.system), surrogate(neighbour.system)
     pairs = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]
     if any(value.shape != other.shape for value, other in pairs):
-        raise NoDerivative("switches a part of the model on or off, which is no small change")
+        raise NoDerivative("switches a part of the model on or off")
     periods = [None if each.excitation is None else each.excitation.period_s for each in (model, neighbour)]
     pairs.append((model.guess, neighbour.guess))
     return periods[0] != periods[1] or not all(np.array_equal(value, other) for value, other in pairs)

@@ -97,7 +97,7 @@ def pressure_warnings(model: Model, force: np.ndarray) -> list[str]:
     name = (f"row {rows[ball] + 1}, " if rows[-1] else "") + f"ball {ball - np.argmax(rows == rows[ball])}"
     return [
         f"the contact pressure reaches {1e-6 * peaks[race][ball]:.0f} MPa on the {('inner', 'outer')[race]} race, {name}: above "
-        f"{1e-6 * limit:.0f} MPa (static load ratings, ISO 76) ball and race stay dented, which is not computed"
+        f"{1e-6 * limit:.0f} MPa (static load ratings, ISO 76) permanent indentation of ball and race is not modelled"
     ]
 
 
@@ -157,12 +157,12 @@ def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
         axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
         if axial < _SLIDING * push[balls].sum():
             ratio = f"{axial / push[balls].sum():.2g} times the centrifugal force of its balls"
-            rows.append(f"row {row + 1} is pressed together axially with {axial:.4g} N, {ratio}")
+            rows.append(f"row {row + 1} carries an axial load of {axial:.4g} N, {ratio}")
     if not rows:
         return []
     return [
-        f"{', '.join(rows)}: below {_ROLLING:g} times gross sliding was seen (Hirano 1965). Balls then roll slower than their speeds "
-        "here say. Preload more, or take lighter balls (balls.material)"
+        f"{', '.join(rows)}: below {_ROLLING:g} times gross sliding was observed (Hirano 1965), with balls slower than computed here. Raise "
+        "the preload, or use lighter balls (balls.material)"
     ]
 
 
@@ -180,8 +180,8 @@ def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
         return []
     worst = max(beyond, key=lambda name: beyond[name])
     return [
-        f"{worst} follows at once, which is off by (w / w1)^2 = {beyond[worst]:.2g} of what it gives way: that is not in the stated "
-        "error. Elastic bodies (bodies.kind = 'elastic') move with their mass"
+        f"{worst} is quasi-static, an error of (w / w1)^2 = {beyond[worst]:.2g} of its deflection, which the stated error does not include. Elastic bodies (bodies.kind "
+        "= 'elastic') include its inertia"
     ]
 
 

@@ -447,7 +447,7 @@ def _identified_facts(result: Result) -> list[Fact]:
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
     damping = C.fact(result)
     if band is not None:
-        remark = "both ends of the band of time constants; all else is the low end's"
+        remark = "both ends of the band of time constants; other numbers are of the low end"
         damping = C.label, C.span(band[C.name], 3), remark
     rows = [
         K.fact(result, speed),

@@ -91,7 +91,7 @@ def run(
             return _finished(_run_band(scene, once) if band else once(scene), registry)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
-                f"the numbers of this scene leave what can be computed with ({why}): check its units"
+                f"the numbers of this scene exceed the range of floating-point arithmetic ({why}): check its units"
             ) from why
     except RacewayError as error:
         try:
@@ -225,7 +225,7 @@ def _answer(
     identified = Identified(model, equilibrium, motions, identification, allowance.check)
     started = working_clock()
     if allowance.spent:  # what is computed is kept
-        doubts = [allowance.words("the error is not estimated, because this run went far beyond its plan"), *doubts]
+        doubts = [allowance.words("the error is not estimated, because the run far exceeded its plan"), *doubts]
         error = no_error(Estimate.BEYOND_PLAN())
     else:
         error = error_table(identified)
@@ -434,12 +434,12 @@ class _Allowance:
         """Why a run is stopped, and the way out."""
         if self.grown:
             return (
-                f"{where}: its memory is far over the planned {self.bytes / 2**30:.2g} GiB: its contacts are far larger than "
-                "those of Hertz that the mesh is made for. Take a stiffer law, a smaller load, or `--patience inf`"
+                f"{where}: its memory far exceeds the predicted {self.bytes / 2**30:.2g} GiB: its contacts are far larger than "
+                "the Hertz contacts for which the mesh is made. Use a stiffer law, a smaller load, or `--patience inf`"
             )
         return (
             f"{where}: {self.taken:.3g} s of processor time are over {self.patience:g} times the planned {self.planned:.3g} s. "
-            "`raceway run --patience` takes another factor, or inf"
+            "`raceway run --patience` sets another factor, or inf"
         )
 
     def check(self, label: str, step: int, total: int) -> None:

@@ -41,13 +41,11 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
     sure = mesh.get("replaced_uncertainty")
     if sure is not None:
         values = ", ".join(f"{1e9 * mesh[f'replaced_{race}_m_per_n']:.2f}" for race in ("inner", "outer"))
-        how = f"inner, outer: what the mesh gives way under a contact; known to {100.0 * sure:.1g} % of the contact's compliance"
+        how = f"inner, outer: compliance of the mesh below a contact, uncertain by {100.0 * sure:.1g} % of the contact's"
         rows.append(("replaced by the law", f"{values} nm/N", how))
     share, unbalanced, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
     if share is not None:
-        rows.append(
-            ("penetration share", number(100.0 * share, "%", 3), "of the approach, at most: what the law lets overlap")
-        )
+        rows.append(("penetration share", number(100.0 * share, "%", 3), "of the approach at most: penetration of the law"))
     rows += _subsurface(model.get("subsurface") or [])
     if unbalanced is not None:
         rows.append(("unbalanced force", number(unbalanced, "N", 2), "largest, reaction against load"))
@@ -97,10 +95,10 @@ def _inertia(inertia: ReadTables) -> list[Row]:
     slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
     error = inertia[f"{known[slowest]}_error"]
     moves = " is part of the motion" if slowest.startswith("ball") and inertia.get("ball_along_grooves_in_motion") else ""
-    costs = moves if error is None else f" follows at once, which is off by (w / w1)^2 = {error:.1e}"
+    costs = moves if error is None else f", quasi-static: error (w / w1)^2 = {error:.1e}"
     rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
     remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
-    return [("slowest own motion", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
+    return [("lowest elastic mode", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
 
 
 #: Axial forces below this are rounding.
@@ -151,7 +149,7 @@ def _mounted(found: ReadTables) -> list[Row]:
         rows.append(("axial load at lift-off", loads, f"without other loads: {which}"))
     if held is not None:
         before = f"before mounting {held['before_mounting_n']:g} N, mounted {held['mounted_n']:.5g} N"
-        how = f"what the held displacement takes now; {before}"
+        how = f"force of the held displacement; {before}"
         running = held["running_n"] if abs(held["running_n"]) > _ROUNDING_N else 0.0
         rows.append(("axial force", number(running, "N"), how))
     return rows
@@ -190,7 +188,7 @@ def error_rows(result: ReadTables) -> list[Row]:
     series = [window for window in identified.get("series", []) if window["error"] is not None]
     if series:
         worst = max(series, key=lambda window: window["error"])
-        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(series)} windows, each with its own in result.json"
+        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(series)} windows, all in result.json"
         rows.append(("largest of the series", f"{worst['error']:.1e}", how))
     return rows
 
@@ -199,10 +197,10 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
     """Steady motions under the same force, where more than one was found."""
     if len(found) < 2:
         return []
-    rows: list[Row] = [("Steady motions that were found", "", "")]
+    rows: list[Row] = [("Steady motions", "", "")]
     for k, one in enumerate(found):
         z, word = one["dynamic_stiffness"], "unstable" if not one["stable"] else one["verdict"]
-        grows = f"{word}, multiplier {one['multiplier']:.4g} a turn, found {one['found']}{'; reported above' if one['taken'] else ''}"
+        grows = f"{word}, multiplier {one['multiplier']:.4g} per turn, found {one['found']}{'; reported above' if one['taken'] else ''}"
         value = f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j N/µm"
         rows.append((f"Z of motion {k + 1}", value, f"{1e6 * one['amplitude_m']:.4g} µm; {grows}"))
     return rows

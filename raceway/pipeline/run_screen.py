@@ -83,7 +83,7 @@ def _damping_rows(result: ReadTables) -> list[Row]:
     low, high = band["loss_factor"]
     return [
         (C.label, C.span(band[C.name], 3), origin),
-        ("loss factor", f"{low:.3g} to {high:.3g}", "w C / K at both ends; all else is that of the low end"),
+        ("loss factor", f"{low:.3g} to {high:.3g}", "w C / K at both ends; other numbers are of the low end"),
         (PHASE_LAG.label, PHASE_LAG.span(band["phase_lag_deg"], 3), PHASE_LAG.words),
     ]
 
@@ -106,7 +106,7 @@ def _model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
 
 def _static(result: ReadTables) -> list[Row]:
     return [
-        ("Answer of a static scene", "", "without a table [excitation] there is no K(w), C or orbit to identify"),
+        ("Answer of a static scene", "", "without a table [excitation] no K(w), C or orbit is identified"),
         *tangent_rows(result),
         *_model_rows(result, KYY_TILTS_FOLLOW, KYY),
         *loaded_balls(result, ["most"]),
@@ -196,6 +196,6 @@ def _set(bearing: ReadTables) -> str:
     places = (
         ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm" if placed else f"{1e3 * (apart or 0.0):g} mm apart"
     )
-    what = "rows that differ, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
+    what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
     name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
     return f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}"

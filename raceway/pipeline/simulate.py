@@ -32,7 +32,7 @@ OnProgress = Callable[[str, int, int], None]
 Watch = Callable[[], None]
 #: Slips that a start leaves in contacts which stick stay there.
 _STICKS = (
-    "friction: where contacts stick depends on how the motion began, so that several steady motions exist: "
+    "friction: sticking depends on the start of the motion, so that several steady motions exist: "
     "integrator.start = 'orbit', 'ramp' and 'static' lead to different ones"
 )
 #: Samples of a steady turn, and the error of its displacement over its amplitude.
@@ -215,13 +215,13 @@ def _step_warnings(
         least = int(period / (SAFETY * critical)) + 1
         raise StabilityError(
             f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
-            f"'{problem.integrator.kind}', {critical:.3g} s. Take at least {least}, or 'auto'.",
+            f"'{problem.integrator.kind}', {critical:.3g} s. Use at least {least}, or 'auto'.",
             {"q": equilibrium.displacement, "ball": equilibrium.ball},
         )
     if dt > SAFETY * critical * (1.0 + 1e-9):
         return (
-            f"the step is {dt / critical:.2f} of the stable limit, which belongs to one state: balls that lose and regain contact "
-            f"each turn can make the motion grow above {SAFETY} of it. Take {ceil(period / (SAFETY * critical))} steps per turn",
+            f"the step is {dt / critical:.2f} of the stable limit, which holds for one state: where balls lose and regain contact "
+            f"each turn, the motion may grow above {SAFETY} of it. Use {ceil(period / (SAFETY * critical))} steps per turn",
         )
     return ()
 
@@ -267,7 +267,7 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
 
 
 def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
-    """Every how many steps are recorded: a divisor that leaves the plan's samples a turn, or all when there is none."""
+    """Every how many steps are recorded: a divisor that leaves the plan's samples per turn, or all when there is none."""
     return steps_per_turn // recorded_per_turn(steps_per_turn, turns, inertial)
 
 

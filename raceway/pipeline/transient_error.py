@@ -213,7 +213,7 @@ def _lasting(motion: Simulation, record: Record, value: complex) -> complex:
 
 @attrs.frozen
 class Run:
-    """Z [N/m] of a run without what its free vibration leaks into the 1x component, and its steps a turn."""
+    """Z [N/m] of a run without what its free vibration leaks into the 1x component, and its steps per turn."""
 
     value: complex
     steps: int
@@ -269,7 +269,7 @@ def start_warnings(model: Model, error: Tables) -> list[str]:
     if not model.problem.depends_on_start or error["transient"] is not None:
         return []
     return [
-        f"friction: how far the answer depends on the motion's start is not known, and so is its error: {error['how']['transient']}"
+        f"friction: the dependence of the answer on the start of the motion, and so its error, is unknown: {error['how']['transient']}"
     ]
 
 
@@ -312,7 +312,7 @@ def series_warnings(identification: Identification | None) -> list[str]:
         return []
     error, speed = max(errors)
     return [
-        f"the motion does not follow the speed in {len(bad)} of {len(identification.series)} windows, {min(bad):.0f} to {max(bad):.0f} "
+        f"the motion lags behind the speed in {len(bad)} of {len(identification.series)} windows, {min(bad):.0f} to {max(bad):.0f} "
         f"r/min: the error of Z is up to {error:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or "
         "run these speeds one by one"
     ]

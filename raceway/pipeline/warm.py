@@ -53,7 +53,7 @@ _SPEEDS, _ROUNDS = 17, 3
 
 
 #: Reason of points without steady temperatures.
-RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: more heat is made than can leave, however warm the bearing becomes until there"
+RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: the friction heat exceeds the heat removed at every temperature up to there"
 #: Part of the highest temperature that steady ones reach at the limit speed where it is no fold that ends them.
 _AT_LIMIT = 0.9
 
@@ -129,8 +129,8 @@ def warm_plan(scene: Scene) -> ScenePlan:
     except SceneError as fault:
         level = ", ".join(f"{node} at {warmth.temperatures[0, NODES.index(node)]:.4g} °C" for node in _FELT)
         raise ConvergenceError(
-            f"steady temperatures are no way to run, {level}: {fault.mistakes[0].message}. Of the heat: more or colder oil (heat.oil_flow, "
-            "heat.oil_inlet_c), an inner ring that it wets (heat.inner_wetting), less speed"
+            f"the bearing cannot run at its steady temperatures, {level}: {fault.mistakes[0].message}. Remedies: more or colder oil (heat.oil_flow, "
+            "heat.oil_inlet_c), a wetted inner ring (heat.inner_wetting), a lower speed"
         ) from fault
 
 
@@ -225,13 +225,13 @@ def _runaway_words(scene: Scene) -> str:
     elif hottest > _AT_LIMIT * _HOTTEST:
         words = f"above {speed:.5g} r/min steady temperatures exceed {_HOTTEST:g} °C, at which steel softens and oil burns. "
     else:
-        words = f"no steady temperature above {speed:.5g} r/min, where the bearing reaches {hottest:.4g} °C: beyond, heat outgrows what leaves "
+        words = f"no steady temperature above {speed:.5g} r/min, where the bearing reaches {hottest:.4g} °C: beyond, the heat outgrows its removal "
         words += "(thermal runaway, a fold) or closes the bearing. "
     if scene.bearing.preloaded and scene.bearing.preload_kind == "rigid":
-        words += "A rigid preload grows as the inner ring warms: preload it less or by a spring. "
+        words += "A rigid preload grows as the inner ring warms: reduce it, or use a spring. "
     if scene.lubricant is not None and not scene.lubricant.thins:
         words += f"{NO_THINNING}. "
-    return f"{words}Carry off more heat (heat.oil_flow, heat.inner_oil), or take a thinner oil"
+    return f"{words}Remove more heat (heat.oil_flow, heat.inner_oil), or use a thinner oil"
 
 
 def _keys(scene: Scene) -> tuple[str, ...]:

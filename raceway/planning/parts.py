@@ -86,7 +86,7 @@ def decide_tilts(problem: Problem, parts: Decisions) -> bool:
 def decide_balls(problem: Problem, parts: Decisions) -> Balls:
     """Forces on the balls."""
     inertia = problem.kinematics.ball_inertia and problem.spin_speed > 0.0
-    why_not = "kinematics.ball_inertia is false" if problem.spin_speed > 0.0 else "nothing turns: no spin speed"
+    why_not = "kinematics.ball_inertia is false" if problem.spin_speed > 0.0 else "no spin speed"
     inertia = parts.decide(
         inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
     )
@@ -95,17 +95,17 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
         parts.decide(problem.spin_changes, part, problem.why("spin_changes"))
     rates = problem.excitation is not None and (problem.integrator.method.inertial or not problem.recorded)
     damped = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
-    why_not = "nothing moves, or no rates: a series of equilibria" if damped else problem.said("contact.damping", "0")
+    why_not = "no motion or no rates: a series of equilibria" if damped else problem.said("contact.damping", "0")
     why = "contact.damping is set" if problem.contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
     parts.decide(damped and rates, "contact damping", why, why_not)
     rubbing = problem.contact.friction > 0.0
     why_not = problem.said("contact.friction", "0")
     if rubbing and not problem.recorded and problem.traits.every_node:
         rubbing = False
-        why_not = "nothing slides at rest: equilibria of elastic bodies are without it, and so is their stiffness"
+        why_not = "equilibria and static stiffness of elastic bodies are frictionless"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
     hypothesis = problem.kinematics.gyroscopic != "none"
-    still, part = "nothing turns: no spin speed", "gyroscopic moments of the balls"
+    still, part = "no spin speed", "gyroscopic moments of the balls"
     why_not = still if hypothesis else problem.said("kinematics.gyroscopic", "none")
     moments = parts.decide(
         hypothesis and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not
@@ -125,8 +125,8 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     """Coordinates that move, and the turns that are integrated."""
     dynamic, integrator, identifier = problem.excitation is not None, problem.integrator, problem.identifier
     spins = problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
-    part, why = "gyroscopic moments of ring and rotor", "both spin, on free tilts"
-    parts.decide(spins and tilts and dynamic, part, why, "nothing spins on free tilts")
+    part, why = "gyroscopic moments of ring and rotor", "spin on free tilts"
+    parts.decide(spins and tilts and dynamic, part, why, "no spin on free tilts")
     form = "steady orbit" if integrator.method.steady else "time integration"
     if not parts.decide(problem.recorded, f"{form} ({integrator.kind})", problem.why("recorded")):
         return Motion(False, 0, 0)
@@ -138,7 +138,7 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     once = (steady or not integrator.method.inertial) and repeats and turns > 1
     if once and _OTHER_TURNS not in parts.force:
         motion = "the steady motion" if steady else "a series of equilibria without memory"
-        parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats itself every turn")
+        parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats every turn")
         turns = 1
     parts.decide(problem.depends_on_start, "run from another start", problem.why("depends_on_start"))
     return Motion(True, turns, problem.steps_per_turn)
@@ -148,7 +148,7 @@ def decide_output(problem: Problem, parts: Decisions, motion: Motion) -> None:
     """What of the answer is not made."""
     every = motion.steps_per_turn
     samples = recorded_per_turn(every, motion.turns, problem.integrator.method.inertial) if motion.recorded else 0
-    why_not = f"{samples} of {every} steps a turn are recorded: lines up to some tens of 1x need no more"
+    why_not = f"{samples} of {every} steps per turn are recorded, enough for harmonics up to some tens of 1x"
     part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
     parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
     parts.leave_out("pictures", "drawn by --pictures only")

@@ -204,7 +204,7 @@ class Check(Shown):
     >>> import raceway as rw
     >>> rw.check({"bearing": {"preset": "B7206C"}})
     1 mistake
-      load.axial  0.0  nothing loads the bearing: there is no stiffness to find
+      load.axial  0.0  no load acts: the stiffness is undefined
     """
 
     mistakes: tuple[Mistake, ...] = ()

@@ -23,7 +23,7 @@ from raceway.scene.scene import Scene, SceneTables
 from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
 from raceway.storage.tables import Tables
 
-#: Steps a turn where the scene says "auto", and samples a turn that are kept of short runs.
+#: Steps a turn where the scene says "auto", and samples per turn that are kept of short runs.
 STEPS_PER_TURN = 360
 #: Part of the stable limit, taken at the stiffest tangent of the orbit, that "auto" steps take. Balls that leave and meet the
 #: races each turn pump motions up a little below the limit of the frozen tangent: one orbit at 0.885 of it grew in 49 turns.
@@ -183,7 +183,7 @@ class Problem(SceneTables):
             return False, "no excitation changes the speed"
         if self.kinematics.spin_speed_rpm is not None:
             rpm = self.kinematics.spin_speed_rpm
-            return False, f"balls, ring and rotor keep what belongs to kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
+            return False, f"balls, ring and rotor stay at kinematics.spin_speed_rpm = {rpm:.6g} at every speed"
         return True, f"balls, ring and rotor follow the speed of excitation '{excitation.name}'"
 
     @Derived
@@ -305,7 +305,7 @@ class Problem(SceneTables):
 
     @Derived
     def depends_on_start(self) -> tuple[bool, str]:
-        """Whether the answer depends on how the motion began, and a second run measures how far.
+        """Whether the answer depends on the start of the motion, and a second run measures how far.
 
         Notes
         -----
@@ -316,7 +316,7 @@ class Problem(SceneTables):
             return False, "contact.friction is 0"
         if not self.recorded or self.several_speeds or self.traits.every_node:
             return False, "the transient of this scene is not estimated"
-        return True, "friction: the answer depends on how the motion began, the error is how far"
+        return True, "friction: the answer depends on the start of the motion, the error is by how much"
 
     @Derived
     def compared_with_steady(self) -> tuple[bool, str]:
@@ -345,22 +345,22 @@ _UNSTEADY: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "contact.friction", lambda p: p.contact.friction > 0.0,
-        "contact.friction: where a contact sticks depends on how the motion began, there is no single one",
+        "contact.friction: sticking depends on the start of the motion, no steady orbit is unique",
     ),
     Rule(
         "contact.kind", lambda p: p.contact.law.state_size > 0,
-        lambda p: f"contact law '{p.contact.kind}' has a memory: its motion cannot be solved for by itself",
+        lambda p: f"contact law '{p.contact.kind}' has a memory: its steady orbit cannot be solved for directly",
     ),
     Rule(
         "kinematics.orbiting", lambda p: p.kinematics.orbiting and not p.force_alone_directs,
-        "kinematics.orbiting: balls pass at another frequency than the force, no motion repeats itself every turn unless the "
+        "kinematics.orbiting: the ball-pass frequency differs from that of the force, no motion repeats every turn unless the "
         "force turns and no radial load acts",
     ),
 )  # fmt: skip
 
 
 def _asks_for_a_transient(key: str) -> Rule[Problem]:
-    return Rule(key, lambda p: p.says(key), f"`{key}` is given, which a transient has")
+    return Rule(key, lambda p: p.says(key), f"`{key}` is set, a key of transients")
 
 
 #: Why integrator.kind = "auto" integrates over time nevertheless.

@@ -70,7 +70,7 @@ def _inertial(p: Problem) -> bool:
 
 
 _DAMPS = (
-    "is damping in proportion to a contact's stiffness, which contact resultants on rigid or condensed bodies have: take those, "
+    "is damping proportional to the contact stiffness, which contact resultants on rigid or condensed bodies support: use those, "
     "or contact.damping in N s/m"
 )
 _ROWS = "the rows of this set are different bearings"
@@ -83,12 +83,12 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "contact.kind", lambda p: renews(p.contact.law) and p.spin_speed == 0.0,
-        "needs the speed at which its contacts run, and nothing turns: give excitation.speed_rpm or kinematics.spin_speed_rpm, or "
-        "take kind = 'hertz', the dry law",
+        "needs the running speed of its contacts: set excitation.speed_rpm or kinematics.spin_speed_rpm, or "
+        "use kind = 'hertz', the dry law",
     ),
     Rule(
         "contact.kind", lambda p: renews(p.contact.law) and _has_law(p) and not p.traits.renews,
-        "follows the running speed, which contact resultants on rigid or condensed bodies do: take those, or kind = 'hertz'",
+        "depends on the running speed, which contact resultants on rigid or condensed bodies support: use those, or kind = 'hertz'",
     ),
     Rule("contact.damping", lambda p: p.contact.in_a_band and not p.traits.damps, _DAMPS),
     Rule("contact.time_constant", lambda p: p.contact.time_constant is not None and not p.traits.damps, _DAMPS),
@@ -96,7 +96,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     Rule(
         "contact.loss_factor",
         lambda p: p.contact.loss_factor is not None and p.excitation is not None and p.excitation.period_s is None,
-        "belongs to one frequency, and the excitation has none: give contact.time_constant",
+        "needs an excitation of one frequency: set contact.time_constant",
     ),
     Rule("kinematics.ring_growth", lambda p: p.kinematics.ring_growth and p.bearing.bore is None, "needs the bearing's `bore`"),
     Rule(
@@ -107,9 +107,9 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.kinematics.ball_inertia,
-        "comes with the balls' centrifugal force, which alone presses an idle ball to its race: set ball_inertia = true",
+        "needs the balls' centrifugal force, which presses an unloaded ball to its race: set ball_inertia = true",
     ),
-    Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs a spin speed: nothing turns"),
+    Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs a spin speed"),
     *(
         Rule(
             key, lambda p, key=key: p.spin_changes and not p.traits.compiled and _slow_key(p) == key,  # type: ignore[misc]
@@ -120,7 +120,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "kinematics.ball_growth", lambda p: p.kinematics.ball_growth and p.spin_changes,
-        "does not follow a speed that changes: set it false, or give one speed with kinematics.spin_speed_rpm",
+        "does not support a changing speed: set it false, or fix the speed by kinematics.spin_speed_rpm",
     ),
 )  # fmt: skip
 
@@ -133,7 +133,7 @@ _HEAT: tuple[Rule[Problem], ...] = (
         Rule(
             f"mounting.{node}_temperature",
             lambda p, node=node: p.heat is not None and getattr(p.scene.mounting, f"{node}_temperature"),  # type: ignore[misc]
-            "is computed where there is a table [heat]: delete one of them",
+            "is computed by the table [heat]: delete one of them",
         )
         for node in ("inner", "outer", "ball")
     ),
@@ -142,7 +142,7 @@ _HEAT: tuple[Rule[Problem], ...] = (
             f"heat.{key}",
             lambda p, key=key, sizes=sizes: p.heat is not None and getattr(p.heat, key) == "auto"  # type: ignore[misc]
             and any(getattr(row, size) is None for row in p.bearing.of_rows for size in sizes),
-            f"is 'auto': give a number, or the bearing's {' and '.join(f'`{size}`' for size in sizes)}, from which it follows",
+            f"is 'auto': set a number, or the bearing's {' and '.join(f'`{size}`' for size in sizes)}, from which it follows",
         )
         for keys, sizes in (
             (("inner_oil", "outer_oil"), ("width",)),
@@ -170,11 +170,11 @@ _MOTION: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "excitation.kind", lambda p: not p.bearing.equal_rows and p.spin_changes,
-        f"{_ROWS}: a speed that changes is followed by balls of one kind only. Give one with kinematics.spin_speed_rpm",
+        f"{_ROWS}: a changing speed is supported for balls of one kind only. Fix it by kinematics.spin_speed_rpm",
     ),
     Rule(
         "excitation", lambda p: p.excitation is not None and p.excitation.amplitude_n == 0.0,
-        "its force is zero: leave the table out for a static scene",
+        "the force is zero: delete the table for a static scene",
     ),
     Rule(
         "identifier.kind", lambda p: p.excitation is not None and "period" in p.identifier.method.needs and _changing(p),
@@ -183,7 +183,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
         "identifier.harmonics", lambda p: _unknowns(p) and _samples(p) < _unknowns(p),
         lambda p: f"{p.identifier.method.harmonics} harmonics, mean and drift are {_unknowns(p)} unknowns, but {_samples(p)} samples "
-        f"a turn are recorded: take at most {max((_samples(p) - 2) // 2, 1)} harmonics, or steps_per_turn = {_unknowns(p)} or more",
+        f"a turn are recorded: use at most {max((_samples(p) - 2) // 2, 1)} harmonics, or steps_per_turn = {_unknowns(p)} or more",
     ),
     Rule(
         "identifier.kind",
@@ -207,7 +207,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
     Rule("integrator.kind", lambda p: _steady(p) and p.unsteady, lambda p: f"{p.unsteady}: use 'newmark'"),
     Rule(
         "rotor.mass", lambda p: _inertial(p) and p.inertia.mass <= 0.0,
-        "nothing has mass: set it, or give bearing.bore and bearing.width so that the inner ring has its own",
+        "the moving mass is 0: set it, or bearing.bore and bearing.width, which give the inner ring a mass",
     ),
     Rule(
         "rotor.transverse_inertia", lambda p: _inertial(p) and p.tilts and p.inertia.transverse <= 0.0,
@@ -247,7 +247,7 @@ def _least_steps(p: Problem) -> int:
 
 #: Failures of a run that closed formulas foresee.
 _FORESEEN: tuple[Rule[Problem], ...] = (
-    Rule("load.axial", _unloaded, "nothing loads the bearing: there is no stiffness to find"),
+    Rule("load.axial", _unloaded, "no load acts: the stiffness is undefined"),
     Rule(
         "identifier.window_turns",
         lambda p: p.recorded and (getattr(p.identifier.method, "window_turns", None) or 0) > p.turns,
@@ -255,8 +255,8 @@ _FORESEEN: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "integrator.steps_per_turn", lambda p: (least := _least_steps(p)) and p.steps_per_turn * _ROUGH < least,
-        lambda p: f"is far above the stable step of an explicit method: some {_least_steps(p)} steps a turn are needed, 'auto' "
-        "takes enough",
+        lambda p: f"is far above the stable step of an explicit method: some {_least_steps(p)} steps per turn are needed, which "
+        "'auto' chooses",
     ),
 )  # fmt: skip
 

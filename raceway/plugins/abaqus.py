@@ -58,8 +58,8 @@ class Abaqus:
         unused = sorted(name for name, elements in members.items() if name not in used and len(elements) < len(cells))
         if unused:
             warnings.warn(
-                f"'{path}': element sets {', '.join(unused)} are not taken over: what is used are sets of nodes (*NSET) and of "
-                "faces (*SURFACE)",
+                f"'{path}': element sets {', '.join(unused)} are ignored: only sets of nodes (*NSET) and of faces (*SURFACE) are "
+                "read",
                 stacklevel=2,
             )
         return exchange.used_only(path, content.points, cells, content.point_sets, facets)
@@ -92,7 +92,7 @@ def _refuse_other_files(path: Path) -> None:
         for number, line in enumerate(stream, 1):
             if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
                 raise MeshError(
-                    f"'{path}', line {number}: *INCLUDE names another file, which is not read: put its lines in the place of this one"
+                    f"'{path}', line {number}: *INCLUDE is not supported: insert the content of the included file"
                 )
 
 

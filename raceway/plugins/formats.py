@@ -56,14 +56,16 @@ def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
             return reader(path)
     except MemoryError:
         raise MeshError(
-            f"'{path}' cannot be read: its {told(size)} unpack to more memory than any mesh of that size takes (compressed "
-            "blocks, generated sets): write it again, plainly"
+            f"'{path}' cannot be read: its {told(size)} unpack to more memory than a mesh of that size needs (compressed "
+            "blocks, generated sets): write it again uncompressed"
         ) from None
     except OSError as why:
         raise MeshError(f"'{path}' cannot be read: {why.strerror or why}") from why
     except Exception as why:  # meshio raises whatever its parsers stumble over
         cause = f" ({type(why).__name__}: {why})" if str(why) else ""
-        raise MeshError(f"'{path}' cannot be read: it is damaged, cut short, or not what its ending says{cause}") from why
+        raise MeshError(
+            f"'{path}' cannot be read: it is damaged, truncated, or not of the type of its suffix{cause}"
+        ) from why
 
 
 def readable(path: Path | str) -> int:
@@ -104,7 +106,7 @@ def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
     if foreign:
         solids = ", ".join(f"{count} of type {kind}" for kind, count in foreign.items())
         raise MeshError(
-            f"'{path}' has solids that are not hexahedra of 8 nodes: {solids}. Only such hexahedra are computed with: mesh the "
+            f"'{path}' has solids that are not hexahedra of 8 nodes: {solids}. Only such hexahedra are supported: mesh the "
             "body again with hexahedra (kind = 'gmsh' with method = 'subdivision' splits tetrahedra into them)"
         )
     parts: list[np.ndarray] = []

@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 ZERO_C = 273.15
 #: What is said of an oil of one viscosity.
 NO_THINNING = (
-    "lubricant.viscosity is one number: this oil does not thin as it warms, and heat and temperatures are too high where it is warmer than "
-    "that. Give lubricant.oil, or viscosity_40 and viscosity_100"
+    "lubricant.viscosity is one number: it does not fall with temperature, so heat and temperatures are overestimated. Set "
+    "lubricant.oil, or viscosity_40 and viscosity_100"
 )
 #: Rows of ``heat.band`` that are shown as intervals alone: key, unit and what it is times the key's.
 _BANDS = {"running preload": ("running_preload_n", "N", 1.0), "kxx": ("kxx_n_per_m", "N/µm", 1e-6),
@@ -57,7 +57,7 @@ class Temperatures:
             for node, words in _NODES.items()
         ),
         *(
-            Quantity(f"heat_to_{way}_w", "W", f"heat of friction that leaves by the {way}", f"heat.flows_w.{way}")
+            Quantity(f"heat_to_{way}_w", "W", f"friction heat removed by the {way}", f"heat.flows_w.{way}")
             for way in _FLOWS
         ),
         Quantity("heat_w", "W", "of friction in contacts, oil and seals", "heat.heat_w"),
@@ -69,7 +69,7 @@ class Temperatures:
         return {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "lubricant": {"oil": "VG 32"}, "heat": heat}
 
     def why_not(self, problem: Problem) -> str:
-        return "" if problem.heat is not None else "a table [heat] says what carries the heat off"
+        return "" if problem.heat is not None else "temperatures need a table [heat]"
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
         network = points.once("network", lambda: thermal_network(points))

@@ -57,7 +57,7 @@ def _number(name: str, unit: str, words: str, label: str, symbol: str) -> Quanti
 
 
 _NUMBERS = (
-    _number("l10r_million_revolutions", "1e6", "reference life, which 90 % reach", "reference life L10r", "L10r"),
+    _number("l10r_million_revolutions", "1e6", "reference life, reached by 90 %", "reference life L10r", "L10r"),
     _number("l10r_hours", "h", "reference life at the shaft's speed", "reference life in hours", "L10rh"),
     _number("l10mr_million_revolutions", "1e6", "modified life a_1 a_ISO L10r", "modified life Lnmr", "Lnmr"),
     _number("l10mr_hours", "h", "modified life at the shaft's speed", "modified life in hours", "Lnmrh"),
@@ -80,7 +80,7 @@ class Life:
     )
     viscosity_ratio: float | None = option(
         None,
-        help="kappa: viscosity over that which ISO 281 asks for; default: of the oil, if there is one",
+        help="kappa: viscosity over that required by ISO 281; default: from the oil",
         rule=optional(positive()),
     )
 
@@ -162,7 +162,7 @@ class Life:
             return f"the viscosity ratio is {ratio:.2g}, and ISO 281 begins at {VISCOSITY_RATIOS[0]:g}"
         if points.problem.lubricant is None:
             return "no oil: [lubricant] or quantities.life.viscosity_ratio"
-        return "nothing turns: the viscosity that an oil needs belongs to a speed"
+        return "no speed, which the required viscosity depends on"
 
     def _viscosity_ratio(self, points: SolvedPoints, pitch_diameter: Number) -> np.ndarray:
         """kappa (n,), nan where it is not known."""

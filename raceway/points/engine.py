@@ -80,7 +80,7 @@ def differences(required: ReadTables, present: ReadTables) -> list[str]:
         if required[name] != present[name]:
             words.append(f"{name} {present[name]} instead of {required[name]}")
     if not words and required["program"] != present["program"]:
-        words.append("the sources of raceway or of a plug-in differ, under the same version")
+        words.append("the sources of raceway or of a plug-in differ at the same version")
     return words
 
 
@@ -218,7 +218,7 @@ def _put(store: Store, row: Row) -> None:
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
         raise RacewayError(
-            f"{item.name}: {answer.reason}, perhaps for want of memory; finished points are stored: run the command again, with "
+            f"{item.name}: {answer.reason}, perhaps out of memory; finished points are stored: run the command again, with "
             "--processes 1"
         )
     return lost(item, answer.reason)

@@ -49,7 +49,7 @@ RACES = ("inner", "outer")
 _FIRST, _LAST, _POINTS = -0.2, 2.0, 111
 #: Approaches of the table over that of the equilibrium.
 _SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
-#: Samples per period, and periods of a law with memory, of which the last is taken: by then it has forgotten how the motion began.
+#: Samples per period, and periods of a law with memory, of which the last is taken: by then it has forgotten the start of the motion.
 SAMPLES, _PERIODS = 720, 4
 #: Of a mean of so many samples, over the largest force.
 _ROUNDING = 1e-13
@@ -288,9 +288,7 @@ def law(
     read = inputs.scene(registry_with(plugins))
     if read.contact.in_a_band:
         low, high = TIME_CONSTANTS
-        rule = (
-            f"is a band of time constants, and one contact has one: give contact.time_constant, from {low:g} to {high:g} s"
-        )
+        rule = f"is a band; one contact needs one value: set contact.time_constant, from {low:g} to {high:g} s"
         raise SceneError.at("contact.damping", "band", rule)
     if frequency is None:
         period = None if read.excitation is None else read.excitation.period_s
@@ -313,7 +311,9 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
     if scene.bodies.name != "rigid":
-        rule = "has contacts whose approach is shared with the bodies' compliance: take bodies.kind = 'rigid' to see a law alone"
+        rule = (
+            "has contacts whose approach is shared with the bodies' compliance: use bodies.kind = 'rigid' to see a law alone"
+        )
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
     model = build_model(scene)
     still, ring = solve_equilibrium(model), compiled(model.system)
@@ -325,8 +325,8 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
         raise SceneError.at("ball", ball, f"must be from 0 to {count - 1}")
     index, load = RACES.index(race) * count + number, float(loads[number])
     if load <= 0.0:
-        rule = f"carries nothing at the {race} race: the most loaded is {int(np.argmax(loads))}"
-        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball carries anything at the {race} race")
+        rule = f"is unloaded at the {race} race; the most loaded is {int(np.argmax(loads))}"
+        raise RacewayError(f"ball {number} {rule}" if loads.any() else f"no ball is loaded at the {race} race")
     ellipse = model.inner if race == "inner" else model.outer
     factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
     reach = 0.0 if ring.reach is None else float(ring.reach[index])

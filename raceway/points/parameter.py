@@ -56,7 +56,7 @@ def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
     unit = key_of(scene, key).unit
     first, last = (_number(key, value, unit) for value in values)
     if first == last:
-        raise SceneError.at(key, over, "begins where it ends: there is no branch to follow")
+        raise SceneError.at(key, over, "has equal ends: there is no branch to follow")
     return Parameter(scene, key, first, last)
 
 
@@ -64,7 +64,7 @@ def _number(key: str, value: str | float, unit: str) -> float:
     try:
         return number_in(unit, value) if isinstance(value, str) else float(value)
     except (TypeError, ValueError):
-        raise SceneError.at(key, value, "is no number: only a continuous key can be followed") from None
+        raise SceneError.at(key, value, "is not a number: only continuous keys can be followed") from None
 
 
 @attrs.define(eq=False)
@@ -94,7 +94,7 @@ class Parameter:
         }
         differing = {name: (a, b, c) for name, (a, b, c) in parts.items() if not (_equal(a, b) and _equal(a, c))}
         if not differing:
-            raise SceneError.at(self.key, None, "changes nothing of the motion: there is no branch over it")
+            raise SceneError.at(self.key, None, "has no effect on the motion: there is no branch over it")
         differing.pop("force_params", None)
         if all(_linear(*values) for values in differing.values()):
             self.linear = tuple(differing)
@@ -146,7 +146,7 @@ class Parameter:
                 excitation = self.excitation(p)
                 problem = Problem(self.system(p, excitation), 2.0 * np.pi / excitation.period_s, symmetry)
             except (SceneError, ValueError) as why:
-                raise ConvergenceError(f"beyond it there is no scene ({why})") from why
+                raise ConvergenceError(f"no valid scene beyond it ({why})") from why
             if len(self._cached) >= _CACHED:
                 self._cached.clear()
             self._cached[p] = problem
@@ -169,15 +169,13 @@ class Parameter:
         if excitation is None:
             raise SceneError.at("excitation", None, "is missing: there is no motion to follow")
         if excitation.period_s is None:
-            raise SceneError.at(
-                "excitation.kind", excitation.name, "does not repeat itself every turn: there is no steady orbit"
-            )
+            raise SceneError.at("excitation.kind", excitation.name, "does not repeat every turn: there is no steady orbit")
         model = build_model(scene)
         refuse(model.system, Schedule(excitation.period_s / 36, 36, 1))
         if model.system.scalars[CAGE] != 0.0:
             words = (
-                "balls that orbit pass at a frequency of their own, so that K, C and multipliers belong to no whole turns of the force: "
-                "the branch is followed for balls that stand, --set kinematics.orbiting=false. Single values with orbiting balls: "
+                "the ball-pass frequency of orbiting balls differs from that of the force, so K, C and multipliers per turn are undefined: follow the branch "
+                "with stationary balls, --set kinematics.orbiting=false. Single values with orbiting balls: "
                 "`raceway run` or `raceway sweep`"
             )
             raise SceneError.at("kinematics.orbiting", True, words)

@@ -108,7 +108,7 @@ def parse_at(texts: Iterable[str]) -> Tables:
         if not sign or not key or not value:
             mistakes.append(Mistake("--at", text, "must have the form KEY=VALUE, for instance load.axial=1000"))
         elif key in values:
-            mistakes.append(Mistake(f"--at {key}", value, "is chosen twice: leave one out"))
+            mistakes.append(Mistake(f"--at {key}", value, "is chosen twice: omit one"))
         else:
             values[key] = parse_value(value)
     if mistakes:
@@ -529,7 +529,7 @@ def layout(
     if not axes:
         raise RacewayError("nothing varies in this part of the sweep: leave out an --at, or see the values with --json")
     if not bool(data.notnull().any()):
-        raise RacewayError(f"no point of this part has a {name}: {selection.gaps or 'none was finished'}")
+        raise RacewayError(f"no selected point has a {name}: {selection.gaps or 'none was finished'}")
     _refuse_strangers(selection, x, y)
     numeric = [key for key, values in axes.items() if _numeric(values)]
     kind = kind or _kind(axes, numeric)
@@ -544,7 +544,7 @@ def layout(
     panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
     _refuse_rest(axes, [key for key in over if key != panels], kind)
     if kind == "surface" and LIST in data.dims:
-        raise RacewayError("the points of this sweep fill no grid, and a surface needs one: choose --kind map or curves")
+        raise RacewayError("the points of this sweep fill no grid, which a surface needs: choose --kind map or curves")
     fixed = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
     remark = "; ".join(part for part in (fixed, f"without result: {selection.gaps}" if selection.gaps else "") if part)
     return _Layout(data, name, kind, x, y, panels, selection.title, remark)
@@ -638,14 +638,14 @@ def _refuse_flat(kind: str, x: str, y: str | None, numeric: list[str]) -> None:
         raise SceneError.at("--kind", kind, f"takes two axes with numbers, and only {x} varies: choose --kind curves")
     for option, key in (("--x", x), ("--y", y)):
         if key not in numeric:
-            raise SceneError.at(option, key, f"has words for values, and a {kind} takes numbers: choose --kind curves")
+            raise SceneError.at(option, key, f"has words as values, a {kind} needs numbers: choose --kind curves")
 
 
 def _refuse_rest(axes: Tables, over: list[str], kind: str) -> None:
     if over:
         raise SceneError(
             [
-                Mistake(key, None, f"varies, too ({listed(axes[key])}), and {kind} have no place for it: choose one with "
+                Mistake(key, None, f"varies, too ({listed(axes[key])}), and {kind} cannot show it: choose one with "
                         f"--at {key}={shown(axes[key][0])}")
                 for key in over
             ]

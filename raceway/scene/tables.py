@@ -122,7 +122,7 @@ class Rig:
             raise ValueError(f"`disc_thickness` = {self.disc_thickness:g} m must be less than `span` = {self.span:g} m")
         if self.unbalance_radius > self.disc_radius:
             raise ValueError(
-                f"`unbalance_radius` = {self.unbalance_radius:g} m lies beyond the disc of {self.disc_radius:g} m"
+                f"`unbalance_radius` = {self.unbalance_radius:g} m exceeds the disc radius of {self.disc_radius:g} m"
             )
         self._check_sensor()
 

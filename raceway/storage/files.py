@@ -100,7 +100,7 @@ def size_of(path: str | Path, most: int) -> int:
     """
     status = Path(path).stat()
     if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
-        raise ValueError("is no file: a pipe or a device has no end that can be waited for")
+        raise ValueError("is not a regular file: pipes and devices are not read")
     if status.st_size > most:
         raise ValueError(f"has {told(status.st_size)}; at most {told(most)} are read")
     return status.st_size

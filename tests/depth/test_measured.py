@@ -33,7 +33,7 @@ def scene(excitation, turns=4, **tables):
 
 @pytest.mark.parametrize("identifier", ["fft_1x", "sine_fit", "tangent"])
 def test_same_stiffness_as_the_formula(tmp_path, identifier):
-    """1e-4: the interpolation of 360 samples a turn is off by 1e-6 of the force at most."""
+    """1e-4: the interpolation of 360 samples per turn is off by 1e-6 of the force at most."""
     named = {"identifier": {"kind": identifier}}
     formula = run(scene({"kind": "bidirectional", "speed_rpm": RPM, "amplitude": "constant", "force": FORCE}, **named))
     file = turning(tmp_path / "force.csv")
@@ -96,7 +96,7 @@ GOOD = "\n".join(f"{k * 1e-4:.6f},{k % 3}.5" for k in range(12))
         ("t,Fy\n" + GOOD.replace("0.000300", "0.000200"), "line 5: time must grow"),
         ("t,Fy,Fy\n" + "\n".join(f"{k * 1e-4},1,2" for k in range(12)), "twice"),
         (b"t,Fy\n\xff\xfe\n", "line 2: 2 numbers are needed"),
-        ("t,Fy\n" + "\n".join(f"{k * 1e-4},0.0" for k in range(12)), "its force is zero"),
+        ("t,Fy\n" + "\n".join(f"{k * 1e-4},0.0" for k in range(12)), "the force is zero"),
     ],
 )
 def test_bad_file_gives_one_clear_message(tmp_path, text, words):

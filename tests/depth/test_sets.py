@@ -309,7 +309,7 @@ def test_bad_sets_are_refused(bearing, words):
         ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "balls travel at different speeds"),
         ({"kinematics": {"ball_inertia": True, "gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "moments are computed"),
         ({"contact": {"friction": 0.1}}, "friction is computed for balls of one kind"),
-        ({"bodies": {"kind": "condensed"}}, "one section for the rings of all rows"),
+        ({"bodies": {"kind": "condensed"}}, "one ring section for all rows"),
         ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "elastic bodies are one row of balls"),
     ],
 )

@@ -114,7 +114,7 @@ def test_error_of_a_fit_covers_its_distance_from_the_steady_motion(speeds):
     # K and Z differ by the known m w^2 alone.
     wrong = abs(found.equivalent_stiffness - one.equivalent_stiffness)
     assert wrong <= 1.001 * result.to_dict()["identification"]["equivalent_stiffness_error"]
-    told = any("take identifier 'fft_1x' at each" in text for text in result.warnings)
+    told = any("use identifier 'fft_1x' at each" in text for text in result.warnings)
     assert told == (result.error["identification"] > 0.05)
 
 

@@ -297,7 +297,7 @@ def test_fits_need_dimensions():
 
 def test_a_set_that_lost_its_preload_says_what_took_it():
     """A hot housing takes the offset of two rows back to back; what nothing holds is told with the reason."""
-    with pytest.raises(ConvergenceError, match=r"preload of 300 N is gone.*mounting.outer_temperature = 30 K"):
+    with pytest.raises(ConvergenceError, match=r"preload of 300 N is lost.*mounting.outer_temperature = 30 K"):
         run(scene(outer_temperature=30.0))
 
 
@@ -307,7 +307,7 @@ def test_a_set_that_lost_its_preload_says_what_took_it():
         ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "give kinematics.radial_expansion instead"),
         (
             {"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}},
-            "changes the shapes that surface points lie on",
+            "changes the surfaces of the points",
         ),
     ],
 )

@@ -47,7 +47,7 @@ def test_a_static_scene_balances_and_tells_what_it_took_off(static):
     assert model["unbalanced_n"] < 1e-3
     assert "resultants calibrated to Hertz" in model["bodies"]
     assert mesh["cells"] == 864 and mesh["hourglass_coefficient"] is None
-    # A tenth to half of what a Hertz contact gives at some 1000 N a ball, 8 nm/N.
+    # A tenth to half of what a Hertz contact gives at some 1000 N per ball, 8 nm/N.
     for key in ("replaced_inner_m_per_n", "replaced_outer_m_per_n"):
         assert 1e-9 < mesh[key] < 5e-9
     assert 0.0 < mesh["replaced_spread_m_per_n"] < 0.2 * mesh["replaced_inner_m_per_n"]
@@ -56,7 +56,7 @@ def test_a_static_scene_balances_and_tells_what_it_took_off(static):
     assert model["energies_j"]["elastic"] > 0.0 and model["energies_j"]["contact"] > 0.0
     plan = make_plan(scene())
     assert plan.dofs > 2_000 and "pressures at surface points" in {part.part for part in plan.left_out}
-    unsure = [text for text in found["warnings"] if "too coarse to determine its own compliance" in text]
+    unsure = [text for text in found["warnings"] if "too coarse to determine its compliance" in text]
     assert len(unsure) == (mesh["replaced_uncertainty"] > 0.0125)
 
 
@@ -164,7 +164,7 @@ def test_explicit_steps_run_and_are_planned():
     found = run(wanted).to_dict()
     steps, stability = found["cost"]["steps"], found["stability"]
     json.dumps(found, allow_nan=False)
-    # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps a turn.
+    # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps per turn.
     assert 0.1 < 6e-6 / steps / stability["critical_time_step_s"] < 1.0
     assert stability["energy_drift"] < 1e-4  # of second order, and the motion takes hundreds of steps
     assert 0.5 < make_plan(wanted).predicted_steps / steps < 2.0  # what the plan's cost rests on
@@ -172,14 +172,14 @@ def test_explicit_steps_run_and_are_planned():
 
 REFUSED = [
     ({"contact": {"friction": 0.1}}, "contact.friction", "set it 0, use 'nodal'"),
-    ({"contact": {"kind": "penalty", "discretisation": "nodal"}}, "mesh.nodes_per_semi_axis", "take at least 1, or"),
+    ({"contact": {"kind": "penalty", "discretisation": "nodal"}}, "mesh.nodes_per_semi_axis", "use at least 1, or"),
     ({"bodies": {"kind": "condensed"}}, "mesh.nodes_per_semi_axis", "sections of condensed bodies need cells"),
     ({"contact": {"kind": "unilateral"}}, "contact.discretisation", "law 'unilateral' supports 'nodal'"),
     ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "kinematics.orbiting", "azimuth"),
     ({"mesh": {"element_size": 8e-3}}, "mesh.element_size", "larger than the wall"),
     ({**EXCITED, "integrator": {"kind": "periodic"}}, "integrator.kind", "Use 'newmark'"),
     ({"contact": {"kind": "penalty", "stiffness": 1e18}}, "contact.kind", "stiffer than the mesh below it"),
-    ({"load": {"axial": 0.0, "radial": [200.0, 0.0]}}, "", "nothing holds the ring against z"),
+    ({"load": {"axial": 0.0, "radial": [200.0, 0.0]}}, "", "no stiffness against z"),
 ]
 
 

@@ -132,7 +132,7 @@ def test_a_loose_ring(claim):
 def test_no_warnings_of_usual_scenes(claim):
     """Loads over Z D^2 12 MPa, about the static rating, axial and radial, and speeds n d_m; preload of sets 2 %."""
     words = (
-        "loose on its shaft", "lifts off", "loses axial contact", "contact pressure", "is more than", "not resolved", "error of Z is", "off Hertz's"
+        "loose on its shaft", "lifts off", "loses axial contact", "contact pressure", "is more than", "not resolved", "error of Z is", "deviates from Hertz's"
     )  # fmt: skip
     count, alarms = 0, []
     for name in ("7001C", "7005A", "7008C", "7014A", "7020C", "7206A", "7216A", "7230C", "B7206C"):

@@ -130,14 +130,14 @@ def test_the_first_points_hold_the_contacts_of_the_scene_and_get_more_where_they
 def test_without_more_points_it_is_a_failure_that_says_where(free):
     case, _ = free
     alone = attrs.evolve(case.system, pool=Pool(model_of(tables()).bearing.pool.patches), load=16.0 * case.system.load)
-    with pytest.raises(ConvergenceError, match="leaves its surface points along"):
+    with pytest.raises(ConvergenceError, match="exceeds its patch of surface points along"):
         alone.solve_equilibrium(case.guess)
 
 
 def test_the_edge_of_the_groove_is_told_with_the_load():
     case, found = at_rest(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
     said = case.bearing.warnings(case, found)
-    assert any("cut off by the groove's edge" in one and "N a ball" in one for one in said)
+    assert any("truncated by the groove's edge" in one and "N per ball" in one for one in said)
 
 
 def test_the_result_tells_pressures_approaches_and_points(free):
@@ -190,8 +190,8 @@ def test_the_mesh_error_is_that_of_the_state(free, monkeypatch):
 
 
 REFUSED = {
-    "memory": ({"mesh": {"nodes_per_semi_axis": 60}}, "mesh.nodes_per_semi_axis", "take fewer points"),
-    "elements": ({"mesh": {"element_size": 1e-5}}, "mesh.element_size", "take larger elements"),
+    "memory": ({"mesh": {"nodes_per_semi_axis": 60}}, "mesh.nodes_per_semi_axis", "use fewer points"),
+    "elements": ({"mesh": {"element_size": 1e-5}}, "mesh.element_size", "use larger elements"),
     "a law of pairs only": ({"contact": {"kind": "unilateral", "discretisation": "resultant"}}, "contact.discretisation", "'nodal'"),
     "many steps": (
         {"excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0},

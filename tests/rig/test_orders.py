@@ -79,7 +79,7 @@ def test_the_doubt_of_marks_stays_where_sampling_keeps_step():
 BAD = {
     "one turn": ({"duration": 1.5 / HZ}, "0 whole turns|1 whole turns"),
     "one turn by the speed": ({"duration": 1.5 / HZ, "marked": False}, "1.4. turns in the record; at least two"),
-    "few samples": ({"rate": 1000.0, "marked": False}, "5.5 samples a turn; at least 8"),
+    "few samples": ({"rate": 1000.0, "marked": False}, "5.5 samples per turn; at least 8"),
     "a run-up": ({"drift": 0.3}, "the speed is not constant: it changes by 2.* % over the record"),
 }
 
@@ -107,7 +107,7 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
         marks = _pulses_of(record.time, noisy(record, part, seed).key).times
         assert len(marks) == len(true)
         off.append((marks - true).mean())
-    # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples a turn leave of a flank.
+    # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples per turn leave of a flank.
     assert abs(np.mean(off)) < 3.5 * np.std(off) / np.sqrt(20) + 0.02 / rate
 
 

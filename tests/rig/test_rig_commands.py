@@ -46,7 +46,7 @@ def test_the_study_finds_the_bearing_and_says_what_the_printed_formula_finds(fol
     assert row["true"]["force_over_half_unbalance"] == pytest.approx(1.16, abs=0.02)
     by = {(one["kind"], one["what"]): abs(one["error"]) for one in row["split"]}
     assert {kind for kind, _ in by} == {"none", "correction", "noise", "run-out", "window", "model"}
-    assert by["model", "bearing taken to resist no tilt"] > 0.05
+    assert by["model", "bearing without tilt stiffness"] > 0.05
     assert json.loads((out / "rig.json").read_text()) == content
     names = {path.name for path in out.iterdir()}
     assert {"rig.html", "procedures.png", "signals.png", "spectrum.png", "orbits.png", "error-split.png"} <= names
@@ -146,9 +146,9 @@ FILES = {
     "time goes back": (GOOD.replace("0.0030,", "0.0010,"), "line 32: time must grow, 0.001 s follows 0.0029 s"),
     "few samples": ("\n".join(GOOD.splitlines()[:12]), "11 samples; at least 32"),
     "one turn": ("\n".join(GOOD.splitlines()[:80]), "whole turns between the pulses of `key`; at least two"),
-    "sensor at rest": (GOOD.replace(",1.0,2.0,", ",0.0,0.0,"), "the sensor sees no motion once a turn"),
+    "sensor at rest": (GOOD.replace(",1.0,2.0,", ",0.0,0.0,"), "the sensor shows no synchronous motion"),
     "sensor that shows a gap only, and a speed": (
-        "time_s,y_um,z_um,speed_rpm\n" + "".join(f"{k * 1e-4:.4f},1.0,2.0,12000\n" for k in range(400)), "no motion once a turn"
+        "time_s,y_um,z_um,speed_rpm\n" + "".join(f"{k * 1e-4:.4f},1.0,2.0,12000\n" for k in range(400)), "no synchronous motion"
     ),
     "speed that runs away": (
         "time_s,y_um,z_um,key\n" + "".join(f"{k * 1e-4:.4f},1.0,2.0,{int((k * k // 200) % 50 < 8) * 5}\n" for k in range(400)),
@@ -180,7 +180,7 @@ SCENES = {
     "thick shaft": (["rig.shaft_diameter=0.2"], "rig", "must be less than the disc's"),
     "thin hub": (["rig.hub_diameter=0.02"], "rig", "must lie between the shaft's, 0.03 m, and the disc's"),
     "thick disc": (["rig.disc_thickness=0.2"], "rig", "must be less than `span`"),
-    "unbalance beyond the disc": (["rig.unbalance_radius=0.1"], "rig", "lies beyond the disc"),
+    "unbalance beyond the disc": (["rig.unbalance_radius=0.1"], "rig", "exceeds the disc radius"),
     "no diameter": (["rig.shaft_diameter=0"], "rig.shaft_diameter", "must be greater than 0"),
     "no speeds": (["rig.speeds_rpm=[]"], "rig.speeds_rpm", "a list of speeds greater than 0, each once"),
     "unknown key": (["rig.shaft_diamter=0.03"], "rig.shaft_diamter", "did you mean 'shaft_diameter'?"),
@@ -208,7 +208,7 @@ def test_a_scene_without_a_rig(tmp_path):
 def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
     base = ["identify", tmp_path / "a.csv", "--scene", SCENE, "--out", tmp_path]
     for options, words in (
-        (["--run-out", "5,70", "--slow-roll", "b.csv"], "the slow roll shows it already"),
+        (["--run-out", "5,70", "--slow-roll", "b.csv"], "the slow roll contains it already"),
         (["--run-out", "5"], "for instance 5.0,70"),
         (["--run-out", "-5,3"], "at least 0 µm"),
         (["--set", "load.axial=0"], "must be the axial load of the measurement"),
@@ -223,7 +223,7 @@ def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     path = write_recording(attrs.evolve(own, y=3000.0 * own.y, z=3000.0 * own.z), tmp_path / "far.csv")
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
     assert found.exit_code == 1
-    assert "Are unbalance, sensor's place and run-out right?" in found.stderr
+    assert "Check unbalance, sensor position and run-out" in found.stderr
 
 
 @pytest.mark.slow
@@ -270,7 +270,7 @@ def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_pa
 def test_marks_and_a_speed_that_disagree(rig, held, state):
     quiet = attrs.evolve(_silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
-    with pytest.raises(RacewayError, match="Sample faster, or leave one of the columns out"):
+    with pytest.raises(RacewayError, match="Sample faster, or omit one of the columns"):
         identify_recording(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
 
 

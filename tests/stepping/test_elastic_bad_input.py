@@ -66,7 +66,9 @@ def test_a_cube_on_a_cube_settles_and_carries_its_load():
 
 def test_a_rigid_motion_that_nothing_holds_is_named_with_the_support_that_would():
     system = cubes(held=False)
-    with pytest.raises(ConvergenceError, match="nothing holds upper: .*hold it by the cage, by fixed nodes, or by a bed"):
+    with pytest.raises(
+        ConvergenceError, match="nothing holds upper: .*constrain it by the cage, fixed nodes, or an elastic foundation"
+    ):
         system.solve_equilibrium(np.zeros(system.size))
 
 
@@ -96,7 +98,7 @@ def test_a_contact_that_closes_later_is_held_against_the_limit_of_the_closed_one
     stepped, start = falling(cubes(gap=1e-7, penalty=1e16))
     stepped.begin(start)
     step = 0.8 * stepped.stable_step()
-    words = "s at t = .* s, where contacts have closed or stiffened. Take at least"
+    words = "s at t = .* s, where contacts have closed or stiffened. Use at least"
     with pytest.raises(StabilityError, match=words) as caught:
         integrate(CentralDifference(), stepped, start, Schedule(step, 400, 1))
     named = float(re.search(r"differences, (\S+) s at", str(caught.value))[1])

@@ -85,7 +85,7 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
 
 
 def refuse_doubled(mesh: HexMesh, body: str) -> None:
-    """Refuse what cannot be one body: cells that stand there twice, points that coincide and are not one, parts that do not hang together.
+    """Refuse what cannot be one body: cells that are duplicated, points that coincide and are not one, parts that do not hang together.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def refuse_doubled(mesh: HexMesh, body: str) -> None:
     if (counts > 1).any():
         cell = int(first[counts > 1].min())
         raise MeshError(
-            f"`{body}`: {int((counts - 1).sum())} cells stand there twice; the first is cell {cell}: remove the copies"
+            f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
         )
     used = np.unique(mesh.cells)
     points = mesh.points[used]
@@ -106,12 +106,12 @@ def refuse_doubled(mesh: HexMesh, body: str) -> None:
     if (counts > 1).any():
         where = ", ".join(f"{x:.6g}" for x in points[first[counts > 1].min()])
         raise MeshError(
-            f"`{body}`: {int((counts - 1).sum())} points coincide with others and are not one with them, the first at ({where}) m: "
-            "parts that touch there are not joined. Merge the nodes where they lie on each other"
+            f"`{body}`: {int((counts - 1).sum())} points coincide with others without being merged, the first at ({where}) m: "
+            "touching parts are not connected there. Merge coincident nodes"
         )
     parts = _parts(mesh.cells)
     if parts > 1:
-        raise MeshError(f"`{body}`: its cells form {parts} parts that do not hang together: give one body, in one piece")
+        raise MeshError(f"`{body}`: its cells form {parts} parts that are not connected: give one connected body")
 
 
 def _parts(cells: np.ndarray) -> int:
@@ -209,7 +209,7 @@ def refuse_coarse(size: float, wall: float, where: str) -> None:
     """
     if size > wall:
         raise MeshError.at(
-            "mesh.element_size", size, f"is larger than the {where}, {wall:.4g} m: take no more than that, in metres"
+            "mesh.element_size", size, f"is larger than the {where}, {wall:.4g} m: use no more than that, in metres"
         )
 
 

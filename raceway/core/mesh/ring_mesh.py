@@ -125,8 +125,8 @@ def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if len(bad):
             at = line[bad[0]]
             raise MeshError(
-                f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: an upright step or an undercut cannot be meshed; "
-                "lean it a little, or leave it out"
+                f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: a vertical step or an undercut cannot be meshed: "
+                "incline or remove it"
             )
     lines.sort(key=lambda line: float(np.interp(0.5 * (x.min() + x.max()), line[:, 0], line[:, 1])))
     every = np.union1d(lines[0][:, 0], lines[1][:, 0])
@@ -543,7 +543,7 @@ def _profile_ring(bearing: Any, key: str, inner: bool) -> RingShape:
     word, diameter = ("bore", bearing.bore) if inner else ("outer_diameter", bearing.outer_diameter)
     if diameter is not None and abs(2.0 * seat - diameter) > 1e-6 * diameter:
         raise MeshError(
-            f"`bearing.{key}` has its seat at a diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
+            f"`bearing.{key}` has a seat diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
         )
     width = float(outline.seat[-1, 0] - outline.seat[0, 0])
     return RingShape(inner, float(seat), float(land), width, **groove, profile=outline)

@@ -378,5 +378,5 @@ class Balls:
             if self.residual(now) >= size and size <= 1e3 * tolerance * scale:
                 return position, force, now
         raise ConvergenceError(
-            "the balls find no equilibrium between the races", {"place": position, "residual": self.residual(now)}
+            "the balls have no equilibrium between the races", {"place": position, "residual": self.residual(now)}
         )

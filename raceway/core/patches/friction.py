@@ -104,7 +104,7 @@ class Friction:
                 stops = only_largest(stops, -sliding * excess)
             sliding = np.where(breaks, np.sign(traction).astype(np.int64), np.where(stops, 0, sliding))
         else:
-            raise ConvergenceError(f"the points that slip were not found after {_LIMIT} exchanges")
+            raise ConvergenceError(f"the slipping points were not determined in {_LIMIT} exchanges")
         self._sliding[:] = 0
         self._sliding[nodes] = sliding
         by_load = self.coefficient * sliding.astype(float)

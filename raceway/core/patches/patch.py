@@ -62,9 +62,7 @@ class Spacing:
         divisions = round(2.0 * pi * radius / (semi_axes[0] / nodes))
         if divisions < 2:
             size = f"{1e3 * semi_axes[0]:.3g} mm, of a ball of {2e3 * radius:.3g} mm"
-            raise MeshError(
-                f"a contact's major semi-axis is {size}: it reaches around the ball, and surface points have no place"
-            )
+            raise MeshError(f"a contact's major semi-axis is {size}: it reaches around the ball")
         divisions += divisions % 2  # the opposite pole is a point too
         across = float(semi_axes[1]) / nodes
         return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))

@@ -199,7 +199,7 @@ def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray,
         w = w + part * step
         before = now
     else:
-        raise ConvergenceError(f"the contact law's pressures were not found after {_LIMIT} iterations")
+        raise ConvergenceError(f"the pressures of the contact law did not converge in {_LIMIT} iterations")
     start[:] = 0.0
     start[near] = np.minimum(w, 0.0)
     active = np.flatnonzero((load > 0.0) & (by_gap < 0.0))
@@ -251,7 +251,7 @@ def _active_set(gap: np.ndarray, start: np.ndarray, factor: _Factor) -> tuple[np
         if iteration > _WHOLE:
             pulls, joins = only_largest(pulls, -load), only_largest(joins & ~pulls.any(), -depth)
         nodes = np.sort(np.concatenate([nodes[~pulls], outside[joins]]))
-    raise ConvergenceError(f"the points in contact were not found after {_UNILATERAL_LIMIT} exchanges")
+    raise ConvergenceError(f"the points in contact were not determined in {_UNILATERAL_LIMIT} exchanges")
 
 
 class BeyondPatch(RacewayError):
@@ -267,7 +267,7 @@ class BeyondPatch(RacewayError):
         race = "inner" if sense < 0.0 else "outer"
         way = "the rolling direction" if across else "the groove"
         super().__init__(
-            f"the contact on the {race} race, {load:.4g} N at {np.degrees(angle):.2f} deg, leaves its surface points along {way}"
+            f"the contact on the {race} race, {load:.4g} N at {np.degrees(angle):.2f} deg, exceeds its patch of surface points along {way}"
         )
         self.sense, self.angle, self.load, self.across = sense, angle, load, across
 
@@ -518,7 +518,7 @@ class Reach:
         load = max(self.largest_load, beyond.load) * (room if beyond.across else 1.0)
         a, b = ellipse.semi_axes(load)
         if not max(a, b) < radius:
-            raise ConvergenceError(f"the balls run away from the races: {beyond}, on an ellipse as large as the ball")
+            raise ConvergenceError(f"the balls leave the races: {beyond}, on an ellipse as large as the ball")
         old = self.inner if beyond.sense < 0.0 else self.outer
         half = AROUND * float(a) / radius + 3.0 * MARGIN
         window = _rounded(min(old[0], beyond.angle - half), max(old[1], beyond.angle + half))

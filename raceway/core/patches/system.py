@@ -214,9 +214,9 @@ class Pool:
                 try:
                     self.generations.append(self._wider(left))
                 except MeshError as why:  # the bodies were meshed: what cannot be is this contact
-                    raise ConvergenceError(f"the balls run away from the races: {left} ({why})") from why
+                    raise ConvergenceError(f"the balls leave the races: {left} ({why})") from why
                 self._rows.clear()
-        raise ConvergenceError("the contacts run away from every patch: there is no equilibrium near the first guess")
+        raise ConvergenceError("the contacts leave every patch: no equilibrium near the first guess")
 
     def _coupling(self, z: int) -> np.ndarray:
         """(4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings."""

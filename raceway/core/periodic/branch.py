@@ -109,7 +109,7 @@ class Branch:
         problem = self.problem_at(parameter)
         linearised = self._linearise(problem, path, parameter)
         if linearised is None:
-            raise ConvergenceError("the balls find no place between the races")
+            raise ConvergenceError("the balls have no equilibrium between the races")
         solved = Solved(problem, path, linearised[0], float(np.abs(path.v / problem.weight).max()), True, 0, 0.0)
         return Point(parameter, solved, 0.0, tangent, False, highest=self._order(solved, parameter))
 
@@ -238,7 +238,7 @@ class Branch:
         push = problem.push(path.nodes)
         out = np.zeros_like(push)
         if imbalances(problem.equations, problem.mesh(path.nodes), path.samples(push), out) < path.intervals:
-            raise ConvergenceError("the balls find no place between the races")
+            raise ConvergenceError("the balls have no equilibrium between the races")
         return out
 
     def _correct(
@@ -253,7 +253,7 @@ class Branch:
             n = len(free)
             linearised = self._linearise(problem, path, parameter)
             if linearised is None:
-                raise ConvergenceError("the balls find no place between the races")
+                raise ConvergenceError("the balls have no equilibrium between the races")
             linear, report = linearised
             span_transfer = linear.span_transfer
             bordered = self._bordered(problem, span_transfer, across)

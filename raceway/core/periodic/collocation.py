@@ -540,7 +540,7 @@ def linearised(problem: Problem, path: Path) -> Eliminated:
     samples, once = path.samples(problem.push(path.nodes)), Limits(0.0, 0.0, 1, 0)
     status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, once, eliminated, np.zeros(REPORT))
     if status == BALLS_FAILED:
-        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
+        raise ConvergenceError("the balls have no equilibrium between the races", {"q": path.q[0].copy()})
     return eliminated
 
 
@@ -555,7 +555,7 @@ def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit
     status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(
-            status, "the balls find no place between the races"
+            status, "the balls have no equilibrium between the races"
         )
         raise ConvergenceError(
             f"no periodic motion found near the first guess: {why} after {int(report[SWEEPS])} iterations, imbalance "

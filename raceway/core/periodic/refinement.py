@@ -51,7 +51,7 @@ def _defects(problem: Problem, path: Path) -> np.ndarray:
     by_position, by_velocity = np.einsum("gs,msn->gmn", rule.gain, both)
     defect = np.hstack([h**2 * by_position, h * by_velocity])
     if not np.isfinite(defect).all():
-        raise ConvergenceError("the balls find no place between the races", {"q": path.q[0].copy()})
+        raise ConvergenceError("the balls have no equilibrium between the races", {"q": path.q[0].copy()})
     return defect
 
 

@@ -547,7 +547,7 @@ def find(
     if not can_continue(problem, q, tangent):
         # Each point would take seconds.
         if direct is None and stay:
-            raise ConvergenceError("no motion of the period of the force was found directly", {"q": q.copy()})
+            raise ConvergenceError("no motion with the period of the force was found directly", {"q": q.copy()})
         return direct or with_multipliers(
             _by_force_steps_only(problem, q, tangent, tolerance, highest), highest, "from rest"
         )
@@ -592,9 +592,9 @@ def _by_force_steps_only(problem: Problem, q: np.ndarray, tangent: np.ndarray, t
         return _by_force_steps(problem, q, tangent, tolerance)
     except ConvergenceError as why:
         raise ConvergenceError(
-            "no motion of the period of the force was found from rest, and it is not looked for along branches: natural "
+            "no motion with the period of the force was found from rest; branches are not searched: natural "
             f"frequencies go up to {highest:.3g} times the force's, or dashpots are strong. A transient integrator with "
-            "start = 'ramp' shows what the ring does.",
+            "start = 'ramp' shows the motion of the ring.",
             {"q": q.copy()},
         ) from why
 
@@ -643,9 +643,9 @@ def _chosen(
         back = "where its branch turns back (an internal resonance)"
         end = back if branch.folds else "beyond which it could not be followed"
         raise ConvergenceError(
-            f"no motion of the period of the force was found: the motion that grows out of rest ends at {100 * (fold or 0.0):.3g} % "
-            f"of the force, {end}, and none leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
-            "what the ring does instead.",
+            f"no motion with the period of the force was found: the branch from rest ends at {100 * (fold or 0.0):.3g} % "
+            f"of the force, {end}, and no branch leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
+            "the motion of the ring.",
             {"q": q.copy()},
         )
     first, *coexisting = _attractor_first(motions)

@@ -36,7 +36,7 @@ _TABLE_SAMPLES = 360
 _WAYS = {
     "+1": "through +1: it drifts to another motion",
     "-1": "through -1: the period doubles",
-    "pair": "as a pair: a second frequency comes in",
+    "pair": "as a pair: a second frequency arises",
 }
 
 
@@ -80,14 +80,14 @@ def _coexistence(tables: list[Tables]) -> tuple[str, ...]:
         return ()
     values = " and ".join(_complex(table) for table in lasting)
     return (
-        f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: which one a ring takes depends on "
-        "how it came here. The first is reported; motion.orbits lists all that were found, others may exist",
+        f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: the history decides which one occurs. The "
+        "first is reported; motion.orbits lists all found, others may exist",
     )
 
 
 def growth_of_disturbances(table: Tables) -> str:
     """Growth of disturbances of a motion, in words."""
-    return f"disturbances grow {table['multiplier']:.4g} times a turn, {_WAYS[table['leaves_by']]}"
+    return f"disturbances grow {table['multiplier']:.4g} times per turn, {_WAYS[table['leaves_by']]}"
 
 
 def _complex(table: Tables) -> str:
@@ -129,7 +129,7 @@ def steady(
     problem = problem_of(system, speed, q, symmetric)
     if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
         why = (
-            "balls that orbit pass at another frequency than the force, so that no motion repeats itself every turn; only a "
+            "the ball-pass frequency of orbiting balls differs from that of the force, so that no motion repeats every turn; only a "
             "force that turns over equal balls without a radial load has one (integrator.symmetry = 'auto'). Use 'newmark'"
         )
         raise SceneError.at("integrator.kind", "periodic", why)
@@ -163,21 +163,21 @@ def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]
 
 
 def refuse(system: Ring, schedule: Schedule) -> None:
-    """Raise ``SceneError`` for what has no motion that repeats itself every turn, or none that depends on the force alone."""
+    """Raise ``SceneError`` for what has no motion that repeats every turn, or none that depends on the force alone."""
     if compiled(system) is None:
         why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)
     if system.law_state.shape[1] > 0:
-        why = "a contact law with memory has no periodic motion that can be solved for by itself. Use 'newmark'"
+        why = "the periodic motion of a contact law with memory cannot be solved for directly. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)
     if system.scalars[FRICTION] != 0.0:
-        why = "where a contact with friction sticks depends on how the motion began: there is no single one. Use 'newmark'"
+        why = "with friction, sticking depends on the start of the motion, and no steady orbit is unique. Use 'newmark'"
         raise SceneError.at("integrator.kind", "periodic", why)
     turn = schedule.dt * schedule.steps_per_turn
     pairs = [(system.outer_force(part * turn), system.outer_force((1.0 + part) * turn)) for part in (0.0, 0.31, 0.77)]
     largest = max(float(np.abs(now).max()) for now, _ in pairs)
     if any(np.abs(now - later).max() > 1e-9 * largest for now, later in pairs):
-        raise SceneError.at("integrator.kind", "periodic", "the force does not repeat itself every turn. Use 'newmark'")
+        raise SceneError.at("integrator.kind", "periodic", "the force does not repeat every turn. Use 'newmark'")
 
 
 def _warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) -> tuple[str, ...]:
@@ -185,13 +185,13 @@ def _warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) ->
     out = list(_coexistence(tables))
     if motion.fold is not None:
         out.append(
-            f"no motion grows out of rest: its branch turns back at {100.0 * motion.fold:.3g} % of the force (an internal "
+            f"no branch from rest reaches the force: it turns back at {100.0 * motion.fold:.3g} % of the force (an internal "
             f"resonance); this motion was reached {motion.how}, and others may exist"
         )
     if motion.floquet.verdict == "unstable":
-        out.append(f"the periodic motion is unstable, {growth_of_disturbances(tables[0])}; a real ring does not stay on it")
+        out.append(f"the periodic motion is unstable, {growth_of_disturbances(tables[0])}; a ring does not stay on it")
     if motion.refined.error > tolerance:
-        out.append(f"the mesh cannot follow the motion closer than {motion.refined.error:.1e} of its amplitude")
+        out.append(f"the mesh does not resolve the motion better than {motion.refined.error:.1e} of its amplitude")
     return tuple(out)
 
 

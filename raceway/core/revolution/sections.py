@@ -121,7 +121,7 @@ def graded_profile(
     first, last = ceil((low - contact) / step - 1e-9), floor((high - contact) / step + 1e-9)
     if last - first < 1:
         raise MeshError(
-            f"a step of {1e3 * arc_step:.4g} mm along the groove leaves fewer than two nodes in the contact window: take a "
+            f"a step of {1e3 * arc_step:.4g} mm along the groove leaves fewer than two nodes in the contact window: use a "
             "smaller one"
         )
     zone = contact + step * np.arange(first, last + 1)

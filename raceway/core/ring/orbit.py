@@ -94,7 +94,7 @@ def responses(system: System, states: States, tangents: bool = False) -> Respons
     q, v = np.ascontiguousarray(states.q), np.ascontiguousarray(states.v)
     evaluated = _respond(system.compiled_forces, system.law_state, states._replace(q=q, v=v), out)
     if evaluated < n:
-        raise ConvergenceError("the balls find no place between the races", {"q": q[evaluated].copy()})
+        raise ConvergenceError("the balls have no equilibrium between the races", {"q": q[evaluated].copy()})
     return out
 
 

@@ -85,7 +85,7 @@ class System(Ring):
 
     @property
     def coupled(self) -> bool:
-        """Whether balls act on each other through elastic rings, which move groove centres."""
+        """Whether balls interact through elastic rings, which move groove centres."""
         return elastic_columns(self.scalars) == 4
 
     @property
@@ -181,7 +181,7 @@ class System(Ring):
             Constants(scalars, self.table), Response(f, K, C, work),
         )  # fmt: skip
         if status != 0:
-            raise ConvergenceError("the balls find no equilibrium between the races", {"q": np.array(q)})
+            raise ConvergenceError("the balls have no equilibrium between the races", {"q": np.array(q)})
         return Evaluation(f, K, C, work[GAP].copy(), work[CONTACT_FORCE].copy(), ball, new)
 
     def stiffness_at_rate(self, q: np.ndarray, now: Evaluation, rate: float) -> np.ndarray:
@@ -280,14 +280,13 @@ class System(Ring):
             if status == RUN_AWAY:
                 free = COORDINATES[int(np.argmax(np.abs(q_now) * [1.0, 1.0, 1.0, self.arm, self.arm]))]
                 raise ConvergenceError(
-                    f"there is no static equilibrium: nothing holds the ring against the load along {free}. Hold it or load "
-                    "more balls.",
+                    f"no static equilibrium: no stiffness against the load along {free}. Hold it or load more balls.",
                     {"q": np.array(q, dtype=float), "ball": ball_now},
                 )
-        cause = "the balls find no place between the races" if status == BALLS_FAILED else "the iteration stalls"
+        cause = "the balls have no equilibrium between the races" if status == BALLS_FAILED else "the iteration stalls"
         remainder = f"relative residual {report[RESIDUAL]:.1e}"
         if not np.isfinite(report[RESIDUAL]):
-            remainder = "the forces leave what can be computed with: check the units of loads and materials"
+            remainder = "the forces exceed the range of floating-point arithmetic: check the units of loads and materials"
         raise ConvergenceError(
             f"no static equilibrium found after {total} iterations: {cause}, {remainder}",
             {"q": q_now, "ball": ball_now},

@@ -123,9 +123,9 @@ def _failure(
             limit = system.damped_time_step(now.stiffness, now.damping)
         return unbounded(schedule, when, limit, state)
     if counters[REASON] == BALLS:
-        return ConvergenceError(f"the balls found no equilibrium between the races {when}", state)
+        return ConvergenceError(f"the balls have no equilibrium between the races {when}", state)
     residual = counters[RESIDUAL]
     remainder = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
     return ConvergenceError(
-        f"the iteration of a step did not converge {when}, {remainder}. Take more `integrator.steps_per_turn`.", state
+        f"the iteration of a step did not converge {when}, {remainder}. Use more `integrator.steps_per_turn`.", state
     )

@@ -139,7 +139,7 @@ def _compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str
         motion = system.motion(recorder.state)
         raise StabilityError(
             f"`integrator.steps_per_turn` = {schedule.steps_per_turn} makes a step of {schedule.dt:.4g} s, above the stable "
-            f"limit of central differences, {limit:.4g} s{where}. Take at least "
+            f"limit of central differences, {limit:.4g} s{where}. Use at least "
             f"{int(schedule.steps_per_turn * schedule.dt / (0.8 * limit)) + 1}.",
             {"q": motion.q, "ball": motion.ball},
         )

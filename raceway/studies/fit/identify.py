@@ -119,22 +119,22 @@ class Identified(Answer):
         """Sentences that a reader of K needs."""
         state, component, k, out = self.state, self.component, self.uncertainty[0], []
         if not component.marked:
-            out.append("no mark (`key`): the phase is taken as zero, so that C is not identified")
+            out.append("no mark (`key`): the phase is set to zero, so C is not identified")
         if not self.run_out.vector:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
         if abs(state.stiffness / self.scene_stiffness - 1.0) > _UNLIKE:
             out.append(
-                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene_stiffness:.4g} N/µm: is it the bearing "
-                "of the rig, in the rig's arrangement? Its tilt enters the result"
+                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene_stiffness:.4g} N/µm: check bearing and arrangement "
+                "of the rig; their tilt stiffness enters the result"
             )
         if abs(state.deflection) < _SMALL * abs(state.sensor):
             part = 100.0 * abs(state.deflection) / abs(state.sensor)
-            out.append(f"the bearing moves by {part:.2g} % of what the sensor sees; the rest is the shaft's bow")
+            out.append(f"the bearing moves by {part:.2g} % of the sensor signal; the remainder is the bow of the shaft")
         if k > 0.1 * abs(state.stiffness):
             out.append(f"K is known to {100.0 * k / abs(state.stiffness):.2g} % only")
         if component.backward > 0.1 * abs(component.forward):
             part = 100.0 * component.backward / abs(component.forward)
-            out.append(f"the orbit is no circle (backward line {part:.2g} %): the rig is taken to be the same in y and z")
+            out.append(f"the orbit is not a circle (backward component {part:.2g} %): the rig is assumed equal in y and z")
         return out
 
     def to_dict(self) -> Tables:
@@ -153,7 +153,7 @@ class Identified(Answer):
                     "duration_s": float(time[-1] - time[0]),
                     "turns": component.turns,
                     "speed_rpm": {name: value * 30.0 / pi for name, value in speeds.items()},
-                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is not known",
+                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is unknown",
                 },
                 "line": {
                     "forward_m": abs(component.forward),
@@ -180,7 +180,7 @@ class Identified(Answer):
                 "identification": self._identification(),
                 "uncertainty": {
                     "how": "half-widths at 95 %: spread of the blocks of turns, slow roll, marks between samples, least squares against "
-                    "whole-turn Fourier, the tilt stiffness that is assumed; what is taken as known of the rig is in `sensitivities`",
+                    "whole-turn Fourier, the assumed tilt stiffness; parameters of the rig taken as known are in `sensitivities`",
                     "parts": {
                         name: {"stiffness": part[0], "damping": part[1] if marked else None}
                         for name, part in self.parts.items()
@@ -464,7 +464,7 @@ def identify_recording(
     except ConvergenceError as why:
         raise ConvergenceError(
             f"no bearing like the scene's moves the sensor by {1e6 * abs(response.deflection):.4g} µm at {component.speed * 30 / pi:.0f} r/min "
-            f"({why}). Are unbalance, sensor's place and run-out right?"
+            f"({why}). Check unbalance, sensor position and run-out"
         ) from None
     with_run_out = component.forward * exp(-1j * radians(rig.unbalance_angle_deg))
     deflection = tested.answer(state.speed, state.force, state.moment)[0]

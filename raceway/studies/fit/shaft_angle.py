@@ -72,7 +72,7 @@ def rotation_of(recording: Recording) -> Rotation:
     rotation = _by_pulses(recording, recording.key) if recording.key is not None else _by_speed(recording)
     per_turn = len(rotation.angle) / rotation.turns
     if per_turn < _LEAST_PER_TURN:
-        raise RacewayError(f"{per_turn:.1f} samples a turn; at least {_LEAST_PER_TURN} are needed: sample faster")
+        raise RacewayError(f"{per_turn:.1f} samples per turn; at least {_LEAST_PER_TURN} are needed: sample faster")
     speeds = rotation.means(rotation.speed)
     change = np.abs(np.diff(speeds)) / speeds[1:]
     if change.max() > _MOST_PER_TURN:
@@ -107,8 +107,8 @@ def _by_pulses(recording: Recording, key: np.ndarray) -> Rotation:
     if recording.speed is not None and abs(mean / float(recording.speed.mean()) - 1.0) > _AGREE:
         raise RacewayError(
             f"the pulses of `key` come at {mean * 30.0 / pi:.6g} r/min, the speed column says "
-            f"{recording.speed.mean() * 30.0 / pi:.6g}: pulses between samples are missed, or there are several a turn. "
-            "Sample faster, or leave one of the columns out"
+            f"{recording.speed.mean() * 30.0 / pi:.6g}: pulses between samples are missed, or there are several per turn. "
+            "Sample faster, or omit one of the columns"
         )
     spline = _smooth_angle(times)
     # The smooth angle begins and ends its full turns a little beside the pulses; far beyond them it means nothing.

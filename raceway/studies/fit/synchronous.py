@@ -72,7 +72,7 @@ def synchronous(rotation: Rotation) -> Synchronous:
     """
     forward, backward, speeds, residual = _blocks(rotation)
     if max(np.abs(forward).max(), np.abs(backward).max()) <= _ROUNDING * np.abs(rotation.recording.plane).max():
-        raise RacewayError("the sensor sees no motion once a turn: y and z are constant, or as good as. Is it connected?")
+        raise RacewayError("the sensor shows no synchronous motion: y and z are nearly constant. Check its connection")
     aligned = rotation
     if not rotation.marked:
         aligned = _aligned(rotation, forward)
@@ -200,7 +200,7 @@ def stated_run_out(
     """
     if vector is not None:
         if slow is not None:
-            raise SceneError.at("run_out", vector, "the slow roll shows it already: leave one of them out")
+            raise SceneError.at("run_out", vector, "the slow roll contains it already: omit one of them")
         return RunOut(vector[0] * exp(1j * radians(vector[1])), 0.0, "given")
     if slow is None:
         return None
@@ -264,5 +264,5 @@ def response_of(
         forward, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (component.forward, component.fourier))
         return _Response(run_out, forward, fourier)
     if run_out.vector:
-        raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; leave it out, or record the mark")
+        raise RacewayError("no `key`: without a mark the run-out cannot be subtracted; omit it, or record the mark")
     return _Response(run_out, abs(component.forward) + 0j, abs(component.fourier) + 0j)

@@ -227,7 +227,7 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     causes.append(("window", words, invert(free, tested, _highest_line(clean) * state.sensor / abs(state.sensor))))
     thin, sensor = rotor(rig, state.speed, shaft(rig, shear=False)), state.sensor
     models = {
-        "bearing taken to resist no tilt": with_moment(free, sensor, 0.0, state),
+        "bearing without tilt stiffness": with_moment(free, sensor, 0.0, state),
         "tilt stiffness of the bearing at rest": _at_rest(free, tested, sensor),
         "Euler-Bernoulli shaft without rotary inertia": with_tilt_of(thin, state, sensor),
         **{change: with_tilt_of(model, state, sensor) for change, model in changed_rotors(rig, state.speed).items()},

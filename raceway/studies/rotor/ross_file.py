@@ -42,9 +42,9 @@ NAMES = {
     "cyy": "cxx", "cyz": "cxy", "czy": "cyx", "czz": "cyy", "kxx": "kzz",
 }  # fmt: skip
 _LEFT_OUT = (
-    "ROSS carries translations only: moments on the ring by its motion, and forces by its tilt, are left out; how the tilt is "
-    "held belongs to the numbers above",
-    "ROSS is linear: that the stiffness depends on the amplitude is left out",
+    "ROSS carries translations only: moments by translation and forces by tilt are left out; the tilt boundary of the numbers is stated "
+    "above",
+    "ROSS is linear: the dependence of the stiffness on the amplitude is left out",
 )
 
 
@@ -82,7 +82,7 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
         *_LEFT_OUT,
     )
     if generation >= 3:
-        return (*notes, "ROSS 3 passes through every point; beyond the ends it goes on in a straight line")
+        return (*notes, "ROSS 3 passes through every point; beyond the ends it extrapolates linearly")
     changes = {name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in _smoothing(table).items()}
     return (
         *notes,
@@ -90,7 +90,7 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
         "damping; largest change, of the largest value of its kind: "
         f"{', '.join(f'{name} {change}' for name, change in changes.items()) or 'none'}. raceway.export_ross(STORE).element() gives "
         "a bearing that passes through them",
-        "beyond the ends ROSS 2 goes on as a cubic, and modal analyses ask at speed 0: let the table begin low",
+        "beyond the ends ROSS 2 extrapolates by a cubic, and modal analyses start at speed 0: start the table low",
     )
 
 
@@ -120,7 +120,7 @@ def check_name(path: Path) -> None:
         For an ending other than .toml and .json.
     """
     if path.suffix.lower() not in (".toml", ".json"):
-        raise RacewayError(f"`{path}`: ROSS reads .toml and .json, and distinguishes them by the ending: choose one of them")
+        raise RacewayError(f"`{path}`: ROSS reads .toml and .json, by their suffix: choose one of them")
 
 
 def _smoothing(table: Coefficients) -> Mapping[str, float]:

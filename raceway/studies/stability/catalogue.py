@@ -171,7 +171,7 @@ _EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 
 
 #: name, changes, words of the message, why there is no answer.
 _REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
-    ("no load", {"load.axial": 0.0}, "nothing loads the bearing", "every motion is free"),
+    ("no load", {"load.axial": 0.0}, "no load acts", "all motions are free"),
     (
         "two balls on the line of the load",
         {"bearing.ball_count": 2, "bearing.preset": "B7206C", "supports.tilt": "free", "excitation": None},
@@ -184,7 +184,7 @@ _REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
     ("unilateral law on rigid bodies", {"contact.kind": "unilateral"}, "supports 'nodal'", "it is no function of one approach"),
     (
         "steady orbit with friction", {"integrator.kind": "periodic", "contact.friction": 0.3},
-        "depends on how the motion began", "sticking has a memory",
+        "depends on the start of the motion", "sticking has a memory",
     ),
     ("orbiting balls at rest", {"kinematics.orbiting": True, "kinematics.spin_speed_rpm": 0.0}, "needs a spin speed", "nothing turns"),
     ("a record of 19 GiB", {"integrator.turns": 10_000_000}, "would take", "it is refused before it fills the memory"),
@@ -193,7 +193,7 @@ _REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
         "is stiffer than elastic bodies allow", "what finite elements take off a contact's compliance would leave none",
     ),
     ("Poisson's ratio 0.5", {"bearing.rings": {"poisson": 0.5}}, "poisson", "the moduli are infinite"),
-    ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "nothing has mass", "no acceleration is defined"),
+    ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "moving mass is 0", "no acceleration is defined"),
 )  # fmt: skip
 #: name, changes, words of the warning, what it is about.
 _WARNINGS: tuple[tuple[str, Tables, str, str], ...] = (
@@ -359,7 +359,7 @@ def _points(base: Tables, registry: Registry) -> Iterator[Case]:
             if registry.find("integrator", name).plugin.implicit:
                 yield case("a turn", "scenes:turn", turn, shown, integrator=name)
             else:
-                words, reason = "through too many steps", "a step takes a tenth of a second"
+                words, reason = "needs too many steps", "a step takes a tenth of a second"
                 yield case("a turn", "scenes:refusal", {**turn, "integrator.kind": name}, shown, words=words, reason=reason)
 
 
