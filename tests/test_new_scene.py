@@ -14,7 +14,7 @@ from raceway.scene.catalogue import _single_presets
 from validation.command_line import invoke
 
 
-@pytest.mark.parametrize("preset", [*_single_presets(), "7014C", "7952A5"])
+@pytest.mark.parametrize("preset", [*_single_presets(), "7014C", "7952A5", "NU206", "N1014"])
 def test_a_new_scene_has_no_mistakes_and_can_run(preset):
     text = _scene_text(preset, default_registry())
     assert rw.check(text).ok
@@ -22,6 +22,17 @@ def test_a_new_scene_has_no_mistakes_and_can_run(preset):
     assert "" not in [line.partition("#")[2].strip() for line in text.splitlines() if "#" in line], (
         "a comment says something"
     )
+
+
+@pytest.mark.parametrize("preset", ["B7206C", "6205", "NU206"])
+def test_a_new_scene_teaches_what_runs(preset, tmp_path):
+    """Every key that it names changes the answer or its cost: none is reported as without effect, and the run ends with K."""
+    file = tmp_path / "new.toml"
+    assert invoke("dev", "new-scene", preset, "--out", str(file)).exit_code == 0
+    result = rw.run(file)
+    assert result.K > 1e7 and not any("has no effect" in text for text in result.warnings)
+    lessons = [line for line in file.read_text().splitlines() if "=" in line]
+    assert len(lessons) >= 8 and all("#" in line or line.startswith("title") for line in lessons)
 
 
 def test_keys_that_are_comments_can_be_taken_in():

@@ -28,6 +28,12 @@ _KEYS: dict[str, dict[str, tuple[Any, bool]]] = {
     "contact": {"damping": (0.001, False), "friction": (0.05, True)},
     "integrator": {"turns": (12, True)},
 }
+#: The same of a bearing that brings its bodies, contacts and supports: cylindrical rollers carry no axial load.
+_ROLLERS = {
+    "bearing": {},
+    "load": {"radial": ([2000.0, 0.0], False)},
+    **{table: _KEYS[table] for table in ("rotor", "excitation", "integrator")},
+}
 #: Plug-ins by table, and what is said of them.
 _KINDS = {
     "excitation": (
@@ -47,7 +53,7 @@ _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  
 @click.option("--out", type=PATH, metavar="FILE", help="File [PRESET.toml here].")
 @common
 def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
-    """Write a scene with comments: a bearing of the catalogue under axial load and unbalance.
+    """Write a scene with comments: a bearing of the catalogue under load and unbalance.
 
     PRESET names the bearing [B7206C].
 
@@ -55,19 +61,15 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     Example:
       raceway dev new-scene
       raceway dev new-scene 7206A-NSK --out spindle.toml
+      raceway dev new-scene NU206
     """
     from rich.text import Text
 
     from raceway.scene.catalogue import preset as known
-    from raceway.scene.catalogue import preset_of
 
     if Path(preset).suffix == ".toml":
         raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway dev new-scene B7206C --out {preset}")
     known(preset)
-    if (entry := preset_of(preset)) is not None and entry.other_tables:
-        raise RacewayError(
-            f"`{preset}` carries no axial load: bearing.preset and load.radial are a complete scene (examples/cylindrical_rollers.toml)"
-        )
     file = Path(f"{re.sub(r'[^A-Za-z0-9-]+', '-', preset)}.toml") if out is None else out
     if file.exists():
         raise RacewayError(f"`{file}` exists: choose another file with --out, or remove it")
@@ -85,7 +87,7 @@ def _scene_text(preset: str, registry: Registry) -> str:
     assert entry is not None
     lines = [_HEAD, f'title = "{entry.title}"', "", "[bearing]"]
     lines.append(f'preset = "{preset}"  # other keys of this table override it')
-    for table, keys in _KEYS.items():
+    for table, keys in (_ROLLERS if entry.other_tables else _KEYS).items():
         lines += [] if table == "bearing" else ["", f"[{table}]"]
         lines += list(_lines(table, keys, registry))
     return "\n".join(lines) + "\n"
