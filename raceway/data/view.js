@@ -1,14 +1,12 @@
 "use strict";
-(function () {
-  const data = JSON.parse(document.getElementById("data").textContent);
-  const stage = document.getElementById("stage"), canvas = document.getElementById("scene");
-  const told = document.getElementById("told"), hint = told.textContent;
+// Draws a bearing into `stage`, which holds a canvas: of the page of `raceway view`, and of the application.
+//   data: fixed_shapes and fixed_parts (rings), shapes and parts (balls, forces, contacts), balls, labels, reach, radius
+//   words: element that states a ball's numbers;  shown(ring): whether "inner" or "outer" is drawn
+// Returns update(data), which takes what has changed, and redraw(); null without WebGL.
+window.raceway_stage = function (stage, words, shown, data) {
+  const canvas = stage.querySelector("canvas"), hint = words.textContent;
   const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
-  if (!gl) {  // the pictures below show the same
-    stage.remove();
-    told.textContent = "This browser has no WebGL: the pictures below show the bearing instead.";
-    return;
-  }
+  if (!gl) return null;
   function bytes(text) { return Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); }
   function shader(kind, text) {
     const one = gl.createShader(kind);
@@ -37,10 +35,10 @@
     gl.bufferData(kind, array, gl.STATIC_DRAW);
     return one;
   }
-  const shapes = {};
-  for (const [name, s] of Object.entries(data.shapes)) {
+  let shapes = {}, moving = [], labels = [];
+  function made(s) {
     const index = new Uint16Array(bytes(s.triangles).buffer);
-    shapes[name] = {
+    return {
       p: buffer(gl.ARRAY_BUFFER, new Float32Array(bytes(s.points).buffer)),
       n: buffer(gl.ARRAY_BUFFER, new Int8Array(bytes(s.normals).buffer)),
       c: s.tones ? buffer(gl.ARRAY_BUFFER, bytes(s.tones)) : null,
@@ -57,13 +55,23 @@
     const r = turn;
     return [r[0] * x + r[3] * y + r[6] * z, r[1] * x + r[4] * y + r[7] * z, r[2] * x + r[5] * y + r[8] * z];
   }
-  const labels = data.labels.map((one) => {
-    const span = document.createElement("span");
-    span.className = "label";
-    span.textContent = one.text;
-    stage.appendChild(span);
-    return span;
-  });
+  function free(shape) {
+    for (const part of ["p", "n", "c", "i"]) if (shape && shape[part]) gl.deleteBuffer(shape[part]);
+  }
+  function update(news) {
+    for (const name of moving) { free(shapes[name]); delete shapes[name]; }
+    if (news.fixed_shapes) { Object.values(shapes).forEach(free); shapes = {}; }
+    data = Object.assign({}, data, news);
+    moving = Object.keys(news.shapes);
+    for (const [name, shape] of Object.entries({ ...news.fixed_shapes, ...news.shapes })) shapes[name] = made(shape);
+    while (labels.length > data.labels.length) labels.pop().remove();
+    while (labels.length < data.labels.length) {
+      labels.push(stage.appendChild(document.createElement("span")));
+      labels[labels.length - 1].className = "label";
+    }
+    data.labels.forEach((label, k) => { labels[k].textContent = label.text; });
+    redraw();
+  }
   function draw() {
     const sharp = Math.min(window.devicePixelRatio || 1, 2), width = canvas.clientWidth, height = canvas.clientHeight;
     if (canvas.width !== Math.round(width * sharp) || canvas.height !== Math.round(height * sharp)) {
@@ -84,7 +92,7 @@
       (glass ? gl.enable : gl.disable).call(gl, gl.BLEND);
       gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
       gl.depthMask(!glass);
-      for (const part of data.parts) {
+      for (const part of [...data.fixed_parts, ...data.parts]) {
         if ((part.opacity < 1) !== glass || hidden(part.name)) continue;
         const s = shapes[part.shape];
         [[s.p, gl.FLOAT, false], [s.n, gl.BYTE, true], [s.c, gl.UNSIGNED_BYTE, true]].forEach(([one, kind, unit], k) => {
@@ -108,7 +116,7 @@
       span.style.visibility = x < 20 || y < 10 || x > width - 20 || y > height - 10 ? "hidden" : "visible";
     });
   }
-  function hidden(name) { return ["outer", "inner"].some((ring) => name.startsWith(ring + " ring") && !document.getElementById(ring).checked); }
+  function hidden(name) { return ["outer", "inner"].some((ring) => name.startsWith(ring + " ring") && !shown(ring)); }
   let asked = false;
   function redraw() {
     if (!asked) requestAnimationFrame(() => { asked = false; draw(); });
@@ -122,7 +130,7 @@
       const q = on(...ball.at), away = Math.hypot(q[0] - x, q[1] - y);
       if (away < data.radius && (best === null || q[2] > best[0])) best = [q[2], ball];
     }
-    told.textContent = best ? best[1].text : hint;
+    words.textContent = best ? best[1].text : hint;
   }
   const down = new Map();
   canvas.addEventListener("pointerdown", (e) => { down.set(e.pointerId, e); canvas.setPointerCapture(e.pointerId); });
@@ -146,7 +154,8 @@
     zoom = Math.min(Math.max(zoom * Math.exp(-0.0015 * e.deltaY), 0.3), 30);
     redraw();
   }, { passive: false });
-  for (const ring of ["outer", "inner"]) document.getElementById(ring).addEventListener("change", redraw);
   new ResizeObserver(redraw).observe(stage);
+  update(data);
   draw();
-}());
+  return { update, redraw };
+};

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from raceway.framework.shown import percents
 from raceway.out.answer import Part
@@ -116,8 +117,18 @@ def _static(result: ReadTables) -> list[Row]:
 _LEFT_OUT_SHOWN = 2
 
 
-def report(result: ReadTables) -> list[Part]:
-    """One run, from the content of result.json."""
+class Screen(NamedTuple):
+    """What is shown of a run: title, bearing and model (lines), sentences of doubt, quantities with value and remark, what is left out."""
+
+    title: str
+    bearing: str
+    warnings: list[str]
+    rows: list[Row]
+    left_out: str
+
+
+def screen(result: ReadTables) -> Screen:
+    """Of one run, from the content of result.json."""
     rows = [
         *_answer_rows(result),
         *equilibrium_rows(result),
@@ -128,14 +139,18 @@ def report(result: ReadTables) -> list[Part]:
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]
-    # What makes the numbers doubtful is read before them.
-    parts: list[Part] = [Words(f"warning: {micro(text)}", "yellow") for text in result["warnings"]]
+    return Screen(result["title"], _bearing(result), [micro(text) for text in result["warnings"]], rows, _left_out(result))
+
+
+def report(result: ReadTables) -> list[Part]:
+    """Of a terminal: what makes the numbers doubtful is read before them."""
+    shown = screen(result)
     return [
-        *parts,
-        Words(result["title"], "bold"),
-        Words(_bearing(result), "dim"),
-        sections(rows),
-        Words(_left_out(result), "dim"),
+        *(Words(f"warning: {text}", "yellow") for text in shown.warnings),
+        Words(shown.title, "bold"),
+        Words(shown.bearing, "dim"),
+        sections(shown.rows),
+        Words(shown.left_out, "dim"),
     ]
 
 

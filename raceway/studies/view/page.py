@@ -26,7 +26,7 @@ _MOST, _TOGETHER = 65535, 100
 _WIDE = 1000
 
 
-_COLUMNS = [
+BALL_COLUMNS = [
     "ball", "azimuth [deg]", "load [N]", "contact angle [deg]", "peak pressure [MPa]",
     "a, across [mm]", "b, rolling [mm]",
 ]  # fmt: skip
@@ -50,8 +50,8 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
     for inner in (True, False):
         race = "inner" if inner else "outer"
         page.table(
-            _COLUMNS,
-            _balls(state, inner),
+            BALL_COLUMNS,
+            ball_cells(state, inner),
             caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
         )
     if words["quantities"]:
@@ -75,53 +75,62 @@ def _picture(content: bytes, alternative: str, caption: str) -> str:
 
 
 def _stage(bearing: Bearing, state: State) -> str:
-    z = len(state.azimuth)
-    top = max(float(state.load[:z].max()), 1e-12)
-    peak = max(1e-6 * float(state.peak.max()), 1e-12)
+    data = {**rings_data(bearing), **state_data(bearing, state)}
     parts = {
-        "data": json.dumps(_scene(bearing, state, top, peak), separators=(",", ":")).replace("<", "\\u003c"),
+        "bars": "".join(data.pop("bars")),
+        "data": json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
         "script": files("raceway").joinpath("data/view.js").read_text(encoding="utf-8"),
-        "bars": _bar("ball load, inner race", "N", LOADS, top) + _bar("contact pressure", "MPa", PRESSURES, peak),
-        "label": escape(f"The bearing in three dimensions, {z} balls", quote=True),
+        "label": escape(f"The bearing in three dimensions, {len(state.azimuth)} balls", quote=True),
     }
     return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
 
 
-def _scene(bearing: Bearing, state: State, top: float, peak: float) -> Tables:
-    """Content that the script draws."""
-    centres = bearing.centres(state)
-    shapes = {"ball": _packed(ball(bearing.diameter, 20, 32))}
-    parts: list[Tables] = []
-
-    def add(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> None:
-        parts.append(
-            {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
-        )
-
+def rings_data(bearing: Bearing) -> Tables:
+    """Shapes that loads do not change, and the parts that they draw, for ``view.js``."""
     from matplotlib.colors import to_rgb
 
-    for k, part in enumerate(bearing.rings()):
-        shapes[f"ring {k}"] = _packed(part.surface)
-        add(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white")))
-    for part, centre in zip(bearing.balls(state), centres, strict=True):
-        add(part, "ball", centre, _tone(LOADS, (part.load or 0.0) / top))
+    rings = bearing.rings()
+    shapes = {f"ring {k}": _packed(part.surface) for k, part in enumerate(rings)}
+    parts = [_part(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white"))) for k, part in enumerate(rings)]
+    return {"fixed_shapes": {"ball": _packed(ball(bearing.diameter, 20, 32)), **shapes}, "fixed_parts": parts}
+
+
+def state_data(bearing: Bearing, state: State) -> Tables:
+    """Balls by their loads, forces, contact ellipses by their pressures and labels, for ``view.js``."""
+    top, peak = _scales(state)
+    centres, tips = bearing.centres(state), bearing.tips(state, top)
+    shapes: Tables = {}
+    parts = [
+        _part(part, "ball", centre, _tone(LOADS, (part.load or 0.0) / top))
+        for part, centre in zip(bearing.balls(state), centres, strict=True)
+    ]
     for k, part in enumerate(bearing.arrows(state, top)):
         shapes[f"arrow {k}"] = _packed(part.surface)
-        add(part, f"arrow {k}", np.zeros(3), _tone(LOADS, (part.load or 0.0) / top))
+        parts.append(_part(part, f"arrow {k}", np.zeros(3), _tone(LOADS, (part.load or 0.0) / top)))
     patches = bearing.patches(state)
     for k in range(0, len(patches), _TOGETHER):
         together = joined([part.surface for part in patches[k : k + _TOGETHER]])
         shapes[f"patches {k}"] = _packed(together, _tone(PRESSURES, np.asarray(together.values) / peak))
-        add(Part("contacts", together), f"patches {k}", np.zeros(3), np.ones(3))
+        parts.append(_part(Part("contacts", together), f"patches {k}", np.zeros(3), np.ones(3)))
     balls = [
         {"at": _short(centre), "text": f"Ball {k} at {np.degrees(state.azimuth[k]) % 360.0:.4g}°: {_ball_words(state, k)}"}
         for k, centre in enumerate(centres)
     ]
-    labels = [{"at": _short(tip), "text": f"{k}: {state.load[k]:.3g} N"} for k, tip in enumerate(bearing.tips(state, top))]
-    reach = 1.03 * max(float(np.abs(bearing.tips(state, top)).max()), 0.5 * bearing.outer_diameter)
+    labels = [{"at": _short(tip), "text": f"{k}: {state.load[k]:.3g} N"} for k, tip in enumerate(tips)]
+    reach = 1.03 * max(float(np.abs(tips).max()), 0.5 * bearing.outer_diameter)
     return {
-        "shapes": shapes, "parts": parts, "balls": balls, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter
+        "shapes": shapes, "parts": parts, "balls": balls, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter,
+        "bars": [_bar("ball load, inner race", "N", LOADS, top), _bar("contact pressure", "MPa", PRESSURES, peak)],
     }  # fmt: skip
+
+
+def _scales(state: State) -> tuple[float, float]:
+    """Largest load on an inner race [N], and largest pressure [MPa]."""
+    return max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)
+
+
+def _part(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> Tables:
+    return {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
 
 
 def _ball_words(state: State, k: int) -> str:
@@ -137,8 +146,8 @@ def _ball_words(state: State, k: int) -> str:
     return "; ".join(words)
 
 
-def _balls(state: State, inner: bool) -> list[list[object]]:
-    """A row for each ball, cells as ``_COLUMNS`` says."""
+def ball_cells(state: State, inner: bool) -> list[list[object]]:
+    """A row for each ball, cells as ``BALL_COLUMNS`` says."""
     z, rows = len(state.azimuth), []
     for k in range(z):
         i = k if inner else z + k

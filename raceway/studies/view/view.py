@@ -138,7 +138,7 @@ _DOTS_PER_INCH = 110
 _EVERY = 360
 
 
-def _at_rest(result: Result) -> State:
+def at_rest(result: Result) -> State:
     """The static state, with the numbers of result.json."""
     equilibrium, model = result.equilibrium, result.model
     balls = equilibrium_table(model, equilibrium)["balls"]
@@ -195,7 +195,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
     RacewayError: a package that is missing.
     """
     bearing = Bearing.of(result)
-    moments = {"bearing.png": (_at_rest(result), "at rest")}
+    moments = {"bearing.png": (at_rest(result), "at rest")}
     if result.simulation is not None:
         state, angle = _at_peak(result)
         moments["bearing-peak.png"] = state, f"when a ball carries most, {angle:.0f} deg into the turn"

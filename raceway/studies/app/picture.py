@@ -1,0 +1,224 @@
+"""What the application shows of a scene: the screen of its run, the bearing, curves over speed and load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+
+import attrs
+import numpy as np
+
+from raceway.errors import RacewayError, SceneError
+from raceway.framework.registry import default_registry
+from raceway.out.quantities import KNOWN, Quantity, named, plugin_quantities
+from raceway.pipeline.front import run
+from raceway.pipeline.result import Result
+from raceway.pipeline.run_screen import screen
+from raceway.points.function import Function, PointStatus, function
+from raceway.points.sweep import sweep
+from raceway.scene.changes import key_of
+from raceway.scene.scene import Scene
+from raceway.storage.tables import Tables
+from raceway.studies.rotor.export import export_ross
+from raceway.studies.view.bodies import Bearing
+from raceway.studies.view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
+from raceway.studies.view.view import at_rest
+
+#: Relative tolerance of the orbits of curves, far below what is seen.
+_TOLERANCE = 1e-6
+_MULTIPLIER = Quantity("largest_multiplier", "1", "Floquet multiplier of the orbit: above 1 it is unstable")
+#: Panels over speed and over load: title, and names of the curves in it, those of a motion first.
+_PANELS = {
+    "stiffness": ("equivalent_stiffness", "kyy_tilts_follow", "kyy"),
+    "damping": ("equivalent_damping",),
+    "Floquet multiplier": ("largest_multiplier",),
+    "axial displacement": ("x",),
+    "ball load": ("peak_ball_load", "largest_ball_load"),
+    "pressure p0": ("p0",),
+    "temperature": ("temperature_inner_k", "temperature_outer_k"),
+    "reference life L10r": ("l10r_hours",),
+}
+#: Panels of which all curves are drawn; of others the first that the scene has.
+_TOGETHER = ("temperature",)
+_OVER_LOAD = ("stiffness", "ball load", "pressure p0", "reference life L10r")
+_ORBIT_POINTS = 181
+
+
+@attrs.frozen
+class Axis:
+    """What curves run over: ``count`` points from ``low`` to ``high`` of a key, in the key's unit."""
+
+    key: str
+    label: str
+    low: float
+    high: float
+    count: int
+
+    def numbers(self, present: float) -> np.ndarray:
+        """(count,) values, the present one among them where it lies inside."""
+        values = np.linspace(self.low, self.high, self.count)
+        if self.low < present < self.high:
+            values[1 + int(np.argmin(abs(values[1:-1] - present)))] = present
+        return values
+
+
+def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str, Axis]:
+    """Speed and axial load over ``ranges``, else from a twentieth of the scene's to twice as much; only what the scene has."""
+    axes = {}
+    for name, key, label, count in (
+        ("speed", "excitation.speed_rpm", "speed [r/min]", 60),
+        ("speed", "kinematics.spin_speed_rpm", "speed [r/min]", 60),
+        ("load", "load.axial", "axial load [N]", 31),
+    ):
+        present = _present(scene, key)
+        if name not in axes and present:
+            ends = ranges.get(name) or sorted((0.05 * present, 2.0 * present))
+            axes[name] = Axis(key, label, *(float(f"{end:.2g}") for end in ends), count)
+    return axes
+
+
+def _present(scene: Scene, key: str) -> float | None:
+    try:
+        value = key_of(scene, key).value
+    except RacewayError:  # a table that the scene has not
+        return None
+    return None if value is None else float(value)
+
+
+def result_picture(result: Result) -> Tables:
+    """The screen of a run, ball by ball, and the orbit.
+
+    Returns
+    -------
+    dict : title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
+        (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None)
+    """
+    content = result.to_dict()
+    parts = screen(content)
+    state, balls = at_rest(result), content["equilibrium"]["balls"]
+    polar = [[ball["azimuth_deg"], ball["load_inner_n"], ball["load_outer_n"]] for ball in balls]
+    return {
+        "title": parts.title, "bearing": parts.bearing, "warnings": parts.warnings, "left_out": parts.left_out,
+        "rows": [list(row) for row in parts.rows if row[0] != "wall time"], "columns": BALL_COLUMNS,
+        "balls": {race: ball_cells(state, race == "inner") for race in ("inner", "outer")}, "polar": polar, "orbit": _orbit(result),
+    }  # fmt: skip
+
+
+def _orbit(result: Result) -> list[list[float]] | None:
+    """Path of the last turn across the shaft [um]."""
+    if result.simulation is None:
+        return None
+    record = result.simulation.record
+    turn = max(record.schedule.steps_per_turn // record.schedule.stride, 1)
+    path = 1e6 * record.displacement[-turn - 1 :, 1:3]
+    chosen = np.unique(np.linspace(0, len(path) - 1, _ORBIT_POINTS).astype(int))
+    return [[float(f"{x:.5g}") for x in point] for point in path[chosen]]
+
+
+def bodies_picture(result: Result, rings: bool) -> Tables:
+    """The bearing in three dimensions, at rest, as ``view.js`` draws it; ``rings``: with the shapes that loads do not change.
+
+    Raises
+    ------
+    SceneError
+        Rows of different bearings.
+    """
+    bearing, state = Bearing.of(result), at_rest(result)
+    return {**(rings_data(bearing) if rings else {}), **state_data(bearing, state)}
+
+
+def curves(scene: Scene, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:
+    """Curves over speed and load by the compiled loop.
+
+    Parameters
+    ----------
+    wait : called with the name of an axis before it is computed; an exception stops
+
+    Returns
+    -------
+    list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
+        missing (points without answer), why (no curves at all)
+    """
+    panels = []
+    for name, axis in axes.items():
+        wait(name)
+        titles = {t: _chosen(scene, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
+        try:
+            answer = _answer(scene, axis, [curve for names in titles.values() for curve in names])
+        except RacewayError as why:
+            panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
+            continue
+        panels += [_panel(name, axis, t, names, answer, _present(scene, axis.key)) for t, names in titles.items() if names]
+    return panels
+
+
+def _chosen(scene: Scene, title: str, names: Sequence[str]) -> list[str]:
+    """The curves of a panel that the scene has."""
+    possible = [name for name in names if not _missing(scene, name)]
+    return possible if title in _TOGETHER else possible[:1]
+
+
+def _missing(scene: Scene, name: str) -> bool:
+    moving = name in ("equivalent_stiffness", "equivalent_damping", "largest_multiplier", "peak_ball_load")
+    if name.startswith("temperature"):
+        return scene.heat is None
+    return moving and scene.excitation is None or (name == "kyy_tilts_follow" and scene.supports.tilt != "free")
+
+
+def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
+    """Columns of the loop, its points, and reasons.
+
+    Raises
+    ------
+    RacewayError
+        A scene that the loop cannot do.
+    """
+    compiled: Function = function(scene, [axis.key], list(outputs), tolerance=_TOLERANCE)
+    if compiled.why_slow:
+        raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
+    numbers = axis.numbers(_present(scene, axis.key) or 0.0)
+    columns = compiled.looped({axis.key: numbers})
+    reasons = compiled.with_reasons({axis.key: numbers}, columns)["reason"]
+    return {**columns, "points": numbers, "reason": reasons}
+
+
+def _panel(name: str, axis: Axis, title: str, names: Iterable[str], answer: Tables, present: float | None) -> Tables:
+    known: dict[str, Quantity] = (
+        KNOWN | named(_MULTIPLIER) | {n: quantity for n, (_, quantity) in plugin_quantities(default_registry()).items()}
+    )
+    solved, lines = answer["status"] == PointStatus.COMPUTED, []
+    for curve in names:
+        quantity = known[curve]
+        y = [float(quantity.read(v)) if ok and np.isfinite(v) else None for v, ok in zip(answer[curve], solved, strict=True)]
+        lines.append({"name": curve, "label": quantity.label, "y": y})
+    return {
+        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": known[lines[0]["name"]].read_unit,
+        "lines": lines, "present": present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
+    }  # fmt: skip
+
+
+def scene_result(scene: Scene, progress: Callable[[str, int, int], None]) -> Result:
+    """The run of a scene."""
+    return run(scene, progress=progress)
+
+
+def write_file(kind: str, scene: Scene, folder: Path, progress: Callable[[str, int, int], None]) -> list[str]:
+    """Pictures of the run ("png") or the coefficients over speed for ROSS ("ross").
+
+    Returns
+    -------
+    list of str : the files
+
+    Raises
+    ------
+    RacewayError
+        What the run, or the sweep over speed, raises; a folder that cannot be written.
+    """
+    if kind == "png":
+        return [str(path) for path in scene_result(scene, progress).picture(folder)]
+    axis = axes_of(scene, {}).get("speed")
+    if axis is None:
+        raise SceneError.at("excitation.speed_rpm", None, "is needed: ROSS reads coefficients over speed")
+    swept = sweep(scene, {axis.key: f"{axis.low}:{axis.high}:21"}, progress=progress)
+    export_ross(swept, folder / "bearing.toml")
+    return [str(folder / "bearing.toml")]

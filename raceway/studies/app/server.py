@@ -1,0 +1,298 @@
+"""``raceway app``: the page of one or two scenes, served on this machine alone."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from raceway.errors import RacewayError, SceneError, extra
+from raceway.out.table import csv_text
+from raceway.scene.inputs import SceneSource, as_given
+from raceway.storage.files import writable, write_whole
+from raceway.storage.tables import Tables
+from raceway.studies.app.form import groups, texts
+from raceway.studies.app.guard import guard
+from raceway.studies.app.session import Session
+from raceway.studies.app.worker import Job, News, Worker
+
+#: What is opened without a scene: the two excitation models under identical settings.
+_EXAMPLE: Tables = {
+    "title": "B7206C under 1 kN and the rig's unbalance",
+    "bearing": {"preset": "B7206C"}, "supports": {"tilt": "locked"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5},
+    "contact": {"kind": "hertz", "damping": 0.001},
+}  # fmt: skip
+_NAMES = ("A", "B")
+
+
+class Page:
+    """State of the page, and what its buttons do; the state is shared by all tabs."""
+
+    def __init__(self, session: Session, plugins: Iterable[Path]) -> None:
+        from trame_server import Server
+
+        self.session, self.ranges = session, {}
+        self.server = Server("raceway", client_type="vue3")
+        self.state: Any = self.server.state
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
+        self._curves: dict[int, list[Tables]] = {}
+        self.worker = Worker(list(plugins), self._from_worker)
+        self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
+        self.state.update({"charts": [], "note": "", "form": [], "ranges": {}, "folder": str(session.folder), "done": -1})
+        self.state.trame__title = "Raceway"
+        self._show([0, 1])
+        for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
+            self.server.controller.trigger(name)(getattr(self, f"on_{name}"))
+        data = Path(str(files("raceway").joinpath("data")))
+        self.server.enable_module(
+            {
+                "serve": {"raceway": str(data)}, "vue_use": ["raceway_app"],
+                "scripts": ["raceway/view.js", "raceway/app.js"], "styles": ["raceway/app.css"],
+            }
+        )  # fmt: skip
+        self.state.trame__template_main = (data / "app.html").read_text(encoding="utf-8")
+
+    def on_change(self, panels: list[int], key: str, text: str, merge: bool = False) -> None:
+        """A field was changed; ``merge``: by the same slider as before, which is undone at once."""
+        self._after(lambda: self.session.change([int(k) for k in panels], str(key), str(text), bool(merge)))
+
+    def on_compare(self, on: bool) -> None:
+        """A second scene is put beside the first, or taken away."""
+        self._after(lambda: self.session.compare(bool(on)))
+
+    def on_undo(self) -> None:
+        """Back by one change."""
+        self._after(lambda: self.session.undo())
+
+    def on_redo(self) -> None:
+        """Forward again."""
+        self._after(lambda: self.session.undo(back=False))
+
+    def on_range(self, axis: str, low: float, high: float) -> None:
+        """The ends of an axis of the curves."""
+        with suppress(TypeError, ValueError):
+            if 0.0 <= float(low) < float(high) < 1e12:
+                self.ranges = {**self.ranges, str(axis): (float(low), float(high))}
+                self.session.number += 1
+                self._show(list(range(len(self.session.scenes))))
+
+    def on_stop(self) -> None:
+        """What runs is not wanted."""
+        self.worker.stop()
+
+    def on_write(self, kind: str, panel: int, name: str = "") -> None:
+        """A file: of the scene ("scene"), the curves ("csv"), pictures ("png"), coefficients ("ross")."""
+        session = self.session
+        panel = min(max(int(panel), 0), len(session.scenes) - 1)
+        try:
+            if kind == "scene":
+                self.state.note = f"written: {session.save(panel, str(name))}"
+            elif kind == "csv":
+                text = csv_text(list(_curve_rows(self._curves)))
+                self.state.note = f"written: {write_whole(text.encode(), writable(session.folder) / 'curves.csv')}"
+            elif kind in ("png", "ross"):
+                self.worker.submit(Job(session.number, {panel: session.scenes[panel]}, file=kind, folder=session.folder))
+                self.state.note = "writing"
+        except RacewayError as error:
+            self.state.note = str(error)
+
+    def _after(self, act: Callable[[], list[int]]) -> None:
+        """Do something to the session, then show what has changed."""
+        self.state.note = ""
+        try:
+            self._show(act())
+        except SceneError as error:
+            self.state.note = str(error)
+
+    def _show(self, changed: list[int]) -> None:
+        """The form, and new pictures of panels that have changed; their old numbers are marked as such until then."""
+        session, scenes = self.session, {}
+        panels, faults = [], {}
+        for k, given in enumerate(session.scenes):
+            scene, mistakes = session.checked(k)
+            said, holds = texts(given, scene)
+            panels.append({
+                "name": _NAMES[k], "said": said, "holds": holds, "mistakes": mistakes, "title": given.merged().get("title", ""),
+                "command": session.command(k), "python": session.python(k) if scene is not None else "",
+            })  # fmt: skip
+            faults |= {path: sentence for path, sentence in mistakes if path}
+            if k in changed:
+                self._numbers[k] = session.number
+                if scene is None:
+                    self._forget(k)
+                else:
+                    scenes[k] = given
+        if len(panels) == 1:
+            self._forget(1)
+        form = groups(session.scenes[0])
+        undo, redo = session.can_undo
+        self.state.update({
+            "panels": panels, "faults": faults, "can_undo": undo, "can_redo": redo, "number": session.number,
+            "busy": {str(k): "computing" for k in scenes}, "ranges": dict(self.ranges),
+        })  # fmt: skip
+        if form != self.state.form:
+            self.state.form = form
+        if scenes:
+            self.worker.submit(Job(session.number, scenes, self.ranges))
+
+    def _forget(self, panel: int) -> None:
+        """A scene that is refused, or is no more, has no numbers."""
+        self.state.update({f"screen_{panel}": None, f"bodies_{panel}": None})
+        self._curves.pop(panel, None)
+        self.state.charts = _charts(self._curves)
+
+    def _from_worker(self, news: News) -> None:
+        if self._loop is not None:
+            self._loop.call_soon_threadsafe(self._news, news)
+        else:
+            self._early.append(news)
+
+    _early: list[News] = []
+
+    def _news(self, news: News) -> None:
+        """What the worker reports, unless the scene has changed meanwhile."""
+        with self.state:
+            panel, state = news.panel, self.state
+            if news.kind == "file":
+                state.note = f"written: {', '.join(news.content)}"
+            elif news.kind == "done":
+                if news.number == self.session.number:
+                    state.update({"busy": {}, "done": news.number})
+            elif self._numbers.get(panel) != news.number:
+                return
+            elif news.kind == "progress":
+                what, done, total = news.content
+                state.busy = {**state.busy, str(panel): f"{what} {100 * done // total} %" if total else what}
+            elif news.kind == "refused":
+                self._forget(panel)
+                panels = [dict(one) for one in state.panels]
+                panels[panel]["mistakes"] = news.content
+                state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
+            elif news.kind == "screen":
+                state[f"screen_{panel}"] = {**news.content, "number": news.number}
+            elif news.kind == "bodies":
+                self._bodies(panel, news.content)
+            elif news.kind == "curves":
+                self._curves[panel] = news.content
+                state.charts = _charts(self._curves)
+
+    def _bodies(self, panel: int, content: Tables | str) -> None:
+        if isinstance(content, str):
+            self.state[f"bodies_{panel}"] = {"why": content}
+            return
+        fixed = {name: content.pop(name) for name in list(content) if name.startswith("fixed")}
+        if fixed:
+            self.state[f"rings_{panel}"] = {**fixed, "number": self.session.number}
+        self.state[f"bodies_{panel}"] = content
+
+    def serve(self, port: int, token: str, ready: Callable[[str], None]) -> None:
+        """Until Ctrl-C."""
+        from trame_server.core import CoreServer  # noqa: F401  (the package is there)
+
+        server = self.server
+
+        def bind(app: Any) -> None:
+            app.app.middlewares.append(guard(token))
+
+        def begin(**_: object) -> None:
+            self._loop = asyncio.get_running_loop()
+            for news in self._early:
+                self._news(news)
+            ready(f"http://127.0.0.1:{server.port}/index.html?token={token}")
+
+        server.controller.on_server_bind.add(bind)
+        server.controller.on_server_ready.add(begin)
+        arguments, sys.argv = sys.argv, sys.argv[:1]
+        try:
+            server.start(
+                port=port, host="127.0.0.1", open_browser=False, show_connection_info=False, timeout=0, disable_logging=True
+            )
+        finally:
+            sys.argv = arguments
+            self.worker.close()
+
+
+def _charts(curves: Mapping[int, list[Tables]]) -> list[Tables]:
+    """Panels of all scenes, curves of the same quantity in one."""
+    charts: dict[tuple[str, str], Tables] = {}
+    for panel, panels in sorted(curves.items()):
+        for content in panels:
+            key = (content["axis"], content["panel"])
+            chart = charts.setdefault(
+                key, {k: content.get(k) for k in ("axis", "panel", "label", "unit")} | {"series": [], "notes": []}
+            )
+            chart["series"] += [
+                {"panel": panel, "label": line["label"], "x": content["x"], "y": line["y"], "present": content["present"]}
+                for line in content["lines"]
+            ]
+            if content["why"] or content.get("missing"):
+                missing = content.get("missing")
+                points = f"{missing} points without an answer of the fast loop; " if missing else ""
+                chart["notes"].append(f"{_NAMES[panel]}: {points}{content['why'] or 'a run may have one'}")
+    return [chart | {"id": k} for k, chart in enumerate(charts.values())]
+
+
+def _curve_rows(curves: Mapping[int, list[Tables]]) -> Iterable[Tables]:
+    """A row for each point of each curve."""
+    for panel, panels in sorted(curves.items()):
+        for content in panels:
+            for line in content["lines"]:
+                for x, y in zip(content["x"], line["y"], strict=True):
+                    yield {
+                        "scene": _NAMES[panel], "axis": content["label"], "x": x, "quantity": line["name"], "unit": content["unit"],
+                        "value": "" if y is None else y,
+                    }  # fmt: skip
+
+
+def app(
+    scene: SceneSource | None = None,
+    *,
+    out: str | Path | None = None,
+    port: int = 0,
+    ready: Callable[[str], None] = print,
+    plugins: Iterable[str | Path] = (),
+) -> None:
+    """Look at a scene in a browser and change it: bearing, ball loads, curves over speed and load; served to this machine alone, until Ctrl-C.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables; None: the two excitation models of an example side by side
+    out : folder in which the page's buttons write, and nowhere else; None: raceway-out/app
+    port : of the server on 127.0.0.1; 0: any that is free
+    ready : called with the address, which carries a token, once the page can be opened
+    plugins : files of one-off plug-ins that scenes may use
+
+    Raises
+    ------
+    SceneError
+        A source that is no scene.
+    RacewayError
+        trame is missing, or the port is taken.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.app("examples/b7206.toml", ready=lambda address: print(address[:17]))  # doctest: +SKIP
+    http://127.0.0.1:
+    """
+    from importlib.util import find_spec
+
+    from raceway.framework.registry import registry_with
+
+    if find_spec("trame_server") is None or find_spec("tomli_w") is None:
+        raise RacewayError(f"the application needs trame: {extra('app')}")
+    paths = [Path(path) for path in plugins]
+    registry_with(paths)
+    given = as_given(_EXAMPLE if scene is None else scene)
+    source = str(scene) if isinstance(scene, str | Path) and Path(str(scene)).is_file() else ""
+    session = Session((given,), source, Path(out) if out is not None else Path("raceway-out") / "app")
+    if scene is None:
+        session.compare(True)
+    Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)

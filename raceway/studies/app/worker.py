@@ -1,0 +1,221 @@
+"""A process of its own that computes pictures of scenes, so that the page answers meanwhile and a long run can be stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import traceback
+from collections.abc import Callable, Sequence
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from multiprocessing.synchronize import Event
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from raceway.errors import RacewayError, SceneError
+from raceway.scene.inputs import Given
+
+#: A run that does not end at a chunk of steps after so long [s] is ended with its process.
+_GRACE_S = 2.0
+
+
+@attrs.frozen
+class Job:
+    """Scenes to compute, or a file to write of one.
+
+    Attributes
+    ----------
+    number : of the change that asks for it
+    scenes : panel -> scene
+    ranges : axis of the curves -> its ends, where these are not the scene's own
+    file : "png" or "ross", to be written into ``folder``; empty: a picture
+    """
+
+    number: int
+    scenes: dict[int, Given]
+    ranges: dict[str, tuple[float, float]] = attrs.field(factory=dict)
+    file: str = ""
+    folder: Path = Path()
+
+
+@attrs.frozen
+class News:
+    """What the process reports: ``kind`` is "progress", "screen", "bodies", "curves", "refused", "file" or "done"."""
+
+    number: int
+    panel: int
+    kind: str
+    content: Any = None
+
+
+class Stopped(Exception):
+    """The page does not want the rest."""
+
+
+class Worker:
+    """The process; ``on_news`` is called in a thread of its own."""
+
+    def __init__(self, plugins: Sequence[Path], on_news: Callable[[News], None]) -> None:
+        self._plugins, self._tell = list(plugins), on_news
+        self._lock = threading.Lock()
+        self._running: Job | None = None
+        self._waiting: Job | None = None
+        self._start()
+
+    @property
+    def process_id(self) -> int | None:
+        """Of the present process."""
+        return self._process.pid
+
+    def submit(self, job: Job) -> None:
+        """Compute, after what runs now, which is stopped; a job that still waits is dropped unless it writes a file."""
+        with self._lock:
+            if self._running is None:
+                self._send(job)
+                return
+            if self._waiting is not None and not job.file:
+                job = attrs.evolve(job, scenes={**self._waiting.scenes, **job.scenes})
+            self._waiting = job
+            self._interrupt()
+
+    def stop(self) -> None:
+        """Stop what runs, and forget what waits."""
+        with self._lock:
+            self._waiting = None
+            if self._running is not None:
+                self._interrupt()
+
+    def close(self) -> None:
+        """End the process."""
+        with self._lock:
+            self._running = self._waiting = None
+            self._process.terminate()
+            self._process.join(5.0)
+            self._connection.close()
+
+    def _start(self) -> None:
+        context = get_context("spawn")
+        self._connection, other = context.Pipe()
+        self._event = context.Event()
+        self._process = context.Process(target=serve, args=(other, self._event, self._plugins), daemon=True)
+        self._process.start()
+        other.close()
+        threading.Thread(target=self._listen, args=(self._connection,), daemon=True).start()
+
+    def _send(self, job: Job) -> None:
+        self._running = job
+        self._event.clear()
+        self._connection.send(job)
+
+    def _interrupt(self) -> None:
+        if not self._event.is_set():
+            self._event.set()
+            timer = threading.Timer(_GRACE_S, self._end, (self._running,))
+            timer.daemon = True
+            timer.start()
+
+    def _end(self, job: Job | None) -> None:
+        """A job that does not listen ends with its process."""
+        with self._lock:
+            if job is not None and self._running is job:
+                self._process.kill()
+
+    def _listen(self, connection: Connection) -> None:
+        """Hand on what the process reports, until it ends; then start another one unless it was closed."""
+        while True:
+            try:
+                news = connection.recv()
+            except (EOFError, OSError):
+                break
+            self._tell(news)
+            if news.kind == "done":
+                self._next()
+        with self._lock:
+            if self._running is None:
+                return
+            ended, self._running = self._running, None
+            message = "stopped" if self._event.is_set() else "the process that computes has ended: was there memory enough?"
+            connection.close()
+            self._start()
+        for panel in ended.scenes:
+            self._tell(News(ended.number, panel, "refused", [("", message)]))
+        self._tell(News(ended.number, -1, "done"))
+        self._next()
+
+    def _next(self) -> None:
+        with self._lock:
+            self._running, job = None, self._waiting
+            self._waiting = None
+            if job is not None:
+                self._send(job)
+
+
+def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
+    """Jobs from a connection until it closes: what the process runs."""
+    from raceway.framework.registry import registry_with
+
+    with contextlib.suppress(EOFError, KeyboardInterrupt, BrokenPipeError):
+        registry_with(plugins)
+        from raceway.studies.app import picture
+
+        pictures = _Pictures(picture, connection, stop)
+        while True:
+            job: Job = connection.recv()
+            for panel, given in job.scenes.items():
+                pictures.answer(job, panel, given)
+            connection.send(News(job.number, -1, "done"))
+
+
+class _Pictures:
+    """Answers to jobs."""
+
+    def __init__(self, module: Any, connection: Connection, stop: Event) -> None:
+        self._module, self._connection, self._stop = module, connection, stop
+        self._shapes: dict[int, object] = {}
+
+    def answer(self, job: Job, panel: int, given: Given) -> None:
+        """One scene; a mistake or a failure is reported, never raised."""
+
+        def tell(kind: str, content: Any = None) -> None:
+            self._connection.send(News(job.number, panel, kind, content))
+
+        def progress(what: str, done: int = 0, total: int = 0) -> None:
+            if self._stop.is_set():
+                raise Stopped
+            tell("progress", (what, done, total))
+
+        try:
+            if job.file:
+                tell("file", self._file(job, given, progress))
+            else:
+                self._draw(job, panel, given, tell, progress)
+        except Stopped:
+            tell("refused", [("", "stopped")])
+        except SceneError as error:
+            tell("refused", [(mistake.path, str(mistake)) for mistake in error.mistakes])
+        except RacewayError as error:
+            tell("refused", [("", str(error))])
+        except Exception as error:  # a third party's own code: the page goes on
+            tell("refused", [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
+
+    def _draw(self, job: Job, panel: int, given: Given, tell: Any, progress: Any) -> None:
+        from raceway.framework.registry import default_registry
+
+        scene = given.scene(default_registry())
+        result = self._module.scene_result(scene, progress)
+        tell("screen", self._module.result_picture(result))
+        shape = (scene.bearing, scene.bodies)
+        try:
+            tell("bodies", self._module.bodies_picture(result, self._shapes.get(panel) != shape))
+            self._shapes[panel] = shape
+        except RacewayError as why:
+            tell("bodies", str(why))
+        axes = self._module.axes_of(scene, job.ranges)
+        tell("curves", self._module.curves(scene, axes, lambda name: progress(f"curves over {name}")))
+
+    def _file(self, job: Job, given: Given, progress: Any) -> list[str]:
+        from raceway.framework.registry import default_registry
+
+        return self._module.write_file(job.file, given.scene(default_registry()), job.folder, progress)  # type: ignore[no-any-return]
