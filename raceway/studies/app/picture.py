@@ -16,7 +16,7 @@ from raceway.pipeline.result import Result
 from raceway.pipeline.run_screen import screen
 from raceway.points.function import Function, PointStatus, function
 from raceway.points.sweep import sweep
-from raceway.scene.changes import key_of
+from raceway.scene.changes import continuous_keys
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.rotor.export import export_ross
@@ -46,43 +46,36 @@ _ORBIT_POINTS = 181
 
 @attrs.frozen
 class Axis:
-    """What curves run over: ``count`` points from ``low`` to ``high`` of a key, in the key's unit."""
+    """What curves run over: ``count`` points from ``low`` to ``high`` of a key, in the key's unit; ``present``: the scene's own number."""
 
     key: str
     label: str
     low: float
     high: float
     count: int
+    present: float
 
-    def numbers(self, present: float) -> np.ndarray:
-        """(count,) values, the present one among them where it lies inside."""
+    def numbers(self) -> np.ndarray:
+        """(count,) values, the scene's own among them where it lies inside."""
         values = np.linspace(self.low, self.high, self.count)
-        if self.low < present < self.high:
-            values[1 + int(np.argmin(abs(values[1:-1] - present)))] = present
+        if self.low < self.present < self.high:
+            values[1 + int(np.argmin(abs(values[1:-1] - self.present)))] = self.present
         return values
 
 
 def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str, Axis]:
     """Speed and axial load over ``ranges``, else from a twentieth of the scene's to twice as much; only what the scene has."""
-    axes = {}
+    axes: dict[str, Axis] = {}
+    present = {key.path: key.value for key in continuous_keys(scene)}
     for name, key, label, count in (
         ("speed", "excitation.speed_rpm", "speed [r/min]", 60),
         ("speed", "kinematics.spin_speed_rpm", "speed [r/min]", 60),
         ("load", "load.axial", "axial load [N]", 31),
     ):
-        present = _present(scene, key)
-        if name not in axes and present:
-            ends = ranges.get(name) or sorted((0.05 * present, 2.0 * present))
-            axes[name] = Axis(key, label, *(float(f"{end:.2g}") for end in ends), count)
+        if name not in axes and present.get(key):
+            ends = ranges.get(name) or sorted((0.05 * present[key], 2.0 * present[key]))
+            axes[name] = Axis(key, label, *(float(f"{end:.2g}") for end in ends), count, float(present[key]))
     return axes
-
-
-def _present(scene: Scene, key: str) -> float | None:
-    try:
-        value = key_of(scene, key).value
-    except RacewayError:  # a table that the scene has not
-        return None
-    return None if value is None else float(value)
 
 
 def result_picture(result: Result) -> Tables:
@@ -148,7 +141,7 @@ def curves(scene: Scene, axes: Mapping[str, Axis], wait: Callable[[str], None] =
         except RacewayError as why:
             panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
             continue
-        panels += [_panel(name, axis, t, names, answer, _present(scene, axis.key)) for t, names in titles.items() if names]
+        panels += [_panel(name, axis, t, names, answer) for t, names in titles.items() if names]
     return panels
 
 
@@ -176,13 +169,13 @@ def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
     compiled: Function = function(scene, [axis.key], list(outputs), tolerance=_TOLERANCE)
     if compiled.why_slow:
         raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
-    numbers = axis.numbers(_present(scene, axis.key) or 0.0)
+    numbers = axis.numbers()
     columns = compiled.looped({axis.key: numbers})
     reasons = compiled.with_reasons({axis.key: numbers}, columns)["reason"]
     return {**columns, "points": numbers, "reason": reasons}
 
 
-def _panel(name: str, axis: Axis, title: str, names: Iterable[str], answer: Tables, present: float | None) -> Tables:
+def _panel(name: str, axis: Axis, title: str, names: Iterable[str], answer: Tables) -> Tables:
     known: dict[str, Quantity] = (
         KNOWN | named(_MULTIPLIER) | {n: quantity for n, (_, quantity) in plugin_quantities(default_registry()).items()}
     )
@@ -193,7 +186,7 @@ def _panel(name: str, axis: Axis, title: str, names: Iterable[str], answer: Tabl
         lines.append({"name": curve, "label": quantity.label, "y": y})
     return {
         "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": known[lines[0]["name"]].read_unit,
-        "lines": lines, "present": present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
+        "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
     }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -128,12 +129,17 @@ def _contact_patch(
     return Surface(points.reshape(-1, 3), normals.reshape(-1, 3), _grid(*s.shape), np.ascontiguousarray(values).ravel())
 
 
-def _arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: float) -> Surface:
-    """An arrow from ``start`` (3,) along a unit vector; its head is at most 2.5 thicknesses long [mm]."""
+@lru_cache(maxsize=64)
+def _arrow_along_x(length: float, thickness: float) -> Surface:
     head = min(2.5 * thickness, 0.6 * length)
     thin, wide = 0.3 * thickness * head / (2.5 * thickness), 0.8 * thickness * head / (2.5 * thickness)
     line = np.array([[0.0, 0.0], [0.0, thin], [length - head, thin], [length - head, wide], [length, 0.0]])
-    solid = _revolved(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
+    return _revolved(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
+
+
+def _arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: float) -> Surface:
+    """An arrow from ``start`` (3,) along a unit vector; its head is at most 2.5 thicknesses long [mm]."""
+    solid = _arrow_along_x(length, thickness)
     side = np.cross(towards, [1.0, 0.0, 0.0] if abs(towards[0]) < 0.9 else [0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
     frame = np.stack([towards, side, np.cross(towards, side)])
@@ -293,7 +299,7 @@ class Bearing:
         z, parts = len(state.azimuth), []
         towards = self.towards(state)[z:]
         for k, (start, tip) in enumerate(zip(*self.arrow_ends(state, top), strict=True)):
-            length = float(np.linalg.norm(tip - start))
+            length = float(f"{np.linalg.norm(tip - start):.6g}")
             if length > 0.01 * self.diameter:
                 solid = _arrow(start, towards[k], length, 0.22 * self.diameter)
                 parts.append(Part(f"load {k}", solid, load=float(state.load[k])))

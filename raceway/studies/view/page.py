@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Sequence
+from functools import cache
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -101,8 +102,14 @@ def state_data(bearing: Bearing, state: State) -> Tables:
     centres, tips = bearing.centres(state), bearing.tips(state, top)
     shapes: Tables = {}
     parts = [
-        _part(part, "ball", centre, _tone(LOADS, (part.load or 0.0) / top))
-        for part, centre in zip(bearing.balls(state), centres, strict=True)
+        {
+            "name": f"ball {k}",
+            "shape": "ball",
+            "at": _short(centre),
+            "colour": _short(_tone(LOADS, state.load[k] / top)),
+            "opacity": 1.0,
+        }
+        for k, centre in enumerate(centres)
     ]
     for k, part in enumerate(bearing.arrows(state, top)):
         shapes[f"arrow {k}"] = _packed(part.surface)
@@ -178,11 +185,17 @@ def _text(array: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
 
 
-def _tone(colours: str, share: np.ndarray | float) -> np.ndarray:
-    """Red, green, blue from 0 to 1 at shares (n,) from 0 to 1 of a colour map."""
+@cache
+def _tones(colours: str) -> np.ndarray:
+    """(256, 3) of a colour map of matplotlib."""
     import matplotlib
 
-    return np.asarray(matplotlib.colormaps[colours](np.asarray(share, dtype=float)))[..., :3]
+    return np.asarray(matplotlib.colormaps[colours](np.arange(256)))[:, :3]
+
+
+def _tone(colours: str, share: np.ndarray | float) -> np.ndarray:
+    """Red, green, blue from 0 to 1 at shares (n,) from 0 to 1 of a colour map."""
+    return _tones(colours)[np.clip(256.0 * np.asarray(share, dtype=float), 0, 255).astype(int)]
 
 
 def _bar(quantity: str, unit: str, colours: str, top: float) -> str:
