@@ -7,7 +7,11 @@ window.raceway_stage = function (stage, words, shown, data) {
   const canvas = stage.querySelector("canvas"), hint = words.textContent;
   const gl = canvas.getContext("webgl", { alpha: false, antialias: true, preserveDrawingBuffer: true });
   if (!gl) return null;
-  function bytes(text) { return Uint8Array.from(atob(text), (c) => c.charCodeAt(0)); }
+  function bytes(text) {
+    const raw = atob(text), out = new Uint8Array(raw.length);
+    for (let k = 0; k < raw.length; k++) out[k] = raw.charCodeAt(k);
+    return out;
+  }
   function shader(kind, text) {
     const one = gl.createShader(kind);
     gl.shaderSource(one, text);

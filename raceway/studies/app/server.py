@@ -175,13 +175,13 @@ class Page:
                 panels = [dict(one) for one in state.panels]
                 panels[panel]["mistakes"] = news.content
                 state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
-            elif news.kind == "screen":
-                state[f"screen_{panel}"] = {**news.content, "number": news.number}
-            elif news.kind == "bodies":
-                self._bodies(panel, news.content)
-            elif news.kind == "curves":
-                self._curves[panel] = news.content
-                state.charts = _charts(self._curves)
+            elif news.kind == "picture":
+                if "screen" in news.content:
+                    state[f"screen_{panel}"] = {**news.content["screen"], "number": news.number}
+                    self._bodies(panel, news.content["bodies"])
+                if "curves" in news.content:
+                    self._curves[panel] = news.content["curves"]
+                    state.charts = _charts(self._curves)
 
     def _bodies(self, panel: int, content: Tables | str) -> None:
         if isinstance(content, str):

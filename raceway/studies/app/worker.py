@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing import get_context
@@ -19,6 +20,8 @@ from raceway.scene.inputs import Given
 
 #: A run that does not end at a chunk of steps after so long [s] is ended with its process.
 _GRACE_S = 2.0
+#: Numbers that take longer [s] are shown before the curves.
+_SOON_S = 0.2
 
 
 @attrs.frozen
@@ -42,7 +45,7 @@ class Job:
 
 @attrs.frozen
 class News:
-    """What the process reports: ``kind`` is "progress", "screen", "bodies", "curves", "refused", "file" or "done"."""
+    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "file" or "done"."""
 
     number: int
     panel: int
@@ -178,13 +181,18 @@ class _Pictures:
     def answer(self, job: Job, panel: int, given: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
 
+        told = time.monotonic()
+
         def tell(kind: str, content: Any = None) -> None:
             self._connection.send(News(job.number, panel, kind, content))
 
         def progress(what: str, done: int = 0, total: int = 0) -> None:
+            nonlocal told
             if self._stop.is_set():
                 raise Stopped
-            tell("progress", (what, done, total))
+            if time.monotonic() - told > _SOON_S:
+                told = time.monotonic()
+                tell("progress", (what, done, total))
 
         try:
             if job.file:
@@ -203,17 +211,20 @@ class _Pictures:
     def _draw(self, job: Job, panel: int, given: Given, tell: Any, progress: Any) -> None:
         from raceway.framework.registry import default_registry
 
-        scene = given.scene(default_registry())
+        scene, begun = given.scene(default_registry()), time.monotonic()
         result = self._module.scene_result(scene, progress)
-        tell("screen", self._module.result_picture(result))
+        content = {"screen": self._module.result_picture(result)}
         shape = (scene.bearing, scene.bodies)
         try:
-            tell("bodies", self._module.bodies_picture(result, self._shapes.get(panel) != shape))
+            content["bodies"] = self._module.bodies_picture(result, self._shapes.get(panel) != shape)
             self._shapes[panel] = shape
         except RacewayError as why:
-            tell("bodies", str(why))
+            content["bodies"] = str(why)
+        if time.monotonic() - begun > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
+            tell("picture", content)
+            content = {}
         axes = self._module.axes_of(scene, job.ranges)
-        tell("curves", self._module.curves(scene, axes, lambda name: progress(f"curves over {name}")))
+        tell("picture", content | {"curves": self._module.curves(scene, axes, lambda name: progress(f"curves over {name}"))})
 
     def _file(self, job: Job, given: Given, progress: Any) -> list[str]:
         from raceway.framework.registry import default_registry
