@@ -49,6 +49,7 @@ from .scene.catalogue import Preset as Preset
 from .scene.inputs import evolve as evolve, load_scene as load_scene
 from .scene.reading import scene_from_dict as scene_from_dict
 from .scene.scene import Scene as Scene
+from .studies.app.server import app as app
 from .studies.catalogue.catalogue import catalogue as catalogue
 from .studies.catalogue.infer import infer as infer
 from .studies.catalogue.inferred import Inferred as Inferred

@@ -193,6 +193,7 @@ ANSWERS: tuple[Command | Later, ...] = (
         {"form": Option("format", "NAME")},
         pictures=None,
     ),
+    Later("app", "raceway.cli.app:app", "A page to look at a scene and change it, on this machine."),
     Command(
         "export",
         "raceway.studies.rotor.command:export",

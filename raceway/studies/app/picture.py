@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import attrs
@@ -36,8 +36,10 @@ _PANELS = {
     "ball load": ("peak_ball_load", "largest_ball_load"),
     "pressure p0": ("p0",),
     "temperature": ("temperature_inner_k", "temperature_outer_k"),
+    "axial force of rows": ("ball_load",),
     "reference life L10r": ("l10r_hours",),
 }
+_OF_MOTIONS = ("equivalent_stiffness", "equivalent_damping", "largest_multiplier", "peak_ball_load")
 #: Panels of which all curves are drawn; of others the first that the scene has.
 _TOGETHER = ("temperature",)
 _OVER_LOAD = ("stiffness", "ball load", "pressure p0", "reference life L10r")
@@ -64,7 +66,7 @@ class Axis:
 
 
 def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str, Axis]:
-    """Speed and axial load over ``ranges``, else from a twentieth of the scene's to twice as much; only what the scene has."""
+    """Speed and axial load over ``ranges``, widened to the scene's own, else from a twentieth to twice of that; only what the scene has."""
     axes: dict[str, Axis] = {}
     present = {key.path: key.value for key in continuous_keys(scene)}
     for name, key, label, count in (
@@ -73,8 +75,14 @@ def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str
         ("load", "load.axial", "axial load [N]", 31),
     ):
         if name not in axes and present.get(key):
-            ends = ranges.get(name) or sorted((0.05 * present[key], 2.0 * present[key]))
-            axes[name] = Axis(key, label, *(float(f"{end:.2g}") for end in ends), count, float(present[key]))
+            now = float(present[key])
+            ends = sorted([0.05 * now, 2.0 * now]) if name not in ranges else [*ranges[name], 1.1 * now, 0.9 * now]
+            ends = [
+                end
+                for end in ends
+                if name not in ranges or end in ranges[name] or not ranges[name][0] <= now <= ranges[name][1]
+            ]
+            axes[name] = Axis(key, label, float(f"{min(ends):.3g}"), float(f"{max(ends):.3g}"), count, now)
     return axes
 
 
@@ -120,8 +128,8 @@ def bodies_picture(result: Result, rings: bool) -> Tables:
     return {**(rings_data(bearing) if rings else {}), **state_data(bearing, state)}
 
 
-def curves(scene: Scene, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:
-    """Curves over speed and load by the compiled loop.
+def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:
+    """Curves of the scene of a result, over speed and load, by the compiled loop.
 
     Parameters
     ----------
@@ -132,12 +140,13 @@ def curves(scene: Scene, axes: Mapping[str, Axis], wait: Callable[[str], None] =
     list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
         missing (points without answer), why (no curves at all)
     """
-    panels = []
+    scene, panels = result.model.scene, []
     for name, axis in axes.items():
         wait(name)
-        titles = {t: _chosen(scene, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
+        titles = {t: _chosen(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
         try:
-            answer = _answer(scene, axis, [curve for names in titles.values() for curve in names])
+            outputs = [curve for names in titles.values() for curve in names]
+            answer = _answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
         except RacewayError as why:
             panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
             continue
@@ -145,17 +154,21 @@ def curves(scene: Scene, axes: Mapping[str, Axis], wait: Callable[[str], None] =
     return panels
 
 
-def _chosen(scene: Scene, title: str, names: Sequence[str]) -> list[str]:
-    """The curves of a panel that the scene has."""
-    possible = [name for name in names if not _missing(scene, name)]
+def _chosen(result: Result, title: str, names: Sequence[str]) -> list[str]:
+    """The curves of a panel that the result's scene has."""
+    possible = [name for name in names if _has(result, name)]
     return possible if title in _TOGETHER else possible[:1]
 
 
-def _missing(scene: Scene, name: str) -> bool:
-    moving = name in ("equivalent_stiffness", "equivalent_damping", "largest_multiplier", "peak_ball_load")
-    if name.startswith("temperature"):
-        return scene.heat is None
-    return moving and scene.excitation is None or (name == "kyy_tilts_follow" and scene.supports.tilt != "free")
+def _has(result: Result, name: str) -> bool:
+    scene = result.model.scene
+    if name in _OF_MOTIONS:
+        return scene.excitation is not None
+    if name == "ball_load":
+        return len(scene.bearing.rows) > 1
+    if name == "kyy_tilts_follow":
+        return scene.supports.tilt == "free"
+    return name in KNOWN or name in result.quantities
 
 
 def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
@@ -172,22 +185,34 @@ def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
     numbers = axis.numbers()
     columns = compiled.looped({axis.key: numbers})
     reasons = compiled.with_reasons({axis.key: numbers}, columns)["reason"]
-    return {**columns, "points": numbers, "reason": reasons}
+    return {**columns, "points": numbers, "reason": reasons, "rows": len(scene.bearing.rows)}
 
 
-def _panel(name: str, axis: Axis, title: str, names: Iterable[str], answer: Tables) -> Tables:
+def _panel(name: str, axis: Axis, title: str, names: list[str], answer: Tables) -> Tables:
     known: dict[str, Quantity] = (
         KNOWN | named(_MULTIPLIER) | {n: quantity for n, (_, quantity) in plugin_quantities(default_registry()).items()}
     )
-    solved, lines = answer["status"] == PointStatus.COMPUTED, []
-    for curve in names:
+    solved = answer["status"] == PointStatus.COMPUTED
+    lines: list[Tables] = []
+    for curve, label, values in _columns(names, answer, known):
         quantity = known[curve]
-        y = [float(quantity.read(v)) if ok and np.isfinite(v) else None for v, ok in zip(answer[curve], solved, strict=True)]
-        lines.append({"name": curve, "label": quantity.label, "y": y})
+        y = [float(quantity.read(v)) if ok and np.isfinite(v) else None for v, ok in zip(values, solved, strict=True)]
+        lines.append({"name": curve, "label": label, "y": y})
     return {
-        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": known[lines[0]["name"]].read_unit,
+        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": known[names[0]].read_unit,
         "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
     }  # fmt: skip
+
+
+def _columns(names: Iterable[str], answer: Tables, known: Mapping[str, Quantity]) -> Iterator[tuple[str, str, np.ndarray]]:
+    """Name, label and values (n,) of each curve; of ball loads the axial force of each row, sum of Q sin(alpha) at the outer races."""
+    for name in names:
+        if name != "ball_load":
+            yield name, known[name].label, answer[name]
+            continue
+        axial = answer[name] * np.sin(np.radians(answer["contact_angle"]))
+        for k, part in enumerate(np.split(np.nan_to_num(axial[:, 1]), answer["rows"], axis=1)):
+            yield name, f"row {k + 1}", abs(part.sum(axis=1))
 
 
 def scene_result(scene: Scene, progress: Callable[[str, int, int], None]) -> Result:

@@ -37,7 +37,8 @@ class Page:
     def __init__(self, session: Session, plugins: Iterable[Path]) -> None:
         from trame_server import Server
 
-        self.session, self.ranges = session, {}
+        self.session = session
+        self.ranges: dict[str, tuple[float, float]] = {}
         self.server = Server("raceway", client_type="vue3")
         self.state: Any = self.server.state
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -114,7 +115,8 @@ class Page:
     def _show(self, changed: list[int]) -> None:
         """The form, and new pictures of panels that have changed; their old numbers are marked as such until then."""
         session, scenes = self.session, {}
-        panels, faults = [], {}
+        panels: list[Tables] = []
+        faults: dict[str, str] = {}
         for k, given in enumerate(session.scenes):
             scene, mistakes = session.checked(k)
             said, holds = texts(given, scene)
@@ -181,6 +183,9 @@ class Page:
                     self._bodies(panel, news.content["bodies"])
                 if "curves" in news.content:
                     self._curves[panel] = news.content["curves"]
+                    for curve in news.content["curves"]:  # axes stay while a key is changed
+                        if curve["lines"]:
+                            self.ranges.setdefault(curve["axis"], (curve["x"][0], curve["x"][-1]))
                     state.charts = _charts(self._curves)
 
     def _bodies(self, panel: int, content: Tables | str) -> None:

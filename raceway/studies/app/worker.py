@@ -209,9 +209,13 @@ class _Pictures:
             tell("refused", [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
 
     def _draw(self, job: Job, panel: int, given: Given, tell: Any, progress: Any) -> None:
+        import raceway
         from raceway.framework.registry import default_registry
+        from raceway.framework.shown import duration
 
         scene, begun = given.scene(default_registry()), time.monotonic()
+        if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
+            tell("progress", (f"planned: {duration(planned)}", 0, 0))
         result = self._module.scene_result(scene, progress)
         content = {"screen": self._module.result_picture(result)}
         shape = (scene.bearing, scene.bodies)
@@ -224,9 +228,11 @@ class _Pictures:
             tell("picture", content)
             content = {}
         axes = self._module.axes_of(scene, job.ranges)
-        tell("picture", content | {"curves": self._module.curves(scene, axes, lambda name: progress(f"curves over {name}"))})
+        tell(
+            "picture", content | {"curves": self._module.curves(result, axes, lambda name: progress(f"curves over {name}"))}
+        )
 
     def _file(self, job: Job, given: Given, progress: Any) -> list[str]:
         from raceway.framework.registry import default_registry
 
-        return self._module.write_file(job.file, given.scene(default_registry()), job.folder, progress)  # type: ignore[no-any-return]
+        return self._module.write_file(job.file, given.scene(default_registry()), job.folder, progress)
