@@ -202,16 +202,20 @@ window.raceway_app = (function () {
         return a === b ? "" : "A: " + (a || "default") + ", B: " + (b || "default");
       },
       set(path, text, merge = false) { this.$emit("set", this.chosen, path, text, merge); },
-      drag(field, text) {  // the newest place once the page has taken the last one
+      drag(field, text) {  // the newest place once the page shows the last one
         this.next = [field.path, text];
         if (this.timer) return;
         const send = () => {
+          const waits = Object.keys(this.busy).length && performance.now() - this.sent < 400;
           if (!this.next) { this.timer = null; return; }
-          const [path, value] = this.next;
-          this.next = null;
-          this.set(path, value, this.dragged === path);
-          this.dragged = path;
-          this.timer = setTimeout(send, 60);
+          if (!waits) {
+            const [path, value] = this.next;
+            this.next = null;
+            this.sent = performance.now();
+            this.set(path, value, this.dragged === path);
+            this.dragged = path;
+          }
+          this.timer = setTimeout(send, 30);
         };
         send();
       },

@@ -13,7 +13,7 @@ from typing import Any
 
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.out.table import csv_text
-from raceway.scene.inputs import SceneSource, as_given
+from raceway.scene.inputs import Given, SceneSource, as_given
 from raceway.storage.files import writable, write_whole
 from raceway.storage.tables import Tables
 from raceway.studies.app.form import groups, texts
@@ -42,11 +42,14 @@ class Page:
         self.server = Server("raceway", client_type="vue3")
         self.state: Any = self.server.state
         self._loop: asyncio.AbstractEventLoop | None = None
+        self._job = -1  # the last that computes pictures
         self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
         self._curves: dict[int, list[Tables]] = {}
         self.worker = Worker(list(plugins), self._from_worker)
         self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
-        self.state.update({"charts": [], "note": "", "form": [], "ranges": {}, "folder": str(session.folder), "done": -1})
+        self.state.update(
+            {"charts": [], "note": "", "form": [], "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}}
+        )
         self.state.trame__title = "Raceway"
         self._show([0, 1])
         for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
@@ -99,7 +102,9 @@ class Page:
                 text = csv_text(list(_curve_rows(self._curves)))
                 self.state.note = f"written: {write_whole(text.encode(), writable(session.folder) / 'curves.csv')}"
             elif kind in ("png", "ross"):
-                self.worker.submit(Job(session.number, {panel: session.scenes[panel]}, file=kind, folder=session.folder))
+                self.worker.submit(
+                    Job(session.number, {panel: (session.number, session.scenes[panel])}, file=kind, folder=session.folder)
+                )
                 self.state.note = "writing"
         except RacewayError as error:
             self.state.note = str(error)
@@ -114,7 +119,8 @@ class Page:
 
     def _show(self, changed: list[int]) -> None:
         """The form, and new pictures of panels that have changed; their old numbers are marked as such until then."""
-        session, scenes = self.session, {}
+        session = self.session
+        scenes: dict[int, tuple[int, Given]] = {}
         panels: list[Tables] = []
         faults: dict[str, str] = {}
         for k, given in enumerate(session.scenes):
@@ -130,19 +136,24 @@ class Page:
                 if scene is None:
                     self._forget(k)
                 else:
-                    scenes[k] = given
+                    scenes[k] = session.number, given
         if len(panels) == 1:
             self._forget(1)
         form = groups(session.scenes[0])
+        busy = {k: what for k, what in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
+        busy |= {str(k): "computing" for k in scenes}
         undo, redo = session.can_undo
         self.state.update({
             "panels": panels, "faults": faults, "can_undo": undo, "can_redo": redo, "number": session.number,
-            "busy": {str(k): "computing" for k in scenes}, "ranges": dict(self.ranges),
+            "busy": busy, "ranges": dict(self.ranges),
         })  # fmt: skip
         if form != self.state.form:
             self.state.form = form
         if scenes:
-            self.worker.submit(Job(session.number, scenes, self.ranges))
+            self._job = session.number
+            self.worker.submit(Job(session.number, scenes, dict(self.ranges)))
+        elif not busy:
+            self.state.done = session.number
 
     def _forget(self, panel: int) -> None:
         """A scene that is refused, or is no more, has no numbers."""
@@ -164,9 +175,11 @@ class Page:
             panel, state = news.panel, self.state
             if news.kind == "file":
                 state.note = f"written: {', '.join(news.content)}"
+            elif news.kind == "failed file":
+                state.note = f"not written: {'; '.join(sentence for _, sentence in news.content)}"
             elif news.kind == "done":
-                if news.number == self.session.number:
-                    state.update({"busy": {}, "done": news.number})
+                if news.number == self._job:
+                    state.update({"busy": {}, "done": self.session.number})
             elif self._numbers.get(panel) != news.number:
                 return
             elif news.kind == "progress":
@@ -199,12 +212,16 @@ class Page:
 
     def serve(self, port: int, token: str, ready: Callable[[str], None]) -> None:
         """Until Ctrl-C."""
-        from trame_server.core import CoreServer  # noqa: F401  (the package is there)
-
         server = self.server
+
+        async def session(request: Any) -> Any:  # a page of trame asks a launcher of processes first
+            from aiohttp.web import json_response
+
+            return json_response({"sessionURL": f"ws://{request.headers['Host']}/ws", "secret": "wslink-secret"})
 
         def bind(app: Any) -> None:
             app.app.middlewares.append(guard(token))
+            app.app.router.add_post("/paraview/", session)
 
         def begin(**_: object) -> None:
             self._loop = asyncio.get_running_loop()

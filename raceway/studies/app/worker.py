@@ -20,6 +20,8 @@ from raceway.scene.inputs import Given
 
 #: A run that does not end at a chunk of steps after so long [s] is ended with its process.
 _GRACE_S = 2.0
+#: Pictures that are computed for so long [s] are stopped by others.
+_HURRY_S = 0.5
 #: Numbers that take longer [s] are shown before the curves.
 _SOON_S = 0.2
 
@@ -31,13 +33,13 @@ class Job:
     Attributes
     ----------
     number : of the change that asks for it
-    scenes : panel -> scene
+    scenes : panel -> number of its last change, and scene
     ranges : axis of the curves -> its ends, where these are not the scene's own
     file : "png" or "ross", to be written into ``folder``; empty: a picture
     """
 
     number: int
-    scenes: dict[int, Given]
+    scenes: dict[int, tuple[int, Given]]
     ranges: dict[str, tuple[float, float]] = attrs.field(factory=dict)
     file: str = ""
     folder: Path = Path()
@@ -45,7 +47,7 @@ class Job:
 
 @attrs.frozen
 class News:
-    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "file" or "done"."""
+    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "file", "failed file" or "done"."""
 
     number: int
     panel: int
@@ -64,7 +66,7 @@ class Worker:
         self._plugins, self._tell = list(plugins), on_news
         self._lock = threading.Lock()
         self._running: Job | None = None
-        self._waiting: Job | None = None
+        self._waiting: list[Job] = []
         self._start()
 
     @property
@@ -73,27 +75,33 @@ class Worker:
         return self._process.pid
 
     def submit(self, job: Job) -> None:
-        """Compute, after what runs now, which is stopped; a job that still waits is dropped unless it writes a file."""
+        """Compute, after what runs now.  Pictures take the place of those that wait or take long; files are written."""
         with self._lock:
+            if not job.file:
+                before = [late for late in self._waiting if not late.file]
+                self._waiting = [late for late in self._waiting if late.file]
+                if self._running is not None and not self._running.file:
+                    # Scenes of it that have not changed since are computed again.
+                    before.insert(0, self._running)
+                    threading.Timer(_HURRY_S, self._interrupt, (self._running,)).start()
+                for late in reversed(before):
+                    job = attrs.evolve(job, scenes={**late.scenes, **job.scenes})
+            self._waiting.append(job)
             if self._running is None:
-                self._send(job)
-                return
-            if self._waiting is not None and not job.file:
-                job = attrs.evolve(job, scenes={**self._waiting.scenes, **job.scenes})
-            self._waiting = job
-            self._interrupt()
+                self._send()
 
     def stop(self) -> None:
         """Stop what runs, and forget what waits."""
         with self._lock:
-            self._waiting = None
-            if self._running is not None:
-                self._interrupt()
+            self._waiting.clear()
+        if self._running is not None:
+            self._interrupt(self._running)
 
     def close(self) -> None:
         """End the process."""
         with self._lock:
-            self._running = self._waiting = None
+            self._running = None
+            self._waiting.clear()
             self._process.terminate()
             self._process.join(5.0)
             self._connection.close()
@@ -107,22 +115,26 @@ class Worker:
         other.close()
         threading.Thread(target=self._listen, args=(self._connection,), daemon=True).start()
 
-    def _send(self, job: Job) -> None:
-        self._running = job
-        self._event.clear()
-        self._connection.send(job)
+    def _send(self) -> None:
+        """The next job."""
+        self._running = self._waiting.pop(0) if self._waiting else None
+        if self._running is not None:
+            self._event.clear()
+            self._connection.send(self._running)
 
-    def _interrupt(self) -> None:
-        if not self._event.is_set():
-            self._event.set()
-            timer = threading.Timer(_GRACE_S, self._end, (self._running,))
-            timer.daemon = True
-            timer.start()
+    def _interrupt(self, job: Job) -> None:
+        """A job that still runs is not wanted."""
+        with self._lock:
+            if self._running is job and not self._event.is_set():
+                self._event.set()
+                timer = threading.Timer(_GRACE_S, self._end, (job,))
+                timer.daemon = True
+                timer.start()
 
-    def _end(self, job: Job | None) -> None:
+    def _end(self, job: Job) -> None:
         """A job that does not listen ends with its process."""
         with self._lock:
-            if job is not None and self._running is job:
+            if self._running is job:
                 self._process.kill()
 
     def _listen(self, connection: Connection) -> None:
@@ -142,17 +154,14 @@ class Worker:
             message = "stopped" if self._event.is_set() else "the process that computes has ended: was there memory enough?"
             connection.close()
             self._start()
-        for panel in ended.scenes:
-            self._tell(News(ended.number, panel, "refused", [("", message)]))
+        for panel, (number, _) in ended.scenes.items():
+            self._tell(News(number, panel, "failed file" if ended.file else "refused", [("", message)]))
         self._tell(News(ended.number, -1, "done"))
         self._next()
 
     def _next(self) -> None:
         with self._lock:
-            self._running, job = None, self._waiting
-            self._waiting = None
-            if job is not None:
-                self._send(job)
+            self._send()
 
 
 def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
@@ -166,8 +175,8 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         pictures = _Pictures(picture, connection, stop)
         while True:
             job: Job = connection.recv()
-            for panel, given in job.scenes.items():
-                pictures.answer(job, panel, given)
+            for panel, (number, given) in job.scenes.items():
+                pictures.answer(job, panel, number, given)
             connection.send(News(job.number, -1, "done"))
 
 
@@ -178,13 +187,13 @@ class _Pictures:
         self._module, self._connection, self._stop = module, connection, stop
         self._shapes: dict[int, object] = {}
 
-    def answer(self, job: Job, panel: int, given: Given) -> None:
+    def answer(self, job: Job, panel: int, number: int, given: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
 
-        told = time.monotonic()
+        told, refusal = time.monotonic(), "failed file" if job.file else "refused"
 
         def tell(kind: str, content: Any = None) -> None:
-            self._connection.send(News(job.number, panel, kind, content))
+            self._connection.send(News(number, panel, kind, content))
 
         def progress(what: str, done: int = 0, total: int = 0) -> None:
             nonlocal told
@@ -200,13 +209,13 @@ class _Pictures:
             else:
                 self._draw(job, panel, given, tell, progress)
         except Stopped:
-            tell("refused", [("", "stopped")])
+            tell(refusal, [("", "stopped")])
         except SceneError as error:
-            tell("refused", [(mistake.path, str(mistake)) for mistake in error.mistakes])
+            tell(refusal, [(mistake.path, str(mistake)) for mistake in error.mistakes])
         except RacewayError as error:
-            tell("refused", [("", str(error))])
+            tell(refusal, [("", str(error))])
         except Exception as error:  # a third party's own code: the page goes on
-            tell("refused", [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
+            tell(refusal, [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
 
     def _draw(self, job: Job, panel: int, given: Given, tell: Any, progress: Any) -> None:
         import raceway
