@@ -271,6 +271,7 @@ window.raceway_app = (function () {
 
   return {
     install(app) {
+      document.querySelector("meta[name=viewport]")?.setAttribute("content", "width=device-width, initial-scale=1");  // trame's forbids to zoom
       const parts = { chart: Chart, polar: Polar, orbit: Orbit, bearing: Bearing, numbers: Numbers, ranges: Ranges, form: Form, copy: Copy, keys: Keys };
       for (const [name, part] of Object.entries(parts)) app.component("raceway-" + name, part);
     },

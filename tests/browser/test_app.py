@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import time
 
 import pytest
 
@@ -79,6 +80,134 @@ def test_two_excitation_models_stand_side_by_side(tab):
     shown_is_run(tab, (0, 1))
     tab.press("Compare two scenes")
     assert "B" not in tab.text('[data-test="numbers"] thead')
+
+
+
+def test_a_reload_and_a_second_tab_show_the_same(tab, browser, application):
+    tab.set("load.axial", "1700")
+    first = tab.values(0)
+    browser.driver.refresh()
+    tab.wait()
+    assert tab.values(0) == first
+    window = browser.driver.current_window_handle
+    browser.driver.switch_to.new_window("tab")
+    second = Tab(browser, application.address)
+    assert second.values(0) == first
+    second.set("load.axial", "900")
+    other = second.values(0)
+    browser.driver.close()
+    browser.driver.switch_to.window(window)
+    tab.settle()
+    assert tab.values(0) == other != first
+    shown_is_run(tab)
+
+
+def test_a_server_that_has_stopped_is_seen(browser, tmp_path):
+    served = Application(tmp_path, SCENE)
+    Tab(browser, served.address)
+    assert served.stop() in (0, 130)
+    end = time.monotonic() + 20.0
+    while "onnect" not in (words := browser.run("return document.body.innerText")):
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    assert "equivalent stiffness" not in words  # no numbers of a scene that nobody computes
+
+
+def test_keys_undo_and_redo(tab):
+    from selenium.webdriver import ActionChains, Keys
+
+    before = tab.scene(0)["load"]["axial"]
+    tab.set("load.axial", "1111")
+    tab.browser.run("document.activeElement.blur()")
+    for key, axial in (("z", before), ("y", 1111)):
+        last = tab.number
+        ActionChains(tab.driver).key_down(Keys.CONTROL).send_keys(key).key_up(Keys.CONTROL).perform()
+        tab.wait(last)
+        assert tab.scene(0)["load"]["axial"] == axial
+
+
+def test_a_slider_is_moved_by_the_keyboard(tab):
+    from selenium.webdriver import Keys
+
+    field, last = tab.driver.find_element("css selector", '[data-slider="load.axial"]'), tab.number
+    before = float(tab.scene(0)["load"]["axial"])
+    field.send_keys(Keys.ARROW_RIGHT)
+    tab.wait(last)
+    tab.settle()
+    assert before < tab.scene(0)["load"]["axial"] < 1.1 * before
+    shown_is_run(tab)
+
+
+def test_search_finds_keys_by_what_they_are(tab):
+    tab.browser.run(
+        "const s = document.querySelector('.search input'); s.value = 'clearance'; s.dispatchEvent(new Event('input'))"
+    )
+    tab.settle()
+    paths = tab.browser.run("return [...document.querySelectorAll('[data-field]')].map((e) => e.dataset.field)")
+    assert "bearing.radial_clearance" in paths and len(paths) < 12
+
+
+def test_axes_of_the_curves_can_be_set(tab):
+    last = tab.number
+    script = "const f = document.querySelector('.charts input[type=number]'); f.value = 2000; f.dispatchEvent(new Event('change'))"
+    tab.browser.run(script)
+    tab.wait(last)
+    assert tab.browser.run("return document.querySelector('.charts input[type=number]').value") == "2000"
+
+
+def test_files_are_written_into_the_folder(browser, tmp_path):
+    served = Application(tmp_path / "files", SCENE)
+    tab = Tab(browser, served.address)
+    for words, name in (("Save scene", ".toml"), ("Curves as CSV", "curves.csv"), ("PNG", ".png"), ("ROSS", "bearing.toml")):
+        tab.press(words, changes=False)
+        end = time.monotonic() + 60.0
+        while not ((note := tab.text('[data-test="note"]')).startswith("written: ") and note.endswith(name)):
+            assert time.monotonic() < end, note
+            time.sleep(0.05)
+    assert {path.suffix for path in tmp_path.rglob("*.*")} == {".toml", ".csv", ".png"}
+    rows = (tmp_path / "files" / "curves.csv").read_text().splitlines()
+    assert rows[0] == "scene,axis,x,quantity,unit,value" and len(rows) > 300
+    served.stop()
+
+
+def test_long_work_is_stopped(browser, tmp_path):
+    served = Application(tmp_path, SCENE)
+    tab = Tab(browser, served.address)
+    last = tab.number
+    tab.type("integrator.kind", "newmark")
+    tab.wait(last)
+    last = tab.number
+    tab.type("integrator.turns", "8000")
+    end = time.monotonic() + 30.0
+    while "planned" not in (words := tab.text('[data-test="busy"]')) and "%" not in words:
+        assert time.monotonic() < end, words
+        time.sleep(0.05)
+    tab.press("Stop", changes=False)
+    tab.wait(last)
+    assert "stopped" in tab.text('[data-test="mistakes-0"]') and tab.values(0) == []
+    tab.press("Undo")
+    shown_is_run(tab)
+    served.stop()
+
+
+@pytest.mark.parametrize("width", [1280, 1024, 700])
+def test_the_page_is_whole_and_fit_for_screen_readers(browser, application, width):
+    from axe_core_python.selenium import Axe
+
+    tab = Tab(browser, application.address, width)
+    tab.press("Compare two scenes")
+    tab.browser.run("for (const d of document.querySelectorAll('details')) d.open = true")
+    tab.settle()
+    look = "const e = document.documentElement; return [e.scrollWidth, e.clientWidth]"
+    scroll, client = tab.browser.run(look)
+    assert scroll <= client
+    serious = [
+        f"{found['id']}: {found['nodes'][0]['html'][:120]}"
+        for found in Axe().run(browser.driver)["violations"]
+        if found["impact"] in ("serious", "critical")
+    ]
+    assert serious == []
+    tab.press("Compare two scenes")
 
 
 def test_random_changes_leave_no_stale_number(tab):

@@ -91,7 +91,8 @@ class Tab:
         self.driver.set_script_timeout(PATIENCE_S)
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        self.driver.get_log("browser")
+        self.driver.get("about:blank")
+        self.driver.get_log("browser")  # of the page before
         self.driver.get(address)
         self.wait()
 

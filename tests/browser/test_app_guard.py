@@ -1,0 +1,155 @@
+"""What a hostile page, name, title or connection can do to ``raceway app``: nothing."""
+
+from __future__ import annotations
+
+import asyncio
+import http.client
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+import raceway as rw
+from raceway.errors import SceneError
+from raceway.scene.inputs import as_given
+from raceway.studies.app.session import Session
+from validation.browser.application import Application, Tab
+from validation.browser.chromium import Browser
+from validation.command_line import EXAMPLES
+
+SCENE = str(EXAMPLES / "b7206.toml")
+
+
+@pytest.fixture(scope="module")
+def application(tmp_path_factory):
+    served = Application(tmp_path_factory.mktemp("app") / "files", SCENE)
+    yield served
+    assert served.stop() in (0, 130)
+
+
+def status(application, path: str, host: str = "", **headers: str) -> int:
+    """Of a GET request."""
+    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=20)
+    try:
+        connection.request("GET", path, headers={"Host": host or f"127.0.0.1:{application.port}", **headers})
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def test_only_this_machine_can_connect(application):
+    listening = Path("/proc/net/tcp").read_text().splitlines()
+    port = f":{application.port:04X}"
+    addresses = {line.split()[1] for line in listening if line.split()[1].endswith(port) and line.split()[3] == "0A"}
+    assert addresses == {f"0100007F{port}"}
+
+
+@pytest.mark.parametrize(
+    ("host", "headers"),
+    [
+        ("", {"Cookie": ""}),
+        ("evil.example", {"token": "right"}),
+        ("127.0.0.1.evil.example:80", {"token": "right"}),
+        ("", {"Origin": "http://evil.example", "token": "right"}),
+    ],
+    ids=["no token", "other host", "host with our address in its name", "page of another origin"],
+)
+@pytest.mark.parametrize("path", ["/", "/index.html", "/raceway/app.js", "/ws"])
+def test_others_are_refused(application, host, headers, path):
+    token = f"?token={application.token}" if headers.pop("token", "") else ""
+    assert status(application, path + token, host, **headers) == 403
+
+
+def test_the_token_opens_the_page_and_a_wrong_one_does_not(application):
+    assert status(application, f"/index.html?token={application.token}") == 200
+    assert status(application, f"/index.html?token={application.token[:-1]}x") == 403
+    assert len(application.token) >= 32
+
+
+@pytest.mark.parametrize(
+    "path", ["/raceway/../../pyproject.toml", "/raceway/%2e%2e/%2e%2e/pyproject.toml", "/raceway//etc/passwd", "/..%2f..%2fetc/passwd"]
+)
+def test_no_path_leads_out_of_the_served_files(application, path):
+    assert status(application, f"{path}?token={application.token}") in (403, 404)
+
+
+@pytest.mark.parametrize("name", ["../out.toml", "/tmp/out.toml", "a/b.toml", "scene.py", "..", ".toml/../x"])
+def test_a_scene_is_saved_into_the_folder_only(tmp_path, name):
+    session = Session((as_given(SCENE),), SCENE, tmp_path / "in")
+    with pytest.raises(SceneError, match="name of a .toml file"):
+        session.save(0, name)
+    assert list(tmp_path.rglob("*")) == []
+
+
+def test_a_saved_scene_is_the_scene(tmp_path):
+    session = Session((as_given(SCENE),), SCENE, tmp_path)
+    session.change([0], "load.axial", "1.25 kN")
+    session.change([0], "excitation.kind", "unidirectional")
+    path = session.save(0, "")
+    assert path.parent == tmp_path
+    again, scene = rw.load_scene(path), session.checked(0)[0]
+    assert rw.run(again).equivalent_stiffness == rw.run(scene).equivalent_stiffness
+
+
+@pytest.mark.needs("browser")
+def test_a_script_in_a_title_is_text(tmp_path):
+    title = "<img src=x onerror='window.hacked=1'><script>window.hacked=1</script>{{constructor.constructor('window.hacked=1')()}}"
+    path = tmp_path / "scene.toml"
+    path.write_text(f"title = {json.dumps(title)}\n[bearing]\npreset = 'B7206C'\n[load]\naxial = 1000.0\n")
+    served, browser = Application(tmp_path / "files", str(path)), Browser()
+    try:
+        tab = Tab(browser, served.address)
+        tab.set("rotor.mass", "<script>window.hacked=1</script>")
+        assert "<script>" in tab.text('[data-fault="rotor.mass"]')
+        tab.press("Undo")
+        assert title in tab.text('[data-test="title"]')
+        assert browser.run("return window.hacked ?? null") is None
+    finally:
+        browser.close()
+        served.stop()
+
+
+def test_broken_connections_and_messages_leave_the_server_alive(application):
+    import aiohttp
+
+    async def attack() -> None:
+        cookies = {f"raceway_{application.port}": application.token}
+        address = f"http://127.0.0.1:{application.port}/ws"
+        async with aiohttp.ClientSession(cookies=cookies) as session:
+            for message in (b"", b"\x00" * 100, b"\xff" * 5000, os.urandom(3000)):
+                async with session.ws_connect(address) as socket:
+                    await socket.send_bytes(message)
+                    await socket.send_str("{not json")
+            socket = await session.ws_connect(address)
+            socket._response.connection.transport.abort()  # a cable that is pulled
+
+    asyncio.run(attack())
+    assert status(application, f"/index.html?token={application.token}") == 200
+
+
+def flood(application, requests: int) -> None:
+    """So many requests without a token, then one with it."""
+    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=20)
+    for _ in range(requests):
+        connection.request("GET", "/index.html?token=guess")
+        response = connection.getresponse()
+        response.read()
+        assert response.status == 403
+    connection.close()
+    assert status(application, f"/index.html?token={application.token}") == 200
+
+
+def test_many_requests_are_refused_and_cost_no_memory(application):
+    flood(application, 300)
+    before = application.memory()
+    flood(application, 1000)
+    assert application.memory() - before < 5e6  # a leak of a request's 5 kB would be as much
+
+
+@pytest.mark.night
+def test_a_hundred_thousand_requests_are_refused_and_cost_no_memory(application):
+    flood(application, 1000)
+    before = application.memory()
+    flood(application, 100_000)
+    assert application.memory() - before < 10e6
