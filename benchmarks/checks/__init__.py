@@ -11,6 +11,7 @@ unchanged             numbers of results, compared with another commit: --base C
 fmu                   exported FMUs against runs and kernels, a rotor on them, time of a step
 points                time of a point of ``raceway.function``, and equality with runs
 quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
+app                   time from a change to its picture in the application, memory, numbers beside those of runs
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 

@@ -40,6 +40,8 @@ window.raceway_app = (function () {
           return { path, dot, colour: COLOURS[s.panel], dash: nth ? "5 3" : "", name: this.names[s.panel] + ": " + s.label };
         });
       },
+      same() { return new Set(this.chart.series.map((s) => s.label)).size === 1; },
+      title() { return this.same ? this.chart.series[0].label : this.chart.panel; },
       xs() { return ticks(this.frame.x0, this.frame.x1, 5); },
       ys() { return ticks(this.frame.y0, this.frame.y1, 4); },
       label() {
@@ -47,7 +49,7 @@ window.raceway_app = (function () {
         return this.chart.panel + " over " + this.chart.label + "; " + (now.join(", ") || "no answer at the present point");
       },
       reading() {
-        if (this.at === null) return this.lines.filter((l) => l.dot).map((l) => ({ colour: l.colour, text: l.name + " " + number(l.dot.value) }));
+        if (this.at === null) return this.lines.filter((l) => l.dot).map((l) => ({ colour: l.colour, text: (this.same ? l.name.split(":")[0] : l.name) + " " + number(l.dot.value) }));
         return this.chart.series.map((s) => {
           let best = 0;
           s.x.forEach((x, i) => { if (Math.abs(x - this.at) < Math.abs(s.x[best] - this.at)) best = i; });
@@ -63,7 +65,7 @@ window.raceway_app = (function () {
       },
     },
     template: `<figure class="chart" :data-test="'chart-' + chart.axis + '-' + chart.panel">
-      <figcaption><b>{{ chart.panel }}</b> <span v-if="chart.unit">[{{ chart.unit }}]</span>
+      <figcaption><b>{{ title }}</b> <span v-if="chart.unit && chart.unit !== '1'">[{{ chart.unit }}]</span>
         <span v-for="r in reading" class="reading" :style="{ color: r.colour }">{{ r.text }}</span></figcaption>
       <svg v-if="lines.length" ref="svg" viewBox="0 0 360 206" role="img" :aria-label="label" @pointermove="move" @pointerleave="at = null">
         <path v-for="x in xs" class="rule" :d="'M' + frame.x(x) + ' 22V166'"/><path v-for="y in ys" class="rule" :d="'M58 ' + frame.y(y) + 'H348'"/>
@@ -152,13 +154,18 @@ window.raceway_app = (function () {
         return [...rows.values()];
       },
     },
-    methods: { remarks(row) { return [...new Set(Object.values(row.cells).map((c) => c.remark).filter(Boolean))].join(" | "); } },
+    methods: {
+      both(row, part) {  // what two scenes state alike, once
+        const words = Object.entries(row.cells).map(([k, c]) => ["AB"[k], c[part]]).filter((w) => w[1]);
+        return new Set(words.map((w) => w[1])).size < 2 ? words[0]?.[1] ?? "" : words.map((w) => w.join(": ")).join("; ");
+      },
+    },
     template: `<div v-for="(s, k) in screens"><p class="warning" v-for="w in s?.warnings">{{ 'AB'[k] }}: {{ w }}</p></div>
       <div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table data-test="numbers"><thead><tr><th scope="col">quantity</th>
         <th v-for="(s, k) in screens" scope="col" class="number" :data-number="s?.number">{{ 'AB'[k] }}</th><th scope="col">remark</th></tr></thead>
-      <tbody><tr v-for="r in rows" :class="{ heading: r.heading }"><th scope="row" :colspan="r.heading ? screens.length + 1 : 1">{{ r.name }}</th>
+      <tbody><tr v-for="r in rows" :class="{ heading: r.heading }"><th scope="row" :colspan="r.heading ? screens.length + 1 : 1">{{ r.heading ? both(r, "name") : r.name }}</th>
         <template v-if="!r.heading"><td v-for="(s, k) in screens" class="number" :class="{ stale: busy[k] }" :data-test="'value-' + k" :data-name="r.name">{{ r.cells[k]?.value ?? '' }}</td></template>
-        <td class="small">{{ remarks(r) }}</td></tr></tbody></table></div>
+        <td class="small">{{ both(r, "remark") }}</td></tr></tbody></table></div>
       <p class="small" v-for="(s, k) in screens"><template v-if="s">{{ 'AB'[k] }}: {{ s.bearing.split('\\n').slice(1).join('; ') }}; {{ s.left_out }}</template></p>`,
   };
 

@@ -23,9 +23,8 @@ SCENE = str(EXAMPLES / "b7206.toml")
 
 @pytest.fixture(scope="module")
 def application(tmp_path_factory):
-    served = Application(tmp_path_factory.mktemp("app") / "files", SCENE)
-    yield served
-    assert served.stop() in (0, 130)
+    with Application(tmp_path_factory.mktemp("app") / "files", SCENE) as served:
+        yield served
 
 
 def status(application, path: str, host: str = "", **headers: str) -> int:
@@ -68,7 +67,13 @@ def test_the_token_opens_the_page_and_a_wrong_one_does_not(application):
 
 
 @pytest.mark.parametrize(
-    "path", ["/raceway/../../pyproject.toml", "/raceway/%2e%2e/%2e%2e/pyproject.toml", "/raceway//etc/passwd", "/..%2f..%2fetc/passwd"]
+    "path",
+    [
+        "/raceway/../../pyproject.toml",
+        "/raceway/%2e%2e/%2e%2e/pyproject.toml",
+        "/raceway//etc/passwd",
+        "/..%2f..%2fetc/passwd",
+    ],
 )
 def test_no_path_leads_out_of_the_served_files(application, path):
     assert status(application, f"{path}?token={application.token}") in (403, 404)

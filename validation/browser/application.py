@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 import json
 import os
+import random
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from raceway.pipeline.run_screen import screen
 from validation.browser.chromium import Browser
@@ -42,11 +43,27 @@ seen.observe(app, { attributes: true });
 """
 
 
+def proportional_memory(pid: int) -> int:
+    """Of a process, shared pages in proportion [byte]."""
+    lines = Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
+    return sum(1024 * int(line.split()[1]) for line in lines if line.startswith("Pss:"))
+
+
 class Application:
     """``raceway app`` as a process; ``address`` of its page."""
 
     def __init__(self, folder: Path, scene: str = "", *options: str) -> None:
-        words = [sys.executable, "-m", "raceway", "app", *([scene] if scene else []), "--no-browser", "--json", "--out", str(folder)]
+        words = [
+            sys.executable,
+            "-m",
+            "raceway",
+            "app",
+            *([scene] if scene else []),
+            "--no-browser",
+            "--json",
+            "--out",
+            str(folder),
+        ]
         self.begun = time.monotonic()
         self.process = subprocess.Popen(
             [*words, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ
@@ -67,6 +84,10 @@ class Application:
         """Of the address."""
         return self.address.rpartition("token=")[2]
 
+    def elapsed(self) -> float:
+        """Since the command was started [s]."""
+        return time.monotonic() - self.begun
+
     def processes(self) -> list[int]:
         """The server, and what it has started."""
         children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
@@ -74,13 +95,19 @@ class Application:
 
     def memory(self) -> int:
         """Resident memory of all its processes, shared pages in proportion [byte]."""
-        lines = [line for pid in self.processes() for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()]
-        return sum(1024 * int(line.split()[1]) for line in lines if line.startswith("Pss:"))
+        return sum(map(proportional_memory, self.processes()))
 
     def stop(self) -> int:
         """Ctrl-C; the exit code."""
-        self.process.send_signal(signal.SIGINT)
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
         return self.process.wait(20.0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self.stop() in (0, 130)
 
 
 class Tab:
@@ -159,10 +186,18 @@ class Tab:
 
     def values(self, panel: int) -> list[tuple[str, str]]:
         """Quantity and value of the rows of numbers."""
-        script = (
-            "return [...document.querySelectorAll('[data-test=\"value-' + arguments[0] + '\"]')].map((e) => [e.dataset.name, e.textContent])"
-        )
+        script = "return [...document.querySelectorAll('[data-test=\"value-' + arguments[0] + '\"]')].map((e) => [e.dataset.name, e.textContent])"
         return [(str(name), str(value)) for name, value in self.browser.run(script, panel)]
+
+    def memory(self) -> int:
+        """Of the processes that draw the page [byte]."""
+        found, left = 0, [self.driver.service.process.pid]
+        while left:
+            pid = left.pop()
+            left += map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split())
+            if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                found += proportional_memory(pid)
+        return found
 
     def faults(self) -> list[str]:
         """Errors on the console."""
@@ -175,3 +210,47 @@ def expected(tables: dict[str, Any]) -> list[tuple[str, str]]:
 
     rows = screen(rw.run(tables).to_dict()).rows
     return [(name, value) for name, value, _ in rows if value and name != "wall time"]
+
+
+#: Keys that a person changes, and texts to type; some are refused.
+CHANGES = {
+    "load.axial": ["300", "1 kN", "2500", "-400", "0"],
+    "load.radial": ["[100, 0]", "[0, 0]", ""],
+    "excitation.speed_rpm": ["3000", "12000", "21000", "250 Hz"],
+    "excitation.kind": ["unidirectional", "bidirectional"],
+    "excitation.unbalance": ["1e-4", "6.39e-4", "300 g mm"],
+    "supports.tilt": ["free", "locked", ""],
+    "rotor.mass": ["1.5", "4", "-1", "heavy"],
+    "bearing.preset": ["B7206C", "7206A-NSK", "6206", "B7206X"],
+    "bearing.contact_angle_deg": ["18", "", "95"],
+    "kinematics.gyroscopic": ["outer_race", "shared", ""],
+    "kinematics.ring_growth": ["true", ""],
+    "contact.damping": ["0.001", "50", ""],
+    "contact.kind": ["penalty", "hertz"],
+}
+
+
+def hurry(page: Tab, sequences: int, seed: int) -> list[str]:
+    """Some changes one after another without a look at the page, then a look: what is not as the run of the scene shown."""
+    chance, faults = random.Random(seed), []
+    for _ in range(sequences):
+        for _ in range(chance.randint(1, 5)):
+            action = chance.random()
+            if action < 0.1:
+                page.press_any(["Undo", "Redo"][chance.randrange(2)])
+            elif action < 0.18:
+                page.press_any("Compare two scenes")
+            else:
+                key = chance.choice(list(CHANGES))
+                page.type(key, chance.choice(CHANGES[key]))
+        page.settle()
+        for panel in range(page.panels()):
+            shown = [(name, value) for name, value in page.values(panel) if value]
+            refused = page.text(f'[data-test="mistakes-{panel}"]')
+            if bool(refused) == bool(shown):
+                faults.append(f"panel {panel} shows {len(shown)} numbers and '{refused}'")
+            elif shown and (different := set(shown) ^ set(expected(page.scene(panel)))):
+                faults.append(f"panel {panel}: {sorted(different)[:4]}")
+    while page.press_any("Undo"):
+        page.settle()
+    return faults

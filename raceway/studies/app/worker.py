@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import threading
 import time
 import traceback
@@ -47,7 +48,7 @@ class Job:
 
 @attrs.frozen
 class News:
-    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "file", "failed file" or "done"."""
+    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "stopped", "file", "failed file" or "done"."""
 
     number: int
     panel: int
@@ -144,7 +145,10 @@ class Worker:
                 news = connection.recv()
             except (EOFError, OSError):
                 break
-            self._tell(news)
+            with self._lock:  # stopped for the sake of a job that has the scene, too
+                dropped = news.kind == "stopped" and any(news.panel in job.scenes for job in self._waiting)
+            if not dropped:
+                self._tell(attrs.evolve(news, kind="refused") if news.kind == "stopped" else news)
             if news.kind == "done":
                 self._next()
         with self._lock:
@@ -172,12 +176,15 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         registry_with(plugins)
         from raceway.studies.app import picture
 
-        pictures = _Pictures(picture, connection, stop)
+        pictures, collected = _Pictures(picture, connection, stop), False
         while True:
             job: Job = connection.recv()
             for panel, (number, given) in job.scenes.items():
                 pictures.answer(job, panel, number, given)
             connection.send(News(job.number, -1, "done"))
+            if not collected:  # what was compiled has put Python's search for cycles off
+                gc.collect()
+                collected = True
 
 
 class _Pictures:
@@ -209,7 +216,7 @@ class _Pictures:
             else:
                 self._draw(job, panel, given, tell, progress)
         except Stopped:
-            tell(refusal, [("", "stopped")])
+            tell(refusal if job.file else "stopped", [("", "stopped")])
         except SceneError as error:
             tell(refusal, [(mistake.path, str(mistake)) for mistake in error.mistakes])
         except RacewayError as error:
