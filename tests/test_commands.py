@@ -243,7 +243,8 @@ def whole_files(folder):
 
 
 def test_every_command_is_looked_at():
-    assert {name.partition(",")[0] for name in COMMANDS} == set(RUNNABLE)
+    served = {"app"}  # until Ctrl-C: tests/browser/test_app.py
+    assert {name.partition(",")[0] for name in COMMANDS} | served == set(RUNNABLE)
 
 
 @pytest.mark.parametrize("alias", ALIASES)

@@ -15,7 +15,7 @@ from raceway.plugins.pictures import picture
 from raceway.studies.view.bodies import Bearing, _contact_patch
 from raceway.studies.view.bodies import ball as solid_ball
 from raceway.studies.view.pictures import LETTERS, _ball_labels, contacts
-from raceway.studies.view.view import _at_peak, _at_rest
+from raceway.studies.view.view import _at_peak, at_rest
 from raceway.testing import b7206c, run
 from tests.test_commands import COARSE
 from validation.command_line import EXAMPLES, MINIMAL, invoke, python
@@ -60,7 +60,7 @@ def test_a_contact_ellipse_has_its_axes_and_peak():
 
 
 def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
-    bearing, state = Bearing.of(result), _at_rest(result)
+    bearing, state = Bearing.of(result), at_rest(result)
     z = 12
     loads = [part.load for part in bearing.balls(state)]
     assert loads == pytest.approx(list(result.equilibrium.contact_force[:z]))
@@ -76,7 +76,7 @@ def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
 
 
 def test_contacts_lie_where_ring_and_ball_meet(result):
-    bearing, state = Bearing.of(result), _at_rest(result)
+    bearing, state = Bearing.of(result), at_rest(result)
     towards, centres = bearing.towards(state), bearing.centres(state)
     for inner, ball in ((True, 0), (False, 12)):
         shape = ring_shape(bearing.shape, inner)
@@ -103,7 +103,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
     tables = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
     tables["bearing"] |= {"ball_count": ball_count, "ball_diameter": 9.525e-3 if ball_count == 12 else 4.5e-3}
     bearing = Bearing.of(found := run(scene_from_dict(tables)))
-    state = _at_rest(found)
+    state = at_rest(found)
     top = float(state.load.max())
     labels = _ball_labels(bearing, state, top, flat)
     assert [int(text.split(":")[0]) for text, _ in labels] == list(range(0, ball_count, every))
@@ -117,7 +117,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
 
 
 def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
-    bearing, state = Bearing.of(result), _at_rest(result)
+    bearing, state = Bearing.of(result), at_rest(result)
     factor = bearing.widening(state)
     assert factor > 2, "specks in truth"
     ball = int(np.argmax(state.load[:12]))
@@ -128,7 +128,7 @@ def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
 
 
 def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
-    state = _at_rest(result)
+    state = at_rest(result)
     ball = int(np.argmax(state.load[:12]))
     panel = contacts(Bearing.of(result), state, "made up").axes[1]
     at = np.asarray(panel.collections[0].get_coordinates()) / (1e3 * state.half[ball])
@@ -140,7 +140,7 @@ def test_a_pair_has_four_rings_and_loads_that_point_apart():
     found = run(scene_from_dict(b7206c(bearing=bearing, load={"axial": 0.0, "radial": [100.0, 0.0]})))
     drawn = Bearing.of(found)
     assert len(drawn.rings(cut=None)) == 4
-    towards = drawn.towards(_at_rest(found))[24:]
+    towards = drawn.towards(at_rest(found))[24:]
     assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
     labels = [text.get_text() for text in picture(found, "ball_loads").legends[0].get_texts()]
     assert labels == ["static, row 1", "static, row 2"]

@@ -3,6 +3,7 @@
 stability, verify, view    one folder a command, with its answer and pictures
 rotor       coefficients for ROSS, Nastran and Ansys, as CSV and JSON; the bearing in a rotor
 fmu         the bearing as an FMU for simulators
+app         a page of a scene, served to this machine
 fit         numbers of a scene from measured data, with what these do not determine
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
