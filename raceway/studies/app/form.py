@@ -22,23 +22,23 @@ def _schema() -> Tables:
     return scene_schema(default_registry())
 
 
-def groups(given: Given) -> list[Tables]:
+def groups(source: Given) -> list[Tables]:
     """Tables of a scene with the fields that its kinds have.
 
     Returns
     -------
     list of dict : name, and fields (path, label, unit, help, choices (words, or None), default (text))
     """
-    tables, found = given.merged(), []
+    tables, content = source.merged(), []
     for name, schema in _schema()["properties"].items():
         if name not in _WITHOUT:
-            found.append({"name": name, "fields": _fields(name, schema, tables.get(name))})
-    return found
+            content.append({"name": name, "fields": _fields(name, schema, tables.get(name))})
+    return content
 
 
-def _fields(path: str, schema: ReadTables, said: object) -> list[Tables]:
+def _fields(path: str, schema: ReadTables, values: object) -> list[Tables]:
     """Of a table, with those of the tables in it; a key alone is its own field."""
-    table = said if isinstance(said, dict) else {}
+    table = values if isinstance(values, dict) else {}
     properties = dict(schema.get("properties", {}))
     if "oneOf" in schema:
         kind = table.get("kind", properties["kind"].get("default"))
@@ -64,10 +64,10 @@ def _field(path: str, schema: ReadTables) -> Tables:
     }  # fmt: skip
 
 
-def texts(given: Given, scene: Scene | None) -> tuple[dict[str, str], dict[str, str]]:
+def texts(source: Given, scene: Scene | None) -> tuple[dict[str, str], dict[str, str]]:
     """What is said of each key, and what holds for it, as texts by path; the latter is empty while the scene is refused."""
-    said = {path: told(value) for path, value in leaves(given.merged())}
-    return said, {} if scene is None else {path: told(value) for path, value in leaves(scene.to_dict())}
+    typed = {path: told(value) for path, value in leaves(source.merged())}
+    return typed, {} if scene is None else {path: told(value) for path, value in leaves(scene.to_dict())}
 
 
 def value_of(text: str) -> object:

@@ -1,4 +1,4 @@
-"""Who may talk to the server: a browser on this machine that was given the address with its token."""
+"""Who may talk to the server: a browser on this machine that was source the address with its token."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from aiohttp.web import Request, StreamResponse
 
-#: Names of this machine that a browser may have been given; others are another site's that points here.
+#: Names of this machine that a browser may have been source; others are another site's that points here.
 _HOSTS = ("127.0.0.1", "localhost", "[::1]")
 _POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-eval' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
@@ -33,10 +33,10 @@ def guard(token: str) -> Callable[[Request, Handler], Awaitable[StreamResponse]]
     async def check(request: Request, handler: Handler) -> StreamResponse:
         host, origin = request.headers.get("Host", ""), request.headers.get("Origin")
         name = f"raceway_{host.rpartition(':')[2]}"
-        said = request.query.get("token") or request.cookies.get(name, "")
+        secret = request.query.get("token") or request.cookies.get(name, "")
         if host.rpartition(":")[0] not in _HOSTS or origin not in (None, f"http://{host}"):
             return Response(status=403, text="another host's page\n")
-        if not hmac.compare_digest(said.encode(), token.encode()):
+        if not hmac.compare_digest(secret.encode(), token.encode()):
             return Response(status=403, text="open the address that `raceway app` has printed: it carries a token\n")
         response = await handler(request)
         if not response.prepared:

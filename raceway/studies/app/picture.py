@@ -10,7 +10,7 @@ import numpy as np
 
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.registry import default_registry
-from raceway.out.quantities import KNOWN, Quantity, named, plugin_quantities
+from raceway.out.quantities import KNOWN, C, K, Quantity, named, plugin_quantities
 from raceway.pipeline.front import run
 from raceway.pipeline.result import Result
 from raceway.pipeline.run_screen import screen
@@ -29,8 +29,8 @@ _TOLERANCE = 1e-6
 _MULTIPLIER = Quantity("largest_multiplier", "1", "Floquet multiplier of the orbit: above 1 it is unstable")
 #: Panels over speed and over load: title, and names of the curves in it, those of a motion first.
 _PANELS = {
-    "stiffness": ("equivalent_stiffness", "kyy_tilts_follow", "kyy"),
-    "damping": ("equivalent_damping",),
+    "stiffness": (K.name, "kyy_tilts_follow", "kyy"),
+    "damping": (C.name,),
     "Floquet multiplier": ("largest_multiplier",),
     "axial displacement": ("x",),
     "ball load": ("peak_ball_load", "largest_ball_load"),
@@ -39,7 +39,7 @@ _PANELS = {
     "axial force of rows": ("ball_load",),
     "reference life L10r": ("l10r_hours",),
 }
-_OF_MOTIONS = ("equivalent_stiffness", "equivalent_damping", "largest_multiplier", "peak_ball_load")
+_OF_MOTIONS = (K.name, C.name, "largest_multiplier", "peak_ball_load")
 #: Panels of which all curves are drawn; of others the first that the scene has.
 _TOGETHER = ("temperature",)
 _OVER_LOAD = ("stiffness", "ball load", "pressure p0", "reference life L10r")
@@ -112,8 +112,8 @@ def _orbit(result: Result) -> list[list[float]] | None:
     record = result.simulation.record
     turn = max(record.schedule.steps_per_turn // record.schedule.stride, 1)
     path = 1e6 * record.displacement[-turn - 1 :, 1:3]
-    chosen = np.unique(np.linspace(0, len(path) - 1, _ORBIT_POINTS).astype(int))
-    return [[float(f"{x:.5g}") for x in point] for point in path[chosen]]
+    samples = np.unique(np.linspace(0, len(path) - 1, _ORBIT_POINTS).astype(int))
+    return [[float(f"{x:.5g}") for x in point] for point in path[samples]]
 
 
 def bodies_picture(result: Result, rings: bool) -> Tables:
@@ -189,26 +189,28 @@ def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
 
 
 def _panel(name: str, axis: Axis, title: str, names: list[str], answer: Tables) -> Tables:
-    known: dict[str, Quantity] = (
+    quantities: dict[str, Quantity] = (
         KNOWN | named(_MULTIPLIER) | {n: quantity for n, (_, quantity) in plugin_quantities(default_registry()).items()}
     )
     solved = answer["status"] == PointStatus.COMPUTED
     lines: list[Tables] = []
-    for curve, label, values in _columns(names, answer, known):
-        quantity = known[curve]
+    for curve, label, values in _columns(names, answer, quantities):
+        quantity = quantities[curve]
         y = [float(quantity.read(v)) if ok and np.isfinite(v) else None for v, ok in zip(values, solved, strict=True)]
         lines.append({"name": curve, "label": label, "y": y})
     return {
-        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": known[names[0]].read_unit,
+        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": quantities[names[0]].read_unit,
         "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
     }  # fmt: skip
 
 
-def _columns(names: Iterable[str], answer: Tables, known: Mapping[str, Quantity]) -> Iterator[tuple[str, str, np.ndarray]]:
+def _columns(
+    names: Iterable[str], answer: Tables, quantities: Mapping[str, Quantity]
+) -> Iterator[tuple[str, str, np.ndarray]]:
     """Name, label and values (n,) of each curve; of ball loads the axial force of each row, sum of Q sin(alpha) at the outer races."""
     for name in names:
         if name != "ball_load":
-            yield name, known[name].label, answer[name]
+            yield name, quantities[name].label, answer[name]
             continue
         axial = answer[name] * np.sin(np.radians(answer["contact_angle"]))
         for k, part in enumerate(np.split(np.nan_to_num(axial[:, 1]), answer["rows"], axis=1)):

@@ -123,11 +123,11 @@ class Page:
         scenes: dict[int, tuple[int, Given]] = {}
         panels: list[Tables] = []
         faults: dict[str, str] = {}
-        for k, given in enumerate(session.scenes):
+        for k, tables in enumerate(session.scenes):
             scene, mistakes = session.checked(k)
-            said, holds = texts(given, scene)
+            typed, valid = texts(tables, scene)
             panels.append({
-                "name": _NAMES[k], "said": said, "holds": holds, "mistakes": mistakes, "title": given.merged().get("title", ""),
+                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
                 "command": session.command(k), "python": session.python(k) if scene is not None else "",
             })  # fmt: skip
             faults |= {path: sentence for path, sentence in mistakes if path}
@@ -136,11 +136,11 @@ class Page:
                 if scene is None:
                     self._forget(k)
                 else:
-                    scenes[k] = session.number, given
+                    scenes[k] = session.number, tables
         if len(panels) == 1:
             self._forget(1)
         form = groups(session.scenes[0])
-        busy = {k: what for k, what in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
+        busy = {k: words for k, words in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
         busy |= {str(k): "computing" for k in scenes}
         undo, redo = session.can_undo
         self.state.update({
@@ -183,11 +183,11 @@ class Page:
             elif self._numbers.get(panel) != news.number:
                 return
             elif news.kind == "progress":
-                what, done, total = news.content
-                state.busy = {**state.busy, str(panel): f"{what} {100 * done // total} %" if total else what}
+                part, steps, total = news.content
+                state.busy = {**state.busy, str(panel): f"{part} {100 * steps // total} %" if total else part}
             elif news.kind == "refused":
                 self._forget(panel)
-                panels = [dict(one) for one in state.panels]
+                panels = [dict(panel_state) for panel_state in state.panels]
                 panels[panel]["mistakes"] = news.content
                 state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
             elif news.kind == "picture":
@@ -312,9 +312,9 @@ def app(
         raise RacewayError(f"the application needs trame: {extra('app')}")
     paths = [Path(path) for path in plugins]
     registry_with(paths)
-    given = as_given(_EXAMPLE if scene is None else scene)
+    tables = as_given(_EXAMPLE if scene is None else scene)
     source = str(scene) if isinstance(scene, str | Path) and Path(str(scene)).is_file() else ""
-    session = Session((given,), source, Path(out) if out is not None else Path("raceway-out") / "app")
+    session = Session((tables,), source, Path(out) if out is not None else Path("raceway-out") / "app")
     if scene is None:
         session.compare(True)
     Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)

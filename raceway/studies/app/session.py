@@ -55,9 +55,9 @@ class Session:
         """
         value = value_of(text)
         changed = {panel: self.scenes[panel].changed({key: value}) for panel in panels if panel < len(self.scenes)}
-        changed = {panel: given for panel, given in changed.items() if given.merged() != self.scenes[panel].merged()}
+        changed = {panel: scene for panel, scene in changed.items() if scene.merged() != self.scenes[panel].merged()}
         if changed:
-            self._become(tuple(_short(changed.get(k, given)) for k, given in enumerate(self.scenes)), merge)
+            self._become(tuple(_short(changed.get(k, scene)) for k, scene in enumerate(self.scenes)), merge)
         return list(changed)
 
     def compare(self, on: bool) -> list[int]:
@@ -84,7 +84,7 @@ class Session:
         new.append(before)
         self.scenes = now
         self.number += 1
-        return [k for k, given in enumerate(now) if k >= len(before) or given.merged() != before[k].merged()]
+        return [k for k, scene in enumerate(now) if k >= len(before) or scene.merged() != before[k].merged()]
 
     @property
     def can_undo(self) -> tuple[bool, bool]:
@@ -109,19 +109,19 @@ class Session:
 
     def command(self, panel: int) -> str:
         """The command line that computes the scene."""
-        given = self.scenes[panel]
-        settings = " ".join(f"--set {shlex.quote(f'{key}={told(value)}')}" for key, value in self._changes(given))
+        scene = self.scenes[panel]
+        settings = " ".join(f"--set {shlex.quote(f'{key}={told(value)}')}" for key, value in self._changes(scene))
         return f"raceway run {shlex.quote(self.source or 'scene.toml')} {settings}".strip()
 
     def python(self, panel: int) -> str:
         """Python that computes the scene, from its tables alone."""
         return f"import raceway as rw\n\nresult = rw.run({self.scenes[panel].plain(default_registry())!r})\nprint(result)"
 
-    def _changes(self, given: Given) -> list[tuple[str, object]]:
+    def _changes(self, scene: Given) -> list[tuple[str, object]]:
         """What differs from the file that was opened; all of a scene that was never saved."""
         if not self.source:
             return []
-        old, new = dict(leaves(given.tables)), dict(leaves(given.merged()))
+        old, new = dict(leaves(scene.tables)), dict(leaves(scene.merged()))
         return [(key, new.get(key)) for key in dict.fromkeys((*old, *new)) if old.get(key) != new.get(key)]
 
     def save(self, panel: int, name: str) -> Path:
@@ -143,10 +143,10 @@ class Session:
         return write_whole(text.encode(), writable(self.folder) / path.name)
 
 
-def _short(given: Given) -> Given:
+def _short(scene: Given) -> Given:
     """The same scene, whose changes do not grow with each edit: the last of a key holds."""
     changes: dict[str, object] = {}
-    for key, value in given.changes:
+    for key, value in scene.changes:
         changes.pop(key, None)
         changes[key] = value
-    return attrs.evolve(given, changes=tuple(changes.items()))
+    return attrs.evolve(scene, changes=tuple(changes.items()))

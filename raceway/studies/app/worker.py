@@ -12,6 +12,7 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.synchronize import Event
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import attrs
@@ -109,11 +110,11 @@ class Worker:
 
     def _start(self) -> None:
         context = get_context("spawn")
-        self._connection, other = context.Pipe()
+        self._connection, far_end = context.Pipe()
         self._event = context.Event()
-        self._process = context.Process(target=serve, args=(other, self._event, self._plugins), daemon=True)
+        self._process = context.Process(target=serve, args=(far_end, self._event, self._plugins), daemon=True)
         self._process.start()
-        other.close()
+        far_end.close()
         threading.Thread(target=self._listen, args=(self._connection,), daemon=True).start()
 
     def _send(self) -> None:
@@ -179,8 +180,8 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         pictures, collected = _Pictures(picture, connection, stop), False
         while True:
             job: Job = connection.recv()
-            for panel, (number, given) in job.scenes.items():
-                pictures.answer(job, panel, number, given)
+            for panel, (number, source) in job.scenes.items():
+                pictures.answer(job, panel, number, source)
             connection.send(News(job.number, -1, "done"))
             if not collected:  # what was compiled has put Python's search for cycles off
                 gc.collect()
@@ -190,31 +191,31 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
 class _Pictures:
     """Answers to jobs."""
 
-    def __init__(self, module: Any, connection: Connection, stop: Event) -> None:
+    def __init__(self, module: ModuleType, connection: Connection, stop: Event) -> None:
         self._module, self._connection, self._stop = module, connection, stop
         self._shapes: dict[int, object] = {}
 
-    def answer(self, job: Job, panel: int, number: int, given: Given) -> None:
+    def answer(self, job: Job, panel: int, number: int, source: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
 
-        told, refusal = time.monotonic(), "failed file" if job.file else "refused"
+        reported, refusal = time.monotonic(), "failed file" if job.file else "refused"
 
         def tell(kind: str, content: Any = None) -> None:
             self._connection.send(News(number, panel, kind, content))
 
-        def progress(what: str, done: int = 0, total: int = 0) -> None:
-            nonlocal told
+        def progress(part: str, steps: int = 0, total: int = 0) -> None:
+            nonlocal reported
             if self._stop.is_set():
                 raise Stopped
-            if time.monotonic() - told > _SOON_S:
-                told = time.monotonic()
-                tell("progress", (what, done, total))
+            if time.monotonic() - reported > _SOON_S:
+                reported = time.monotonic()
+                tell("progress", (part, steps, total))
 
         try:
             if job.file:
-                tell("file", self._file(job, given, progress))
+                tell("file", self._file(job, source, progress))
             else:
-                self._draw(job, panel, given, tell, progress)
+                self._draw(job, panel, source, tell, progress)
         except Stopped:
             tell(refusal if job.file else "stopped", [("", "stopped")])
         except SceneError as error:
@@ -224,12 +225,12 @@ class _Pictures:
         except Exception as error:  # a third party's own code: the page goes on
             tell(refusal, [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
 
-    def _draw(self, job: Job, panel: int, given: Given, tell: Any, progress: Any) -> None:
+    def _draw(self, job: Job, panel: int, source: Given, tell: Callable[..., None], progress: Callable[..., None]) -> None:
         import raceway
         from raceway.framework.registry import default_registry
         from raceway.framework.shown import duration
 
-        scene, begun = given.scene(default_registry()), time.monotonic()
+        scene, begun = source.scene(default_registry()), time.monotonic()
         if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
             tell("progress", (f"planned: {duration(planned)}", 0, 0))
         result = self._module.scene_result(scene, progress)
@@ -248,7 +249,7 @@ class _Pictures:
             "picture", content | {"curves": self._module.curves(result, axes, lambda name: progress(f"curves over {name}"))}
         )
 
-    def _file(self, job: Job, given: Given, progress: Any) -> list[str]:
+    def _file(self, job: Job, source: Given, progress: Callable[..., None]) -> list[str]:
         from raceway.framework.registry import default_registry
 
-        return self._module.write_file(job.file, given.scene(default_registry()), job.folder, progress)
+        return self._module.write_file(job.file, source.scene(default_registry()), job.folder, progress)
