@@ -4,5 +4,5 @@ picture   what a scene shows: the screen of its run, ball loads, orbit, curves o
 worker    a process of its own that computes pictures, and can be stopped
 form      the keys of a scene as fields, from the schema
 session   one or two scenes, their changes and files
-server    the page: state, guard of its address
+server    the page: its state, what its buttons do;  guard: who may talk to it
 """
