@@ -75,6 +75,7 @@ COMMANDS = {
     "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "OUT"),
     "sweep, picture": ("sweep", "STORE", "--plot", "stiffness:y,y"),
+    "export --fmu": ("export", "--fmu", "STATIC", "--kind", "force", "--out", "OUT"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "study rig": ("study", "rig", EXAMPLES / "test_rig.toml", *RIG, "--no-pictures", "--out", "OUT"),
     "fit, identify": ("identify", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000", "--out", "OUT"),
