@@ -636,7 +636,7 @@ def drawn(draw, **options):
     return console.file.getvalue()
 
 
-def test_progress_is_drawn_on_a_terminal_after_a_second_and_never_elsewhere():
+def test_progress_is_drawn_on_a_terminal_after_a_second_and_never_elsewhere(monkeypatch):
     def slow(console, patience=0.01):
         with ProgressBar("compiling kernels", console, patience) as bar:
             time.sleep(0.15)
@@ -646,6 +646,8 @@ def test_progress_is_drawn_on_a_terminal_after_a_second_and_never_elsewhere():
     text = drawn(slow, force_terminal=True)
     assert "compiling kernels" in text and "newmark, 4320 steps" in text
     assert drawn(slow) == "" == drawn(lambda console: slow(console, 1.0), force_terminal=True).replace("\x1b[?25h", "")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert not ProgressBar("compiling kernels").console.is_terminal
 
 
 def test_a_bar_inside_a_bar_says_what_it_does_in_the_outer_one():
