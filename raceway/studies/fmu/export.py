@@ -69,7 +69,8 @@ class FMU(Answer):
             first, last = members[0], members[-1]
             name = first.name if first is last else f"{first.name} ... {last.name}"
             ends = "" if first.high is None else f"{first.low:g} to {first.high:g}"
-            units = ", ".join(dict.fromkeys(variable.unit for variable in members))
+            first_unit, *others = dict.fromkeys(variable.unit for variable in members)
+            units = f"{first_unit} ..." if others else first_unit
             rows.append({"": part, "variable": name, "unit": units, "range": ends, "what": words})
         return [row for row in rows if row[""] != "constant"]
 
@@ -90,13 +91,13 @@ class FMU(Answer):
         RacewayError
             A folder that cannot be written.
         """
-        paths = []
+        paths = super().save(folder)
         for version in _VERSIONS:
             content, why = self.unit.pack(version)
             paths.append(write_whole(content, Path(folder) / f"{self.unit.name}_fmi{version}.fmu"))
             if why:
                 self.notes.append(f"FMI {version}: sources only, which the simulator compiles: {why}")
-        return [*paths, *super().save(folder)]
+        return paths
 
 
 @door

@@ -151,14 +151,17 @@ def _compiled(sources: Mapping[str, str], face: str) -> tuple[bytes, str]:
     compiler = next(filter(None, map(shutil.which, _COMPILERS)), None)
     if compiler is None:
         return b"", f"no C compiler ({', '.join(_COMPILERS)}) was found"
-    with tempfile.TemporaryDirectory(prefix="raceway-fmu-") as folder:
-        for name, text in sources.items():
-            (Path(folder) / name).write_text(text)
-        command = [compiler, *_FLAGS, face, "-o", "library", "-lm"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-        if done.returncode:
-            return b"", f"{compiler} failed: {done.stderr.strip()[:200]}"
-        return (Path(folder) / "library").read_bytes(), ""
+    try:
+        with tempfile.TemporaryDirectory(prefix="raceway-fmu-") as folder:
+            for name, text in sources.items():
+                (Path(folder) / name).write_text(text)
+            command = [compiler, *_FLAGS, face, "-o", "library", "-lm"]
+            subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+            return (Path(folder) / "library").read_bytes(), ""
+    except subprocess.CalledProcessError as why:
+        return b"", f"{compiler} failed: {why.stderr.strip()[:200]}"
+    except OSError as why:
+        return b"", f"{compiler} cannot be used: {why.strerror}"
 
 
 def _xml(root: ET.Element) -> bytes:
