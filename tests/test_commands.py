@@ -75,7 +75,6 @@ COMMANDS = {
     "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "OUT"),
     "sweep, picture": ("sweep", "STORE", "--plot", "stiffness:y,y"),
-    "export --fmu": ("export", "--fmu", "STATIC", "--kind", "force", "--out", "OUT"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),
     "export --fmu": ("export", "--fmu", "STATIC", "--range", "load.axial=400:2000", "--output", "kyy", "--out", "OUT"),
     "export --fmu, force": ("export", "--fmu", "STATIC", "--kind", "force", "--out", "OUT"),
@@ -125,12 +124,8 @@ TOLD = {
     "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),
-<<<<<<< HEAD
     "export": ("moments by translation", "r/min"),
-=======
-    "export": ("moments on the ring", "r/min"),
     "export --fmu": ("error at most", "400 to 2000"),
->>>>>>> 265e36d2 (Screens of the FMU export fit 80 columns; a full disk costs its file alone)
     "view --mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
     "dev plugins": ("newmark", "hertz"),
     "dev new-scene": ("raceway run",),
