@@ -168,7 +168,7 @@ def test_a_folder_that_others_may_write_is_not_used(folder, mode):
     folder.parent.chmod(0o755)
     array_cache._warn_refused.cache_clear()
     make = Maker()
-    with pytest.warns(RuntimeWarning, match="is not stored: others may write in"):
+    with pytest.warns(RuntimeWarning, match="are not stored: others may write in"):
         get(make), get(make)
     assert make.calls == 2
 
@@ -238,7 +238,9 @@ def test_a_disk_without_room_costs_one_warning_and_no_answer(folder, monkeypatch
     usage = array_cache.shutil.disk_usage("/")
     monkeypatch.setattr(array_cache.shutil, "disk_usage", lambda place: usage._replace(free=100))
     make = Maker()
-    with pytest.warns(RuntimeWarning, match="GiB to write, .* GiB free on the disk.*make room by raceway dev cache --clear"):
+    with pytest.warns(
+        RuntimeWarning, match="GiB to write, .* GiB free on the disk.*free space by raceway dev cache --clear"
+    ):
         found = get(make)
     assert (found["a"] == make()["a"]).all()
     assert not list(folder.glob("*"))

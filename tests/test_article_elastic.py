@@ -71,7 +71,7 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
     words = (*WORDS, "--turns", "1", "--no-pictures", "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
-    assert found.stderr.count("goes on from there") == 1
+    assert found.stderr.count("the same command continues") == 1
     assert (tmp_path / "points.sqlite").is_file()
     monkeypatch.setattr(elastic, "_row_of", real)
     found = invoke(*words, "--json")

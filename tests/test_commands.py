@@ -388,7 +388,7 @@ def test_ctrl_c_ends_a_command_with_130_one_line_and_whole_files(name, seen, fol
         left = {*whole_files(tmp_path / moment)}
         assert moment == "__call__" or found.stdout == "" and left <= {"points.sqlite" if name in GOES_ON else None}
         if moment == "__call__" and name in GOES_ON and name != "precision":  # whose reference comes first
-            assert "points.sqlite" in left and "goes on" in " ".join(before)
+            assert "points.sqlite" in left and "continues" in " ".join(before)
 
 
 #: Free text, and what has a form of its own beside a scene.

@@ -53,8 +53,8 @@ def test_lists_and_ranges():
         (["load.axial="], "no values"),
         (["load.axial"], "form"),
         (["=1,2"], "form"),
-        (["load.axial=1,,2"], "empty place"),
-        (["load.axial=1,1.0"], "twice"),
+        (["load.axial=1,,2"], "empty entry"),
+        (["load.axial=1,1.0"], "duplicated"),
         (["load.axial=1:2:0"], "at least 1"),
         (["load.axial=1:2:2.5"], "whole number"),
         (["load.axial=1:x:3"], "finite number"),
@@ -264,9 +264,7 @@ def _k(point, tilt=1.0, law=1.0):
 def test_the_words_rank_the_effects_and_tell_the_course_where_an_axis_changes_it():
     made = _synthetic(_k)
     ranking, text = made.words[0], "\n".join(made.words)
-    assert ranking.startswith(
-        "K lies between 40.00 and 200.00 N/µm. On average, the strongest first: supports.tilt from locked"
-    )
+    assert ranking.startswith("K lies between 40.00 and 200.00 N/µm. On average, strongest first: supports.tilt from locked")
     assert ranking.index("supports.tilt") < ranking.index("excitation.amplitude")
     assert "K hardly depends on excitation.kind (+0.00 %)" in text
     assert "falls in 4 of 4 settings (-2.0 %)" in text and "rises in 4 of 4 settings (+1.0 % to +20.0 %)" in text

@@ -172,7 +172,7 @@ def test_what_cannot_be_fitted_is_refused_in_one_sentence(data, free, words):
 
 
 def test_data_that_ask_for_what_is_not_physical_end_with_the_key_and_its_end():
-    with pytest.raises(ConvergenceError, match=f"`{ANGLE}` ran to .*not physical"):
+    with pytest.raises(ConvergenceError, match=f"`{ANGLE}` ran to .*unphysical"):
         rw.fit({"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [0.1, 0.3, 0.4]}, LOADED, ANGLE)
 
 
@@ -371,7 +371,7 @@ BAD_RECORDS = [
     (RECORD, {"free": ""}, "names no number"),
     (RECORD, {"free": "K,mass", "mass": 1.0}, "either known or fitted"),
     (RECORD, {"free": "K", "mass": -1.0}, "at least 0 kg"),
-    (RECORD, {"free": "K", "scene": LOADED}, "leave it out"),
+    (RECORD, {"free": "K", "scene": LOADED}, "omit it"),
     (RECORD, {"free": "K", "slow_roll": "a.csv"}, "belongs to the signals of a rig"),
     ({**RECORD, "time_s": np.cumsum(1.0 + 0.5 * (np.arange(4096) % 2))}, {"free": "K"}, "even ones"),
     ({**RECORD, "force_n": np.ones(4096)}, {"free": "K"}, "is constant"),
@@ -422,8 +422,8 @@ def test_the_rigs_record_gives_the_angle_that_its_scene_does_not_say(signals):
 @pytest.mark.parametrize(
     ("free", "words"),
     [
-        ("excitation.unbalance", "is the rig's"),
-        ("load.radial[0]", "whirl in circles"),
+        ("excitation.unbalance", "is defined by the rig"),
+        ("load.radial[0]", "circular whirl"),
         (f"{ANGLE},load.axial,bearing.conformity_inner", "2 measured"),
     ],
 )

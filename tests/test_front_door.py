@@ -286,7 +286,7 @@ def test_pictures_on_axes(moving, static, monkeypatch):
     for what, given, words in (
         ("orbits", None, "did you mean 'orbit'"),
         ("ball_loads", ax, "needs polar axes"),
-        (None, ax, "say which"),
+        (None, ax, "choose it by"),
     ):
         with pytest.raises(rw.RacewayError, match=words):
             moving.plot(what, ax=given)

@@ -84,7 +84,7 @@ def test_axes_take_units_text_and_single_values():
     data = rw.sweep(STATIC, {"load.axial": ["0.4 kN", "1 kN"], SPIN: "0:2000:2", "supports.tilt": "free"})
     np.testing.assert_array_equal(data["load.axial"], [400.0, 1000.0])
     assert data.stiffness.shape == (2, 2, 1, 5, 5) and data["load.axial"].attrs["units"] == "N"
-    with pytest.raises(SceneError, match="stands twice in the axis"):
+    with pytest.raises(SceneError, match="is duplicated in the axis"):
         rw.sweep(STATIC, {"load.axial": [400.0, 400.0]})
     with pytest.raises(SceneError, match="load.axail"):
         rw.sweep(STATIC, {"load.axail": [400.0, 500.0]})

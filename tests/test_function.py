@@ -245,7 +245,7 @@ def test_condensed_bodies_that_points_do_not_share(tables: Tables, key: str, wor
         (["supports.tilt"], ["kyy"], "takes a word or a switch"),
         (["integrator.turns"], ["kyy"], "setting of a method"),
         (["load.axial", "load.axial"], ["kyy"], "is an input twice"),
-        ([], ["kyy"], "are none"),
+        ([], ["kyy"], "are empty"),
         (["load.axial"], ["kyyy"], "did you mean 'kyy'"),
         (["load.axial"], ["K"], "is of a motion"),
     ],

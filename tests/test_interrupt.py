@@ -204,7 +204,7 @@ def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_a
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
     error = process.communicate(timeout=60.0)[1].decode()
     assert process.returncode == 130, error
-    assert f"is in {tmp_path / 'points.sqlite'}; the same command goes on from there" in error and "Traceback" not in error
+    assert f"are in {tmp_path / 'points.sqlite'}; the same command continues" in error and "Traceback" not in error
     assert not left(process.pid)  # the tracker of the executor's processes ends a moment after them
     assert stored(tmp_path)
 

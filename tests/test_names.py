@@ -136,7 +136,7 @@ def test_a_fit_of_the_printed_numbers_gives_the_scene_back(free):
 
 def test_a_fit_with_locked_tilts_refuses_the_name_of_tilts_that_follow():
     scene = {**FREE, "supports": {"tilt": "locked"}}
-    with pytest.raises(rw.SceneError, match="kyy_tilts_follow is none of a scene with supports.tilt = 'locked'"):
+    with pytest.raises(rw.SceneError, match="kyy_tilts_follow needs free or sprung tilts, and supports.tilt = 'locked'"):
         rw.fit({"kyy_tilts_follow [N/um]": [16.0, 16.1]}, scene, ["bearing.contact_angle_deg"])
 
 

@@ -83,7 +83,7 @@ WAVE = 1e-5 * np.cos(2.0 * np.pi * 200.003 * np.arange(4000) / 20_000.0)
 @pytest.mark.parametrize(
     ("signal", "words"),
     [
-        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 µm: the signal is cut off"),
+        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 µm: the signal is clipped"),
         (np.maximum(WAVE, -0.95e-5), "of all samples of y lie at the bottom"),
     ],
 )
@@ -111,7 +111,7 @@ def test_meshes_that_are_not_one_body_are_refused(fault, tmp_path):
     mesh = block()
     count = len(mesh.points)
     if fault == "doubled":
-        bad, words = HexMesh(mesh.points, np.vstack([mesh.cells, mesh.cells[:3]]), {}, {}), "3 cells stand there twice"
+        bad, words = HexMesh(mesh.points, np.vstack([mesh.cells, mesh.cells[:3]]), {}, {}), "3 cells are duplicated"
     else:
         shift = np.ptp(mesh.points[:, 0]) * (1.0 if fault == "unmerged" else 2.0)
         points = np.vstack([mesh.points, mesh.points + [shift, 0.0, 0.0]])

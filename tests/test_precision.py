@@ -51,7 +51,7 @@ def test_errors_fall_with_the_order_of_the_methods_and_in_the_order_of_theory(la
     rows = ladder.judged
     assert [row["status"] for row in rows] == ["completed"] * 6
     found = [row["order"] for row in rows if row["order"] is not None]
-    # Both methods are of second order; 0.1 is left for the terms of fourth order at 45 steps a turn.
+    # Both methods are of second order; 0.1 is left for the terms of fourth order at 45 steps per turn.
     assert len(found) == 4 and all(order == pytest.approx(2.0, abs=0.1) for order in found)
     assert all(row["expected_order"] == 2 for row in rows)
     # w^2 becomes (2 / dt tan)^2 with dt^2 / 6 against (2 / dt sin)^2 with dt^2 / 12: twice the error.

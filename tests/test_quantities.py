@@ -157,7 +157,7 @@ def test_a_broken_duty_is_named(use, plugin, words):
 
 def test_what_a_scene_lacks_is_said(loads):
     scene = {**SCENE, "load": {"axial": 0.0, "radial": [500.0, 0.0]}, "bearing": {**BALLS}}
-    with pytest.raises(SceneError, match=r"mean_load.*is no number of this scene: load\.axial"):
+    with pytest.raises(SceneError, match=r"mean_load.*is not a number of this scene: load\.axial"):
         rw.function(scene, ["load.radial[0]"], ["mean_load"])
     with pytest.raises(SceneError, match=r"quantities\.load.*did you mean 'loads'"):
         rw.run({**SCENE, "quantities": {"load": {}}})

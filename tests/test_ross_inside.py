@@ -108,7 +108,7 @@ def test_contact_damping_is_in_c():
     "given, words",
     [
         ({"bearing": "B7206G"}, "the nearest"),
-        ({"bearing": {"bearing": {"preset": "B7206C"}, "contact": {"friction": 0.1}}}, "takes work from every motion"),
+        ({"bearing": {"bearing": {"preset": "B7206C"}, "contact": {"friction": 0.1}}}, "dissipates"),
         ({"bearing": "B7206C", "preload": 100.0, "damping": -1.0}, "must be a finite damping"),
         ({"bearing": "B7206C", "preload": 100.0, "tilt": "loose"}, "supports.tilt"),
     ],

@@ -99,7 +99,7 @@ def keeping(folder: Path | None) -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         if folder is not None and (file := folder / "points.sqlite").is_file():
-            warn(f"what is finished is in {file}; the same command goes on from there", label="")
+            warn(f"finished results are in {file}; the same command continues", label="")
         raise
 
 

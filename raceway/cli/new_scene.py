@@ -68,7 +68,7 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     from raceway.scene.catalogue import preset as known
 
     if Path(preset).suffix == ".toml":
-        raise RacewayError(f"`{preset}` names a file, and a bearing is wanted: raceway dev new-scene B7206C --out {preset}")
+        raise RacewayError(f"`{preset}` is a file name; a bearing is expected: raceway dev new-scene B7206C --out {preset}")
     known(preset)
     file = Path(f"{re.sub(r'[^A-Za-z0-9-]+', '-', preset)}.toml") if out is None else out
     if file.exists():

@@ -73,7 +73,7 @@ def _derived(plan: ReadTables, name: str, words: str, unit: str = "", units: flo
 
 def _wall_time(plan: ReadTables) -> Row:
     if plan["predicted_at_least"]:
-        return ("wall time", "not known", "before the mesh is read: how large it is")
+        return ("wall time", "not known", "unknown before the mesh is read")
     return ("wall time", duration(plan["predicted_wall_s"]), "with compiled kernels in the cache")
 
 
@@ -81,7 +81,7 @@ def _mesh_rows(mesh: ReadTables) -> list[Row]:
     """Predicted cells and memory of all bodies and of each; balls in one line."""
     rows: list[Row] = [
         ("Mesh, predicted", "", ""),
-        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB at the peak while they are made"),
+        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB peak while meshing"),
     ]
     for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
         cells, size = bodies

@@ -280,7 +280,7 @@ def _answer(folder: Path, stopped: BaseException | None, csv: bool, choice: _Cho
     if isinstance(stopped, RacewayError) or answer.fault is None:
         answer = attrs.evolve(answer, fault=stopped if isinstance(stopped, RacewayError) else missing)
     if isinstance(stopped, KeyboardInterrupt):
-        words = f"{states['done']} of {states['total']} points are done; the same command with --resume goes on"
+        words = f"{states['done']} of {states['total']} points are done; the same command with --resume continues"
         warnings.warn(words, stacklevel=2)
         raise Interrupted(answer) from stopped
     return answer

@@ -308,7 +308,7 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
     diagonal = np.diagonal(front)[:s].copy()
     lower, failed = dpotrf(np.asfortranarray(front[:s, :s]), lower=1, clean=0, overwrite_a=1)
     if failed or (np.diagonal(lower) ** 2 < _ROUNDING * diagonal).any():
-        raise ConvergenceError("the stiffness of a body is singular: something is held by nothing")
+        raise ConvergenceError("the stiffness of a body is singular: a part is unconstrained")
     across = dtrsm(1.0, lower, np.asfortranarray(front[s:, :s].T), lower=1, overwrite_b=1)
     complement = np.asfortranarray(front[s:, s:])
     del front

@@ -43,7 +43,7 @@ class _Factorised:
         try:
             self._factors = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError as why:  # "Factor is exactly singular"
-            raise ConvergenceError(f"the stiffness of the bodies is singular: something is held by nothing ({why})") from why
+            raise ConvergenceError(f"the stiffness of the bodies is singular: a part is unconstrained ({why})") from why
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """Solution for a residual (m,), or columns of them, on the m rows."""

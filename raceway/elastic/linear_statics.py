@@ -458,7 +458,7 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
             where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
             names = ", ".join(MOTIONS[i] for i in loose)
             raise ConvergenceError(
-                f"nothing holds the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
+                f"no support against the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
             )
 
 

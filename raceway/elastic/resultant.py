@@ -204,7 +204,7 @@ class ResultantContact(Contact):
                 self.gap, self._carried = law_gap, self.pressure.copy()
                 return law_gap
             law_gap = np.maximum(law_gap - misfit / slope, self._last)
-        raise ConvergenceError(f"the law of whole contacts finds no force at gaps down to {1e6 * gap.min():.3g} um.")
+        raise ConvergenceError(f"the law of resultants gives no force at gaps down to {1e6 * gap.min():.3g} um.")
 
     def refuse(self) -> None:
         worst = int(np.argmin(self.gap - self._last))
@@ -212,7 +212,7 @@ class ResultantContact(Contact):
             touch = self.touches[worst]
             raise ConvergenceError(
                 f"{touch.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
-                f"{1e9 * touch.local:.3g} nm/N that the law replaces. Take a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
+                f"{1e9 * touch.local:.3g} nm/N that the law replaces. Use a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
             )
 
     def _last_gap(self) -> np.ndarray:

@@ -82,7 +82,7 @@ class ElasticRing(SteppedRing):
             None was looked for.
         """
         if self._y is None:
-            raise ConvergenceError("elastic bodies know the forces at their equilibria only: solve for them first")
+            raise ConvergenceError("elastic bodies have forces at their equilibria only: solve for them first")
         return self._y
 
     def in_place(self, y: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ class ElasticRing(SteppedRing):
         """
         y = self.equilibrium
         if np.abs(y[:5] - q).max() > 0.0:
-            raise ConvergenceError("elastic bodies know the forces at their equilibria only", {"q": np.asarray(q)})
+            raise ConvergenceError("elastic bodies have forces at their equilibria only", {"q": np.asarray(q)})
         force_on_frame = self.in_place(y)[:5]
         _, _, gap, force, places = self.bodies.look(y, np.zeros_like(y))
         if self._stiffness is None:

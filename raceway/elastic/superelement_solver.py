@@ -244,7 +244,7 @@ class _Linearised:
         def inverse(right: np.ndarray, tolerance: float) -> np.ndarray:
             solution, fault = gmres(operator, preconditioned(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
             if fault or not np.isfinite(solution).all():
-                raise ConvergenceError("the contacts' linear equations have no solution: something is held by nothing")
+                raise ConvergenceError("the contacts' linear equations have no solution: a part is unconstrained")
             return np.asarray(solution)
 
         return inverse

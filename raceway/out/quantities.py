@@ -162,13 +162,13 @@ _FORWARD = Quantity("forward_amplitude", "m", "forward part of the 1x orbit", f"
 _BACKWARD = Quantity("backward_amplitude", "m", "backward part of the 1x orbit", f"{_ID}.backward_amplitude_m", f"{_ID}.backward_amplitude")
 ORBIT_MAJOR = Quantity("orbit_major", "m", "major semi-axis of the 1x orbit", f"{_ID}.orbit.major_m", f"{_ID}.orbit_major")
 ORBIT_MINOR = Quantity("orbit_minor", "m", "minor semi-axis of the 1x orbit", f"{_ID}.orbit.minor_m", f"{_ID}.orbit_minor")
-RESIDUAL = Quantity("residual", "1", "motion that is not 1x, rms over rms of 1x", f"{_ID}.residual", f"{_ID}.residual")
-_SPREAD = Quantity("spread", "1", "largest deviation of a turn's Z from that of all", f"{_ID}.spread", f"{_ID}.spread")
+RESIDUAL = Quantity("residual", "1", "motion other than 1x, rms over rms of 1x", f"{_ID}.residual", f"{_ID}.residual")
+_SPREAD = Quantity("spread", "1", "largest deviation of Z of a turn from that of all turns", f"{_ID}.spread", f"{_ID}.spread")
 AMPLITUDE = Quantity("amplitude", "m", "of the 1x motion along the force", attribute=ORBIT_MAJOR.attribute)
 # At rest, under the constant loads.
 KXX = Quantity("kxx", "N/m", "axial, other motions held", "equilibrium.stiffness.0.0", "stiffness.0.0", label="tangent kxx")
 KYY = Quantity("kyy", "N/m", "radial, tilts and other motions held", "equilibrium.stiffness.1.1", "stiffness.1.1", label="tangent kyy")
-KYY_TILTS_FOLLOW = Quantity("kyy_tilts_follow", "N/m", "radial tangent with tilts that follow as supports.tilt lets them, x and z held", "equilibrium.kyy_tilts_follow_n_per_m")
+KYY_TILTS_FOLLOW = Quantity("kyy_tilts_follow", "N/m", "radial tangent with tilts as in supports.tilt, x and z held", "equilibrium.kyy_tilts_follow_n_per_m")
 X = Quantity("x", "m", "axial displacement under the constant loads", "equilibrium.displacement.x", "displacement.0", label="displacement x")
 LARGEST_BALL_LOAD = Quantity("largest_ball_load", "N", "largest static load of a ball, of both races", "equilibrium.largest_ball_load_n")
 # Of the motion where there is one, else of the equilibrium.
@@ -176,7 +176,7 @@ AXIAL_DISPLACEMENT = Quantity("axial_displacement", "m", "mean axial displacemen
 PEAK_BALL_LOAD = Quantity("peak_ball_load", "N", "largest load of a ball, of both races", f"motion.peak_ball_load_n | {LARGEST_BALL_LOAD.path}", "extremes.peak_ball_load")
 _PEAK_INNER = Quantity("peak_ball_load_inner", "N", "largest load of a ball on the inner race", attribute="extremes.peak_ball_load_inner")
 _PEAK_OUTER = Quantity("peak_ball_load_outer", "N", "largest load of a ball on the outer race", attribute="extremes.peak_ball_load_outer")
-_LEAST_LOAD = Quantity("min_ball_load", "N", "least load of a ball on the inner race, 0 where one is loose", attribute="extremes.min_ball_load")
+_LEAST_LOAD = Quantity("min_ball_load", "N", "least load of a ball on the inner race, 0 where one is unloaded", attribute="extremes.min_ball_load")
 P0 = Quantity("p0", "Pa", "largest Hertz pressure, of both races", "motion.peak_pressure_pa | equilibrium.largest_pressure_pa", "extremes.p0")
 _P0_INNER = Quantity("p0_inner", "Pa", "largest Hertz pressure on the inner race", attribute="extremes.p0_inner")
 _P0_OUTER = Quantity("p0_outer", "Pa", "largest Hertz pressure on the outer race", attribute="extremes.p0_outer")
@@ -196,12 +196,12 @@ MOTION = Quantity("motion", "m, rad", "of the inner ring", dims=("time", "dof"))
 FORCE = Quantity("force", "N, N m", "of the excitation", dims=("time", "dof"))
 CONTACT_FORCE = Quantity("contact_force", "N", "of each ball on each race", dims=("time", "race", "ball"))
 AZIMUTH = Quantity("azimuth", "deg", "from +y towards +z", dims=("ball",))
-TIME = Quantity("time", "s", "in the turns that are used", dims=("time",))
+TIME = Quantity("time", "s", "in the evaluated turns", dims=("time",))
 #: Of a setting whose error is measured against its time.
 PRECISION = (
     Quantity("value", "N/m", "size of Z, or of the tangent where nothing is identified"),
     Quantity("error", "1", "relative error against the reference of the row's model"),
-    Quantity("own_error", "1", "relative error that the run estimates itself"),
+    Quantity("own_error", "1", "relative error estimated by the run"),
     Quantity("time_s", "s", "of the fastest repeat, compiling apart"),
 )
 #: What result.json states of the identification, in its order.

@@ -39,9 +39,9 @@ def _over_shaft(name: str, words: str) -> Quantity:
 
 _NUMBERS = (
     _over_shaft("ftf", "turns of the cage"),
-    _over_shaft("bpfo", "balls over a place of the outer race"),
-    _over_shaft("bpfi", "balls over a place of the inner race"),
-    _over_shaft("bsf", "turns of a ball about its own axis"),
+    _over_shaft("bpfo", "balls passing a point of the outer race"),
+    _over_shaft("bpfi", "balls passing a point of the inner race"),
+    _over_shaft("bsf", "spin of a ball about its axis"),
 )
 
 

@@ -44,7 +44,7 @@ class Dask:
     workers: int = option(2, help="processes of the cluster on this machine, without a scheduler", rule=between(1, 1024))
     scheduler: str | None = option(None, help="address of a running scheduler, for instance tcp://10.0.0.1:8786", rule=_TEXT)
     patience: float = option(
-        20.0, unit="s", help="that a scheduler may take to answer, or all workers may be away", rule=inside(0.0, 86400.0)
+        20.0, unit="s", help="timeout for the scheduler's answer, and without any worker", rule=inside(0.0, 86400.0)
     )
 
     @classmethod
@@ -167,7 +167,7 @@ class _Flight:
             self.alone_since = now
         elif now - self.alone_since > self.patience:
             raise PluginError(
-                f"the dask scheduler has had no fit worker for {self.patience:g} s; start one, and go on with --resume"
+                f"the dask scheduler has had no suitable worker for {self.patience:g} s; start one, and go on with --resume"
             )
 
     def _fill(self, batches: Iterator[Batch]) -> None:

@@ -76,7 +76,7 @@ class Amplitude:
             why = "the force is given"
             unused |= {name: why for name in ("unbalance", "reference_speed_rpm") if getattr(self, name) is not None}
             if self.load_share != 1.0:
-                unused["load_share"] = "the force is given, and it is the force on this bearing"
+                unused["load_share"] = "the force on this bearing is set directly"
         return unused
 
     @property

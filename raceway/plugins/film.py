@@ -82,7 +82,11 @@ class FilmThickness:
             f"{number(1e3 * table['viscosity_pa_s'], 'mPa s')}, {number(1e9 * table['pressure_viscosity_per_pa'], '1/GPa')}"
         )
         facts = [
-            ("Oil film", "", "Hamrock and Dowson, smooth surfaces; without contact.kind = 'film' it carries no surface"),
+            (
+                "Oil film",
+                "",
+                "Hamrock and Dowson, smooth surfaces; without contact.kind = 'film' it does not separate the surfaces",
+            ),
             ("viscosity, alpha", oil, "at the running temperature; pressure-viscosity coefficient"),
         ]
         for race in ("inner", "outer"):

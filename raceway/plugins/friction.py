@@ -34,7 +34,7 @@ PARTS = {
     "elastic_rolling": "hysteresis of balls and races",
     "sliding": "slip by spin, by the contacts' curvature and by gyroscopic moments",
     "drag": "balls in the mixture of oil and air",
-    "seals": "seals and cage, as given",
+    "seals": "seals and cage, from input",
 }
 #: Volume of oil over that of the space around the balls where nothing says how much there is.
 _LITTLE_OIL = 0.01
@@ -66,7 +66,7 @@ class Friction:
     seal_torque: float = option(0.0, unit="N m", help="of the seals", rule=at_least(0.0))
     cage_torque: float = option(0.0, unit="N m", help="of the cage at its pockets and lands", rule=at_least(0.0))
     rolling_band: float = option(
-        0.4, help="of the inlets' shear, relative: published formulas differ so much", rule=between(0.0, 1.0)
+        0.4, help="of the inlets' shear, relative: spread of published formulas", rule=between(0.0, 1.0)
     )
     elastic_band: float = option(0.5, help="of the hysteresis, relative", rule=between(0.0, 1.0))
     traction_band: float = option(0.3, help="of the traction coefficient, relative", rule=between(0.0, 1.0))
@@ -146,8 +146,8 @@ class Friction:
             return mixture
         return [
             *mixture,
-            f"the gyroscopic moment is {ratio:.3g} times what lubricant.traction_limit holds: balls slip sideways, and friction and "
-            "heat are larger than stated. Give more load or lighter balls",
+            f"the gyroscopic moment is {ratio:.3g} times the traction that lubricant.traction_limit allows: balls slip sideways, and friction and "
+            "heat are larger than stated. Use a higher load or lighter balls",
         ]
 
     @staticmethod

@@ -155,4 +155,4 @@ def _judge(header: list[str]) -> None:
     if unknown := [word for word in header if word not in (*_COLUMNS, "t")]:
         raise ValueError(f"unknown columns {', '.join(unknown)}; known: t, {', '.join(_COLUMNS)}")
     if twice := sorted({word for word in header if header.count(word) > 1}):
-        raise ValueError(f"columns {', '.join(twice)} stand there twice")
+        raise ValueError(f"columns {', '.join(twice)} are duplicated")

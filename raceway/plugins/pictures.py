@@ -90,9 +90,9 @@ def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes
     if what is not None and what not in _DRAWINGS:
         raise RacewayError(f"`what` = {what!r}: must be one of {', '.join(_DRAWINGS)}{nearest(str(what), _DRAWINGS)}")
     if what is not None and what not in available:
-        raise RacewayError(f"`what` = {what!r}: no motion was recorded; what can be drawn is {', '.join(available)}")
+        raise RacewayError(f"`what` = {what!r}: no motion was recorded; available: {', '.join(available)}")
     if ax is not None and what is None:
-        raise RacewayError(f"`ax` is for one picture: say which with `what`, {', '.join(available)}")
+        raise RacewayError(f"`ax` is for one picture: choose it by `what`, {', '.join(available)}")
     names = available if what is None else (what,)
     axes = _new_axes(names) if ax is None else (ax,)
     for name, frame in zip(names, axes, strict=True):

@@ -46,8 +46,10 @@ class Processes:
 
     name: ClassVar[str] = "processes"
 
-    workers: int = option(2, help="processes that work at a time", rule=between(1, 1024))
-    patience: float = option(1e7, unit="s", help="a batch that takes longer hangs: it is given up", rule=between(0.1, 1e9))
+    workers: int = option(2, help="parallel processes", rule=between(1, 1024))
+    patience: float = option(
+        1e7, unit="s", help="a batch that takes longer is taken as hung and stopped", rule=between(0.1, 1e9)
+    )
 
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
         waiting, tried = iter(batches), set[int]()
@@ -127,7 +129,7 @@ class _Worker:
             return future.result()
         except BrokenProcessPool as why:
             if self.ready.exception() is not None:
-                raise PluginError(f"processes do not start here: {why}") from None
+                raise PluginError(f"processes cannot be started: {why}") from None
             self.died = True
             return Lost(f"its process died ({str(why).partition('{')[2].partition('}')[0]})")
 

@@ -102,7 +102,7 @@ def parse_axes(definitions: Vary, option: str = "--vary", most: int = MOST_POINT
     if total > most:
         sizes = " x ".join(str(len(axis.values)) for axis in axes)
         where = max(axes, key=lambda axis: len(axis.values)).key
-        mistakes.append(Mistake(where, None, f"{sizes} = {total} runs are more than {most}: give fewer values"))
+        mistakes.append(Mistake(where, None, f"{sizes} = {total} runs are more than {most}: use fewer values"))
     if mistakes:
         raise SceneError(mistakes)
     return tuple(axes)
@@ -124,7 +124,7 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
     if items == [""]:
         raise SceneError.at(key, None, f"has no values: it {_FORM}")
     if "" in items:
-        raise SceneError.at(key, values, "has an empty place in its list: remove the comma")
+        raise SceneError.at(key, values, "has an empty entry: remove the comma")
     ranges = [item for item in items if ":" in item and isinstance(parse_value(item), str) and item[0] not in "\"'"]
     if ranges and len(items) > 1:
         raise SceneError.at(key, values, "mixes a list and a range: give one of them")
@@ -149,7 +149,7 @@ def _axis_of(key: str, values: object, option: str = "--vary", most: int = MOST_
     if not isinstance(items, list):
         items = [items]
     if not items:
-        raise SceneError.at(key, None, "has no values: give at least one")
+        raise SceneError.at(key, None, "has no values: at least one is needed")
     return _axis(key, items)
 
 
@@ -158,7 +158,7 @@ def _axis(key: str, values: Sequence[Any]) -> Axis:
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
     for position, name in enumerate(names):
         if name in names[:position]:
-            raise SceneError.at(key, values[position], "stands twice in the axis: each value once")
+            raise SceneError.at(key, values[position], "is duplicated in the axis")
     return Axis(key, tuple(values))
 
 
@@ -220,7 +220,7 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
             for option in _strange_options(changed, name, value, registry):
                 value_before = changed[name][option]
                 changed[name] = {k: v for k, v in changed[name].items() if k != option}
-                note = f"{name}.{option} = {shown(value_before)} is left out for kind '{value}', which does not know it"
+                note = f"{name}.{option} = {shown(value_before)} is omitted for kind '{value}', which lacks it"
                 if notes is not None and note not in notes:
                     notes.append(note)
         changed = with_value(changed, key, value)

@@ -186,8 +186,8 @@ class Band(Answer):
         found = []
         if far:
             found.append(
-                f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances, to another motion or other "
-                "contacts; raceway follow shows where"
+                f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances to another motion or contact "
+                "state; raceway follow shows where"
             )
         shares = [
             share
@@ -196,7 +196,7 @@ class Band(Answer):
             for share in indices_by_name[name]
         ]
         if any(abs(share - 0.5) > 0.5 + _ROUGH for share in shares):
-            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, take more --samples")
+            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, use more --samples")
         return found
 
     def _shown(self) -> tuple[str, list[Fact]]:
@@ -463,7 +463,7 @@ def uncertainty(
     if samples:
         if keys:
             raise SceneError.at(
-                "keys", ", ".join(keys), "asks for derivatives, which samples do not give: leave it or the samples out"
+                "keys", ", ".join(keys), "requests derivatives, which samples do not provide: omit it, or the samples"
             )
         if plan:
             return _samples_planned(as_scene(scene, plugins=plugins), tolerances, samples, processes)

@@ -52,9 +52,9 @@ _COLUMNS: dict[str, tuple[str, str]] = {
     "amplitude": ("m", "major semi-axis of the 1x orbit"),
     "phase_deg": ("deg", "lag of the displacement behind the force"),
     "swing": ("m", "sqrt 2 times the rms of the displacement about its mean: the amplitude of all harmonics together"),
-    "multiplier": ("1", "growth of the most persistent disturbance in a turn"),
+    "multiplier": ("1", "growth of the least damped disturbance per turn"),
     "unstable": ("1", "number of multipliers outside the unit circle"),
-    "lost": ("1", "most inner contacts that are open at once"),
+    "lost": ("1", "largest number of inner contacts open at once"),
     "error": ("1", "estimated error of the orbit over its size"),
 }
 

@@ -44,7 +44,7 @@ DOF = ("x", "y", "z", "tilt_y", "tilt_z")
 #: Arrays over ``DOF`` among the columns.
 _ARRAYS = {name: quantity for name, quantity in COLUMNS.items() if quantity.dims}
 _NUMBERS = [name for name in COLUMNS if name not in _ARRAYS]
-_WARNINGS = Quantity("warnings", "1", "number of warnings of the point: their words are in the JSON and the CSV")
+_WARNINGS = Quantity("warnings", "1", "number of warnings of the point; texts in the JSON and the CSV")
 
 
 def values_of(result: Result) -> Tables:
@@ -242,7 +242,7 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
     }
     if damaged:
         warn(
-            f"`{store.path}`: {damaged} of {design.size} rows are damaged and read as waiting; --resume computes them again",
+            f"`{store.path}`: {damaged} of {design.size} rows are damaged, read as waiting; --resume computes them again",
             stacklevel=3,
         )
     return labelled_dataset(variables, _coordinates(store, registry or default_registry()), attributes)

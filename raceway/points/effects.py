@@ -476,7 +476,7 @@ def _what_was_run(comparison: Findings) -> str:
     text += f", at {_settings(comparison.held)}" if comparison.held else ""
     text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
     unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
-    return text + (f" Of {unknown} runs no error was estimated: they count as exact." if unknown else "")
+    return text + (f" {unknown} runs without an estimated error are taken as exact." if unknown else "")
 
 
 def _few(axis: Axis) -> Sequence[object]:
@@ -496,9 +496,7 @@ def _doubts(comparison: Findings) -> list[str]:
             f"Left out of the explanation, {len(settings)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
         )
     if comparison.held and words:
-        words.append(
-            f"Some of them stand at the ends of the axes, so the effects hold for {_settings(comparison.held)} only."
-        )
+        words.append(f"Some are at the ends of the axes, so the effects hold for {_settings(comparison.held)} only.")
     return words
 
 
@@ -536,8 +534,8 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             inert.append(f"{key} ({percent(effect.log_change)})")
         else:
             weak.append(f"{key} ({percent(effect.log_change)})")
-    none = "no axis is seen to move it" if hidden else "no axis moves it"
-    order = "On average" if len(parts) < 2 else "On average, the strongest first:"
+    none = "no axis affects it" if hidden else "no axis moves it"
+    order = "On average" if len(parts) < 2 else "On average, strongest first:"
     words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
     if hidden:
         words.append(

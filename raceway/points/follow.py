@@ -350,7 +350,7 @@ class _Continuation:
         except (ConvergenceError, ValueError) as why:
             span = f"between {before.parameter:.6g} and {ahead.parameter:.6g}"
             curve.notes.append(
-                f"{span} a fold, peak or change of stability or contact is not located, take a smaller --aim ({why})"
+                f"{span} a fold, peak or change of stability or contact is not located, use a smaller --aim ({why})"
             )
 
     def _meshed(self, point: Point) -> Point:

@@ -92,6 +92,6 @@ def _section(panel: Axes, attractor: ReadTables) -> None:
         color=_OTHER,
     )
     panel.set_title(f"{attractor['parameter']:.6g}: {attractor['kind']}", fontsize=9)
-    panel.set_xlabel("y once a turn  [µm]", fontsize=8)
+    panel.set_xlabel("y once per turn  [µm]", fontsize=8)
     panel.set_ylabel("velocity / w  [µm]", fontsize=8)
     panel.tick_params(labelsize=8)

@@ -119,7 +119,7 @@ class Function:
     def why_slow(self) -> str:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
         if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._stated for n in self.outputs):
-            return "pressures are the contact law's own"
+            return "pressures are those of the contact law"
         whys = (why_no_column(self.scene, key) for key in self.inputs)
         return next(filter(None, whys), "") or why_not(self.scene, self.moving)
 
@@ -373,7 +373,7 @@ class Function:
         if seconds > _LIMIT_S:
             answer["reason"][left] = (
                 f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
-                f"{duration(seconds)}: they are made with force = True"
+                f"{duration(seconds)}: force = True runs them"
             )
             return answer
         return self._run_all(flat, left, answer)
@@ -425,7 +425,7 @@ class Function:
         if seconds > _LIMIT_S and not self.force:
             raise RacewayError(
                 f"{n} points would take about {duration(seconds)}, one run after another, because {why}: give fewer points, or force = True. "
-                "`raceway sweep` shares such points among processes and goes on where it was stopped"
+                "`raceway sweep` distributes such points among processes and resumes"
             )
 
     def _refuse_size(self, n: int) -> None:
@@ -533,13 +533,13 @@ def function(
 
 def _refuse_inputs(scene: Scene, keys: tuple[str, ...]) -> None:
     if not keys:
-        raise SceneError.at("inputs", None, "are none: a function has at least one, such as 'load.axial'")
+        raise SceneError.at("inputs", None, "are empty: a function has at least one, such as 'load.axial'")
     if doubled := [key for key in keys if keys.count(key) > 1]:
         raise SceneError.at(doubled[0], None, "is an input twice")
     for key in keys:
         key_of(scene, key)
         if scene.heat is not None and key.endswith(("_temperature", ".temperature_c")):
-            raise SceneError.at(key, None, "is computed by [heat]: it is no input")
+            raise SceneError.at(key, None, "is computed by [heat] and cannot be an input")
 
 
 def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
@@ -547,7 +547,7 @@ def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
     stated, problem = plugin_quantities(default_registry()), resolve(scene)
     for name in (name for name in names if name in stated):
         if why := why_no_quantities(getattr(scene.quantities, stated[name][0]), problem):
-            raise SceneError.at("outputs", name, f"is no number of this scene: {why}")
+            raise SceneError.at("outputs", name, f"is not a number of this scene: {why}")
 
 
 def _name(output: str) -> str:

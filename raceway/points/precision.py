@@ -336,7 +336,7 @@ class Precision(Answer):
         rows = self.judged
         errors = [row for row in rows if row["error"] is not None]
         if self.named_reference and errors and all(row["at_bound"] for row in errors):
-            message = "is not more accurate than the rows: make it finer, or leave it out and let the study find one"
+            message = "is not more accurate than the rows: refine it, or omit it for an automatic one"
             return SceneError.at("reference", None, message)
         if self.converged:
             return None

@@ -206,7 +206,7 @@ def _front(panel: Axes, result: Tables, least: float) -> None:
     points = [_point(result["rows"][number], least) for number in result["front"]]
     if points:
         x, y = zip(*points, strict=True)
-        label = "front: nothing is faster and more accurate"
+        label = "front: no setting is both faster and more accurate"
         panel.plot(x, y, color="black", linewidth=1.2, linestyle="--", drawstyle="steps-post", label=label)
         panel.plot(x, y, linestyle="", marker="o", markersize=13, markerfacecolor="none", markeredgecolor="black")
 

@@ -159,7 +159,7 @@ class Sensitivities(Answer):
             yield f"{name.replace('_', ' ')} {number:.5g} {unit}: {self.definitions[name]}"
         if self.tolerances is not None:
             yield sections(tolerance_rows(self.tolerances))
-            yield "first order holds where answers are nearly straight over the tolerances; --samples N samples them"
+            yield "first order holds where the answer is nearly linear over the tolerances; --samples N samples them"
         yield [
             {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
             | {f"{name.replace('_', ' ')} [% per %]": _percent(row.influence.get(name)) for name in self.values}

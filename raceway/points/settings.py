@@ -2,7 +2,7 @@
 
 The default design is a union of small products, one for each question, not the product of all axes:
 
-time step         every integrator with inertia x steps a turn, in halvings
+time step         every integrator with inertia x steps per turn, in halvings
 steady orbit      integrators that solve for the orbit itself x their tolerance
 few turns         the scene's integrator over three turns x few steps: what a rough answer costs
 turns and start   the scene's integrator x how the motion starts x turns, at steps so fine that only the transient is left
@@ -345,7 +345,7 @@ def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Re
 
 
 def _finest(group: list[Setting]) -> tuple[int, int]:
-    """Most steps a turn and most turns of the rows."""
+    """Most steps per turn and most turns of the rows."""
     scenes = [s.scene for s in group if s.scene is not None]
     steps = [s.integrator.steps_per_turn for s in scenes if isinstance(s.integrator.steps_per_turn, int)]
     return max(steps, default=360), max(s.integrator.turns for s in scenes)
@@ -364,7 +364,7 @@ def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Re
     values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
     floor = _all(values, max(_FLOOR, rows[1]["own_error"] or 0.0))
     bounds = {name: max(abs(change[name]), floor[name]) for name in values}
-    how = f"series of {_FINER * steps} equilibria a turn; bound by its own estimate and its change from {2 * steps}"
+    how = f"series of {_FINER * steps} equilibria per turn; bound by its own estimate and its change from {2 * steps}"
     return Reference(values, bounds, how)
 
 
@@ -400,14 +400,14 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
     turns = common["integrator.turns"]
     if len(extrapolations) == 1:
         bounds = {key: abs(change[key]) + floor[key] for key in values}
-        how = f"'{name}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by what that changes"
+        how = f"'{name}' at {steps} steps per turn, {turns} turns, extrapolated to step zero; bound by what that changes"
         return Reference(values, bounds, how)
     second_name, second, _, remainder = extrapolations[1]
     apart = minus(second, values)
     floor = _all(values, max(_FLOOR, remainder, extrapolations[0][3]))
     middle = {key: value + 0.5 * apart[key] for key, value in values.items()}
     bounds = {key: abs(apart[key]) + floor[key] for key in values}
-    how = f"'{name}' and '{second_name}' at {steps} steps a turn, {turns} turns, extrapolated to step zero; bound by their distance"
+    how = f"'{name}' and '{second_name}' at {steps} steps per turn, {turns} turns, extrapolated to step zero; bound by their distance"
     return Reference(middle, bounds, f"{how} and by what is left of the transient")
 
 

@@ -33,7 +33,7 @@ _STATES = ("waiting", "done", "failed")
 POINTS, _LOCK = "points.sqlite", ".lock"
 _COLUMNS = "key, state, reason, content, cost, digest"
 #: What a row that was damaged is read as: it waits to be computed again.
-DAMAGED = "its row in the store is damaged"
+DAMAGED = "the row in the store is damaged"
 #: Numbers of points stay numbers, hashes of cases text.
 _TABLES = (
     "CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
@@ -153,7 +153,7 @@ class Store:
         """
         with told(self.path):
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
-                raise _damaged(self.path, "its pages do not hang together")
+                raise _damaged(self.path, "its pages are inconsistent")
             sound = {
                 record[0]: self._sound(*record) for record in self._connection.execute(f"SELECT {_COLUMNS} FROM points")
             }
@@ -286,7 +286,7 @@ def _read_facts(folder: Path, texts: Mapping[str, str]) -> Tables:
         raise _damaged(folder) from None
 
 
-def _damaged(folder: Path, how: str = "what it says of its scene and design is not what was written") -> RacewayError:
+def _damaged(folder: Path, how: str = "its scene and design differ from those written") -> RacewayError:
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 

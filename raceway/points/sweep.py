@@ -340,7 +340,7 @@ def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
         difference, reasons = "another sweep", _changed(stored.facts["design"], facts["design"])
     if not reasons and stored.facts["files"] != facts["files"]:
         difference, reasons = (
-            "another content of the files that the scene names",
+            "changed files of the scene",
             sorted({*stored.facts["files"], *facts["files"]}),
         )
     if not reasons:
@@ -473,7 +473,7 @@ def executor_of(name: str | Executor, options_given: ReadTables, registry: Regis
     options: Tables = {key: value for key, value in options_given.items() if value is not None}
     if not isinstance(name, str):
         if options:
-            raise PluginError(f"{', '.join(options)}: an executor that is made already has its own")
+            raise PluginError(f"{', '.join(options)}: an executor object already has its options")
         return name
     plugin = registry.find("executor", name).plugin
     option_names = {field.name for field in attrs.fields(plugin)}

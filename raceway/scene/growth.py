@@ -347,7 +347,7 @@ def _closed_words(b: RunningBearing) -> str:
     distance, radial = b.centre_distance(_closed(b)[0])
     return (
         f"temperatures and fits close the bearing: its grooves leave {1e6 * (radial - max(distance, 0.0)):.3g} µm too little room for "
-        "the balls, which would be squeezed all around at a contact angle of 0. Take smaller differences of temperature, a looser "
+        "the balls, which would be squeezed all around at a contact angle of 0. Use smaller differences of temperature, a looser "
         "fit, or more clearance"
     )
 
@@ -357,7 +357,7 @@ def _opened_words(b: RunningBearing) -> str:
     angle, edge = degrees(b.free_angle(row)), degrees(groove_edge(b.bearing.of_rows[row]))
     return (
         f"temperatures and fits open the bearing: balls would touch at {min(angle, 90.0):.3g} deg, beyond the groove's edge at "
-        f"{edge:.3g} deg. Take smaller differences of temperature"
+        f"{edge:.3g} deg. Use smaller differences of temperature"
     )
 
 

@@ -70,7 +70,7 @@ def _ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, floa
         if outer >= warm.housing_interference:
             why = (
                 f"leaves outer rings loose: their diameter may be {1e6 * outer:.3g} µm smaller, the fit has "
-                f"{1e6 * warm.housing_interference:.3g} µm. Take a tighter one, or give tolerances of the fits by their keys"
+                f"{1e6 * warm.housing_interference:.3g} µm. Use a tighter one, or give tolerances of the fits by their keys"
             )
             raise SceneError.at(key, name, why)
         ranges["mounting.housing_interference"] = (outer, 0.0)

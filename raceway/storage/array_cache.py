@@ -198,7 +198,7 @@ def _read(path: Path) -> dict[str, np.ndarray] | None:
             out[name] = np.frombuffer(body[at : at + size], dtype=np.dtype(kind)).reshape(shape)
             at += size + -size % _ALIGNED
     except (ValueError, KeyError, TypeError) as why:
-        warnings.warn(f"{path} is damaged ({why}): its content is made anew", RuntimeWarning, stacklevel=3)
+        warnings.warn(f"{path} is damaged ({why}): its content is computed again", RuntimeWarning, stacklevel=3)
         with suppress(OSError):
             path.unlink()
         return None
@@ -273,8 +273,8 @@ def _trim(newest: Path) -> None:
 @cache
 def _warn_unwritable(folder: str, why: str) -> None:
     warnings.warn(
-        f"what was computed of the bodies cannot be stored in {folder} ({why}); the next run computes it again. Set "
-        "RACEWAY_CACHE_DIR to a folder with room that can be written, or make room by raceway dev cache --clear.",
+        f"the compliances of the bodies cannot be stored in {folder} ({why}); the next run computes it again. Set "
+        "RACEWAY_CACHE_DIR to a writable folder with space, or free space by raceway dev cache --clear.",
         RuntimeWarning,
         stacklevel=4,
     )
@@ -283,5 +283,7 @@ def _warn_unwritable(folder: str, why: str) -> None:
 @cache
 def _warn_refused(fault: str) -> None:
     warnings.warn(
-        f"what is computed of the bodies is not stored: {fault}. Every run computes it again.", RuntimeWarning, stacklevel=4
+        f"the compliances of the bodies are not stored: {fault}. Every run computes them again.",
+        RuntimeWarning,
+        stacklevel=4,
     )

@@ -55,7 +55,7 @@ _FORMATS = (
     _Format("Tektronix", r"#?(Model|Firmware Version|Waveform Type),", r"#?TIME,", "Vertical Units"),
     _Format(
         "Tektronix", r"Record Length,[^,]*,.*,",
-        fault="a file of one channel beside its settings, as TDS oscilloscopes write it: force and displacement are needed. "
+        fault="a file of one channel and its settings, as written by TDS oscilloscopes: force and displacement are needed. "
         "Join the channels in one file with a line of column headers, time_s,CH1,CH2",
     ),
     _Format("LabVIEW", r"LabVIEW Measurement", r"X_Value", "Y_Unit_Label", "X0", "Delta_X"),
@@ -154,7 +154,7 @@ def _with_units(form: _Format, heading: Heading, units: Sequence[str], tags: dic
     names = [match[1] if (match := re.fullmatch(r"X\((\w+)\)", name)) else name for name in names]
     if names.count("X_Value") > 1 or tags.get("X_Columns", [""])[0] == "Multi":
         raise ValueError(
-            f"line {heading.line}: each channel has times of its own: save one column of times (X value columns: one only)"
+            f"line {heading.line}: each channel has its own times: save one column of times (X value columns: one only)"
         )
     if (kind := tags.get("X_Dimension", ["Time"])[0]) != "Time":
         raise ValueError(f"X_Dimension is {kind}: a record over time is needed. Save the signals instead")

@@ -46,11 +46,13 @@ def refusal(folder: Path) -> str | None:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as why:
-            return f"`{parent}` cannot be looked at ({why.strerror or why})"
+            return f"`{parent}` cannot be inspected ({why.strerror or why})"
         if status.st_uid not in (os.geteuid(), 0):
             return f"`{parent}` belongs to another user (number {status.st_uid})"
         if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-            return f"others may write in `{parent}`: close it by `chmod -R go-w {parent}`, after `raceway dev cache --clear`"
+            return (
+                f"others may write in `{parent}`: restrict it by `chmod -R go-w {parent}`, after `raceway dev cache --clear`"
+            )
         if not status.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
             return None
     return None

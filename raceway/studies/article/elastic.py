@@ -229,7 +229,7 @@ def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fo
     except RacewayError as why:
         row = failure(why)
     except MemoryError:
-        reason = "the memory of this machine does not suffice: take larger elements, mesh.element_size"
+        reason = "the memory of this machine does not suffice: use larger elements, mesh.element_size"
         row = {"status": "refused", "reason": reason}
     except Exception as why:  # a fault of the program costs its run, not the study
         row = {"status": "failed", "reason": f"unexpected {type(why).__name__}: {why or 'no message'}"}

@@ -291,7 +291,7 @@ def _motion(out: Page, content: ReadTables) -> None:
     )
     if content["turns"] == 1:
         out.text(
-            "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Take `--turns 2`.",
+            "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Use `--turns 2`.",
             kind="note",
         )
 

@@ -110,7 +110,7 @@ def _friction(out: Page, content: ReadTables, pictures: dict[str, Picture]) -> N
         "of a turn, and keeps little of it. Balls that stand keep what sticks for as long as the motion repeats itself; on balls that "
         "orbit at cage speed each contact meets the force at another frequency, so that what sticks changes all the time. "
         "The two are distinguished because the article does not state how its balls move.",
-        f"With friction there is no steady orbit to solve for: where contacts stick depends on how the motion began. Those runs go "
+        f"With friction there is no steady orbit to solve for: sticking depends on the start of the motion. Those runs go "
         f"through time (integrator `newmark`, {FRICTION_TURNS} turns of {FRICTION_STEPS} steps, the force grows over two thirds of them "
         "and the last third counts) at every other speed and axial load, with rigid bodies and ball inertia.",
     )

@@ -288,7 +288,7 @@ def _row(tables: Tables, registry: Registry) -> Tables:
     if floquet is not None and floquet["verdict"] == "unstable":
         motion = attractor_beside_run(result, row["speed_rpm"], TURNS)
         row["instead"] = _plain(motion)
-        grows = f"the steady motion is unstable, disturbances grow {floquet['largest']:.4g} times a turn"
+        grows = f"the steady motion is unstable, disturbances grow {floquet['largest']:.4g} times per turn"
         status, reason = Status.UNSTABLE, f"{grows}; instead: {motion.words}"
     return {
         **row,

@@ -100,8 +100,8 @@ def columns_of(
     doubled = [(quantity, header) for quantity, header in named if quantities.count(quantity) > 1]
     if doubled:
         raise ValueError(
-            f"{where}{', '.join(sorted({quantity for quantity, _ in doubled}))} stands there twice. Found: {', '.join(map(str, columns))}. "
-            f"Leave one out: {_options([(doubled[-1][1].text, IGNORE)], where)}"
+            f"{where}{', '.join(sorted({quantity for quantity, _ in doubled}))} is duplicated. Found: {', '.join(map(str, columns))}. "
+            f"Ignore one: {_options([(doubled[-1][1].text, IGNORE)], where)}"
         )
     return {
         COLUMNS[header.name][0]: (k, COLUMNS[header.name][1] * header.scale)
@@ -267,7 +267,7 @@ def _message(columns: Sequence[_Header], where: str) -> str:
     if len(faulty) == 1:
         (text,) = (header.text for header in faulty)
         first = f"unknown column '{_shortened(text)}'{nearest(_plain(text), COLUMNS) if len(text) < 30 else ''}"
-    mend = f"Say what is meant, for instance {_options(pairs, where)}; " if pairs else ""
+    mend = f"State the quantity, for instance {_options(pairs, where)}; " if pairs else ""
     return f"{where}{first}. Found: {', '.join(map(str, columns))}. {mend}names: {_names()} ({_EXAMPLE})"
 
 

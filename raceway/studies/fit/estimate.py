@@ -84,7 +84,7 @@ def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
     """
     paths = [path.strip() for path in paths if path.strip()]
     if not paths:
-        raise SceneError.at("--free", None, "names no key: give at least one, such as bearing.contact_angle_deg")
+        raise SceneError.at("--free", None, "names no key; at least one is needed, such as bearing.contact_angle_deg")
     if twice := next((path for path in paths if paths.count(path) > 1), None):
         raise SceneError.at("--free", twice, "stands there twice")
     free = []
@@ -93,7 +93,7 @@ def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
         size = abs(key.value) or _SIZES.get(key.unit, 1.0)
         low, high = (_limit(scene, path, key.value, sign * size) for sign in (-1.0, 1.0))
         if low == high:
-            raise SceneError.at(path, key.value, "has no room to either side: its range is this one number")
+            raise SceneError.at(path, key.value, "has no range: only this one value is allowed")
         # A search begins inside its range: a number at the end of it is moved in by a little.
         inside = 1e-6 * min(size, high - low)
         free.append(Free(path, key.unit, min(max(key.value, low + inside), high - inside), size, low, high))
@@ -315,7 +315,7 @@ def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate
 
     search = least_squares(residuals, start, jacobian, ftol=_TOLERANCE, xtol=_TOLERANCE, gtol=_TOLERANCE, max_nfev=_MOST)
     if search.status <= 0:
-        why = f"no least sum of squares after {search.nfev} evaluations of the model: begin nearer to it with --set, or free fewer keys"
+        why = f"no minimum of the sum of squares after {search.nfev} evaluations of the model: start closer with --set, or free fewer keys"
         raise _at_an_end(free, search.x * sizes, ConvergenceError(why))
     return judged(tuple(free), search.x * sizes, search.fun, search.jac / sizes, stated, int(search.nfev))
 
@@ -325,8 +325,8 @@ def _at_an_end(free: Sequence[Free], values: np.ndarray, why: RacewayError) -> R
     for key, value in zip(free, values, strict=True):
         if key.margin(value) < _NEAR:
             return ConvergenceError(
-                f"`{key.name}` ran to {f'{value:.4g} {key.unit}'.rstrip()}, the end of the range that the scene's rules leave it: the data ask "
-                "for a number that is not physical. Are the data's units, loads and speeds right, and the scene's bearing that of the test?"
+                f"`{key.name}` ran to {f'{value:.4g} {key.unit}'.rstrip()}, the end of its valid range: the data require an unphysical value. Check units, "
+                "loads and speeds of the data, and the bearing of the scene"
             )
     return why
 

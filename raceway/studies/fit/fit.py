@@ -89,7 +89,7 @@ def fit(
         if record is not None and forced:
             search = partial(fit_record, record, names, mass)
         elif scene is None:
-            raise SceneError.at("scene", None, "is missing: give --scene, whose answers the data are fitted by")
+            raise SceneError.at("scene", None, "is missing: give --scene, the model to fit")
         elif signals is not None:
             read, subtracted = as_scene(scene, plugins=plugins), stated_run_out(slow_roll, run_out, columns)
             search = partial(fit_rig, signals, read, names, registry, subtracted)
@@ -104,13 +104,13 @@ def fit(
 def _refuse_foreign(record: Signals | None, forced: bool, scene: bool, mass: bool, sloped: bool) -> None:
     """``SceneError`` for an argument that does not belong to the data."""
     if forced and scene:
-        message = "a record of force and displacement is fitted by a linear model: leave it out"
+        message = "a record of force and displacement is fitted by a linear model: omit it"
         raise SceneError.at("scene", None, message)
     if sloped and (forced or record is None):
         data = "the signals of a rig, without a force" if forced else "the signals of a rig over time; the data are a table"
         raise SceneError.at("slow roll", None, f"belongs to {data}")
     if mass and not forced:
-        raise SceneError.at("mass", None, "belongs to a record of force and displacement; a scene has its own")
+        raise SceneError.at("mass", None, "belongs to a record of force and displacement; a scene has a mass")
 
 
 def fit_texts(

@@ -120,15 +120,15 @@ class Fitted(Answer):
         answer = self.estimate
         out = [_sentence(combination, self._numbers) for combination in answer.undetermined]
         if answer.freedom == 0 and not np.isfinite(answer.half).all() and not answer.undetermined:
-            out.append("as many data as free numbers, and no stated errors: nothing measures how well the numbers are known")
+            out.append("as many data as free numbers, and no stated errors: no uncertainty can be estimated")
         out += [
-            f"{name} lies at the end of its range: the data ask for more than the scene's rules allow"
+            f"{name} lies at the end of its range: the data require a value beyond the scene's rules"
             for name in answer.at_limit
         ]
         if answer.widened > 1.0:
             out.append(
-                f"the model misses the data by {answer.widened:.2g} times their stated errors: intervals are that much wider, and the "
-                "model or the errors are wrong"
+                f"the model misses the data by {answer.widened:.2g} times their stated errors: intervals are widened by it, and the "
+                "model or the stated errors are wrong"
             )
         return [*out, *self.notes]
 

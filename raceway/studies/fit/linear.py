@@ -146,7 +146,7 @@ def _spectra_of(signals: Signals) -> _Spectra:
         raise SceneError.at(source, None, text)
     for name in (*(force for _, force in pairs), *(moved for moved, _ in pairs)):
         if np.ptp(columns[name]) <= 1e-12 * np.abs(columns[name]).max():
-            raise SceneError.at(source, None, f"'{name}' is constant. Is it connected?")
+            raise SceneError.at(source, None, f"'{name}' is constant. Check its connection")
     displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
     count, interval = len(force), float(steps.mean())
     omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)
@@ -176,11 +176,11 @@ def _free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> 
     parts: list[str] = []
     for word in (name.strip() for name in names if name.strip()):
         if word not in words:
-            why = f"is no number of the linear model of a record of force and displacement: take {', '.join(words)}"
+            why = f"is no number of the linear model of a record of force and displacement: use {', '.join(words)}"
             raise SceneError.at("--free", word, why)
         parts += [part for part in words[word] if part not in parts]
     if not parts:
-        raise SceneError.at("--free", None, f"names no number: take {', '.join(words)}")
+        raise SceneError.at("--free", None, f"names no number: use {', '.join(words)}")
     if "mass" in parts and mass is not None:
         raise SceneError.at("--mass", mass, "is free, too: a mass is either known or fitted")
     parts += ["mass"] * (mass is None and "mass" not in parts)
@@ -376,7 +376,7 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
         return alone
     problem.remarks.append(
         f"the force is not over at half the sampling rate ({0.5 / spectra.time[1]:.4g} Hz), where it has {100.0 * share:.2g} % of its "
-        "largest line: sampled without a filter, what lies beyond is folded back. Filter it, or sample faster"
+        "largest line: without a filter, higher frequencies are aliased. Filter the signal, or sample faster"
     )
     moved = force[spectra.indices][:, None, :] * np.array([1.0, 1j])[:, None] * np.sqrt(2.0 / variance)[:, None, :]
     columns = np.einsum("nkb,ab->nakb", moved, np.eye(d)).reshape(len(hz), d, -1)
@@ -398,7 +398,7 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
     answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)
     words, notes = {_word(number.name) for number in free}, [*getattr(record, "notes", ())]
     if mass is None and not any("mass" in name for name in names):
-        notes.append("mass was neither free nor given: it is free, too. --mass gives it; --mass 0 where nothing moves along")
+        notes.append("mass was neither free nor given: it is free, too. Set it by --mass; 0 where no mass moves")
     if absent := [word for word in ("K", "C") if word not in words]:
         notes.append(f"{' and '.join(absent)} {'are' if len(absent) > 1 else 'is'} not free: taken as 0")
     notes += model.remarks
@@ -409,7 +409,7 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
         notes.append(f"the model leaves {100.0 * part:.2g} % of the force (root mean square): {remedy}")
     for number, value, half in zip(answer.free, answer.values, answer.half, strict=True):
         if number.name in ("K", "mass", "kyy", "kzz") and value + half < 0.0:
-            question = "does the force's sign mean that of the displacement, and is the mass known?"
+            question = "check the signs of force and displacement, and the mass"
             notes.append(f"{number.name} is negative: {question}")
     title = f"F = K x + C x' + m x'', {spectra.omega[0] / 2.0 / np.pi:.4g} to {spectra.omega[-1] / 2.0 / np.pi:.4g} Hz"
     series = _series(model, answer, residuals)

@@ -149,7 +149,7 @@ def _read(source: str, table: _Set, factors: _Set | None, number: str, meant: st
     form = form or next((name for name, pair in _FORMS.items() if pair == kinds), "")
     if form not in _FORMS:
         raise ValueError(
-            f"function {number} states no form that is known ({meant or f'data types {kinds[0]} over {kinds[1]}'}): "
+            f"function {number} states no known form ({meant or f'data types {kinds[0]} over {kinds[1]}'}): "
             f'--map "{number}=FORM", one of {", ".join(_FORMS)}'
         )
     if scale is None:
@@ -181,7 +181,9 @@ def _read(source: str, table: _Set, factors: _Set | None, number: str, meant: st
         values = -values
         notes.append("force and response are counted in opposite directions: the sign is reversed")
     if not _at_one_point(table):
-        notes.append(f"force and response are of two points ({_words(table)}): K is that between them, no drive point's")
+        notes.append(
+            f"force and response are of two points ({_words(table)}): K is a transfer stiffness, not that of the drive point"
+        )
     return FrequencyResponse(source, hz, values, tuple(notes))
 
 

@@ -229,11 +229,9 @@ class _RigResiduals:
 
     def notes(self) -> list[str]:
         """Sentences that a reader of the numbers needs."""
-        out = [
-            "shaft, unbalance and sensor's place of [rig] are taken as known: what they are off by is no part of the intervals"
-        ]
+        out = ["shaft, unbalance and sensor position of [rig] are taken as exact: their errors are not in the intervals"]
         if not self.component.marked:
-            out.append("no mark (`key`): the line's size alone is fitted")
+            out.append("no mark (`key`): only the amplitude is fitted")
         if self.run_out is None:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
         return out
@@ -280,8 +278,8 @@ def _refuse_across(free: Sequence[Free]) -> None:
     """``SceneError`` for keys that a rig which whirls in circles does not have."""
     for key in free:
         if key.name.partition(".")[0] in ("excitation", "rotor") and key.name != "rotor.damping":
-            message = "is the rig's: its table [rig] says unbalance and shaft, and the record the speed"
+            message = "is defined by the rig: unbalance and shaft by its table [rig], the speed by the record"
             raise SceneError.at(key.name, None, message)
         if key.name.startswith(("load.radial", "load.moment")):
-            message = "the rig is taken to whirl in circles: no load across its axis can be free"
+            message = "circular whirl of the rig is assumed: radial loads cannot be free"
             raise SceneError.at(key.name, None, message)

@@ -129,7 +129,7 @@ def _numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
     try:
         values = np.atleast_1d(np.asarray(array, dtype=float))
     except (OverflowError, TypeError, ValueError):
-        raise ValueError(f"column '{header}' holds something that is no number") from None
+        raise ValueError(f"column '{header}' contains a value that is not a number") from None
     if values.ndim != 1:
         raise ValueError(f"column '{header}' has the shape {values.shape}: one number per {word} is needed, (n,)")
     if not np.isfinite(values).all():
@@ -270,8 +270,8 @@ def _clipping(name: str, signal: np.ndarray) -> str:
         share = float((signal == end).mean())
         if share > 2.0 * usual + _AT_THE_END:
             return (
-                f"{100.0 * share:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is cut off there. "
-                "Take a larger range of the sensor or of its amplifier, and record again"
+                f"{100.0 * share:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is clipped. "
+                "Record again with a larger range of sensor or amplifier"
             )
     return ""
 

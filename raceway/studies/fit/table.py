@@ -100,7 +100,7 @@ def measurements_in(
     try:
         kinds = _columns(table.header, scene, columns or {})
         if not len(table.values):
-            raise ValueError("has no measurements: a line of numbers each is needed below the column headers")
+            raise ValueError("has no measurements: rows of numbers are needed below the column headers")
         parts: dict[str, dict[str, np.ndarray]] = {"key": {}, "value": {}, "error": {}, IGNORE: {}}
         for k, (kind, name, factor) in enumerate(kinds):
             parts[kind][name] = factor * table.values[:, k]
@@ -137,7 +137,7 @@ def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> l
         )
     if "kyy_tilts_follow" in values and scene.supports.tilt == "locked":
         raise ValueError(
-            "kyy_tilts_follow is none of a scene with supports.tilt = 'locked': name it kyy, or let the tilts follow"
+            "kyy_tilts_follow needs free or sprung tilts, and supports.tilt = 'locked': name it kyy, or change supports.tilt"
         )
     if lonely := next((name for kind, name in names if kind == "error" and name not in values), None):
         raise ValueError(f"'{lonely} error' has no column {lonely} beside it")
@@ -164,7 +164,7 @@ def _column(text: str, header: str, keys: Mapping[str, Key], measured: Sequence[
     if len(paths) != 1:
         raise ValueError(
             f"unknown column '{header}'{nearest(name, [*measured, *keys])}. Known are {', '.join(measured)}, each with a unit, '... error', "
-            f'keys of the scene; --map "{header}=NAME" says what it is, or {IGNORE}'
+            f'keys of the scene; --map "{header}=NAME" names it, or {IGNORE}'
         )
     return "key", paths[0], _factor(header, keys[paths[0]].unit, unit) if unit else 1.0
 
@@ -234,7 +234,7 @@ class _TableResiduals:
         for row in np.flatnonzero(answer["reason"] != ""):
             raise RacewayError(f"measurement {row + 1}: {answer['reason'][row]}")
         if C.symbol in self.measured.values and not resolved(answer["z_real"], answer["z_imag"]).all():
-            raise SceneError.at(C.symbol, None, "is no number that this scene has: its motion has too little of it")
+            raise SceneError.at(C.symbol, None, "is not a number of this scene: its motion has too little of it")
         return {name: _measured(answer, name) for name in self.measured.values}
 
     def _function(self, more: Iterable[str] = ()) -> Function:
@@ -264,7 +264,7 @@ class _TableResiduals:
             try:
                 columns[cause] = self._slopes(list(same[0].sizes), sizes).sum(axis=0)[:, None]
             except SceneError as why:
-                left_out.append(f"the uncertainty of {cause} is no part of the intervals: {why.mistakes[0].message}")
+                left_out.append(f"the uncertainty of {cause} is not in the intervals: {why.mistakes[0].message}")
         return columns, left_out
 
     def _slopes(self, paths: list[str], sizes: np.ndarray | float = 1.0) -> np.ndarray:
@@ -274,7 +274,7 @@ class _TableResiduals:
         out = [sizes * np.array([_measured(slope, name) for slope in by_keys]) / weights[name] for name in weights]
         for k, path in enumerate(paths):
             if not all(np.isfinite(part[k]).all() for part in out):
-                raise SceneError.at(path, None, "has no derivative: beside a measurement the scene has no answer")
+                raise SceneError.at(path, None, "has no derivative: near a measurement the scene has no answer")
         return np.concatenate(out, axis=1)
 
     def notes(self) -> list[str]:
@@ -309,7 +309,7 @@ def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted
     causes, left_out = problem.uncertain()
     notes = [*problem.notes(), *left_out]
     if "conformit" not in " ".join([*causes, *names, *left_out, *measured.keys]):
-        notes.append("groove conformities are taken as exact: [tolerances] of the scene says by how much they may be off")
+        notes.append("groove conformities are taken as exact: state their uncertainty in [tolerances]")
     for cause, columns in causes.items():
         answer = answer.with_shifts(cause, columns)
     series = _series(measured, scene, answer, fitted, causes)

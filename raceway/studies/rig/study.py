@@ -415,10 +415,10 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
 
 
 _ASSUMED = [
-    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are left out.",
+    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are neglected.",
     "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
-    "The bearing is the scene's, nonlinear: force and moment of the shaft act on it in a run of its own, until shaft and "
-    "bearing move alike. Motion at other orders than 1x is left out of the signals.",
+    "The bearing is the scene's, nonlinear: force and moment of the shaft are iterated until shaft and bearing motions "
+    "agree. Motion at other orders than 1x is left out of the signals.",
     "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
 ]
 
@@ -472,10 +472,10 @@ def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str
     out.figures([
         (drawn["signals"], "gaps along y and z over four turns, and their drift", f"The sensor at {point}"),
         (drawn["spectrum"], "amplitude over orders, one peak at 1x forward", "Spectrum over orders"),
-        (drawn["orbits"], "orbits as circles: sensor, bow, bearing", "Orbits: most of what the sensor sees is the shaft's bow"),
+        (drawn["orbits"], "orbits as circles: sensor, bow, bearing", "Orbits: most of the sensor signal is the bow of the shaft"),
     ])  # fmt: skip
     out.section("Where the error comes from")
-    out.text("One cause at a time is switched on, all others off. Dashed: 1 % and 3 %; a dot for each speed and load.")
+    out.text("One cause at a time is switched on. Dashed: 1 % and 3 %; a dot for each speed and load.")
     alternative = "dots of error for each cause on a logarithmic scale"
     out.figures([(drawn["error-split"], alternative, "Error of K by its causes")], wide=True)
     causes_of_points = zip(*(row["split"] for row in rows), strict=True)

@@ -151,7 +151,7 @@ class NodeBearing:
             q[inside] -= np.linalg.solve(tangent[np.ix_(inside, inside)], residual[inside])
         else:
             where = np.array2string(displacement, precision=3)
-            raise ConvergenceError(f"the ring finds no equilibrium at the node's displacement {where} m")
+            raise ConvergenceError(f"the ring has no equilibrium at the node's displacement {where} m")
         force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
         force[shared], slope[np.ix_(shared, shared)] = residual[shared], _condensed(tangent, shared, inside)
         if inside:  # the residual of the iteration
@@ -205,7 +205,7 @@ def node_bearing(
     if not damping >= 0.0 or not np.isfinite(damping):
         raise SceneError.at("damping", damping, "must be a finite damping of at least 0 N s/m")
     if scene.contact.friction > 0.0:
-        rule = "takes work from every motion, which a stiffness does not contain: set it to 0 and give `damping` instead"
+        rule = "dissipates, which a stiffness does not contain: set it to 0 and use `damping`"
         raise SceneError.at("contact.friction", scene.contact.friction, rule)
     find = default_registry().find
     scene = attrs.evolve(

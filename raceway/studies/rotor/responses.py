@@ -100,7 +100,7 @@ def run_unbalance_response(
 def _rolling_bearings(rotor: Rotor, method: str) -> list[RollingBearing]:
     bearings = [element for element in rotor.bearing_elements if isinstance(element, RollingBearing)]
     if not bearings:
-        raise RacewayError(f"the rotor stands on no raceway.ross.RollingBearing: take rotor.{method}")
+        raise RacewayError(f"the rotor has no raceway.ross.RollingBearing: use rotor.{method}")
     return bearings
 
 
@@ -223,13 +223,13 @@ def run_time_response(
     bearings = _rolling_bearings(rotor, "run_time_response")
     if np.ndim(speed):
         raise RacewayError(
-            "`speed`: nonlinear bearing forces are of one speed; for a run-up take rotor.run_time_response, whose bearings "
+            "`speed`: nonlinear bearing forces are of one speed; for a run-up use rotor.run_time_response, whose bearings "
             "have the stiffness of small motions at each speed"
         )
     unknown = sorted(set(options) - set(_OPTIONS))
     if unknown:
         raise RacewayError(
-            f"`{unknown[0]}` is no option here, beside nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are"
+            f"`{unknown[0]}` is not an option with nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are"
         )
     forces, times = np.asarray(F, dtype=float), np.asarray(t, dtype=float)
     if forces.shape != (len(times), rotor.ndof):
@@ -284,4 +284,6 @@ class _NonlinearForce:
             q = q + change
             if np.abs(change).max() <= _TOLERANCE * np.abs(q).max() + _SMALL:
                 return extra + slope @ change
-        raise ConvergenceError("the bearings' forces and the rotor's step find no common displacement: take shorter steps")
+        raise ConvergenceError(
+            "the bearings' forces and the rotor's step do not converge to a common displacement: use shorter steps"
+        )

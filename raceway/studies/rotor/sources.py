@@ -38,8 +38,8 @@ def _rotating(selection: Selection) -> Matrices:
     kind = selection.value("excitation.kind")
     if kind == "unidirectional":
         raise RacewayError(
-            "a force along one direction does not show whether the bearing is the same in the other one. Sweep with "
-            f"excitation.kind = bidirectional, over several directions with --grid {DIRECTION}=0,45,90, or take the tangent "
+            "a force along one direction does not show whether the bearing is isotropic. Sweep with "
+            f"excitation.kind = bidirectional, over several directions with --grid {DIRECTION}=0,45,90, or use the tangent "
             "of the equilibrium with --from tangent"
         )
     data = selection.dataset
@@ -48,7 +48,7 @@ def _rotating(selection: Selection) -> Matrices:
     if share > _MOST_ANISOTROPY:
         raise RacewayError(
             f"the bearing is not isotropic: the orbit's counter-rotating part reaches {share:.1%} of the rotating one (at most "
-            f"{_MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not determine them. Take the tangent of the "
+            f"{_MOST_ANISOTROPY:.0%}), so that kyy and kzz differ, and one number does not determine them. Use the tangent of the "
             "equilibrium with --from tangent, or sweep a fixed force over both directions with excitation.kind = unidirectional "
             f"and --grid {DIRECTION}=0,45,90"
         )
@@ -80,7 +80,7 @@ def _directions(selection: Selection) -> Matrices:
     if selection.value("rotor.polar_inertia", 0.0) and selection.value("supports.tilt") != "locked":
         raise RacewayError(
             "gyroscopic moments (rotor.polar_inertia with free tilts) make the matrix unsymmetric, which forces along fixed "
-            "directions do not resolve: set rotor.polar_inertia=0, the rotor model brings its own"
+            "directions do not resolve: set rotor.polar_inertia=0, which the rotor model includes"
         )
     data = selection.dataset
     z = data[Z_REAL.name].values + 1j * data[Z_IMAG.name].values
@@ -101,8 +101,8 @@ def _directions(selection: Selection) -> Matrices:
     else:
         if widest > _MOST_ANISOTROPY:
             raise RacewayError(
-                f"a force along y moves the ring along z by {widest:.1%} of its motion along y: cross terms are there, and two "
-                f"directions do not determine them. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
+                f"a force along y moves the ring along z by {widest:.1%} of its motion along y: two directions do not determine these "
+                f"cross terms. Sweep with --grid {DIRECTION}=0,45,90, or choose --from tangent"
             )
         cross = np.zeros_like(h[0])
         note = f"no cross terms: a force along one direction moves the ring across by at most {widest:.1e} of its motion"
@@ -164,7 +164,7 @@ def _tangent(selection: Selection) -> Matrices:
     size = float(np.max(coupling / np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))[..., None]))
     if size > 1e-6:
         notes.append(f"left out: the coupling of axial and radial motions, {size:.1e} of the geometric mean of kxx and kyy")
-    notes.append("small motions about the equilibrium under the constant loads: the unbalance does not change them")
+    notes.append("small motions about the equilibrium under the constant loads, independent of the unbalance")
     if selection.value("bearing.preload_kind") == "spring":
         notes.append("rows on the spring follow without friction; kxx with these rows held, as in a motion, is larger")
     damping = np.zeros_like(radial)
@@ -250,7 +250,7 @@ def _rotor(selection: Selection) -> list[str]:
     inertias = [key for key in ("rotor.transverse_inertia", "rotor.polar_inertia") if selection.value(key, 0.0)]
     if inertias and selection.value("supports.tilt", "locked") != "locked":
         notes.append(
-            f"{' and '.join(inertias)} resist the free tilt in these numbers, and do so again in a rotor model: sweep with 0"
+            f"{' and '.join(inertias)} resist the free tilt in these numbers and would count twice in a rotor model: sweep with 0"
         )
     if selection.value("rotor.damping", 0.0):
         notes.append("rotor.damping is part of cyy and czz")
@@ -262,8 +262,8 @@ def _mass(selection: Selection) -> list[str]:
     if not np.any(mass):
         return ["K = Re Z: the motion has no inertia (quasi-static)"]
     return [
-        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is taken out; a rotor model brings its own, "
-        "with the inner ring's where its shaft does not include it"
+        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is removed; the rotor model includes it, with the "
+        "inner ring where its shaft does not"
     ]
 
 
@@ -271,6 +271,4 @@ def _amplitude(selection: Selection) -> list[str]:
     force = selection.dataset["force_amplitude"].values
     low, high = float(np.min(force)), float(np.max(force))
     size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
-    return [
-        f"under forces of amplitude {size}; a rotor model takes the numbers as linear: where its bearing force differs, iterate"
-    ]
+    return [f"under forces of amplitude {size}; in a rotor model, iterate where the bearing force differs"]

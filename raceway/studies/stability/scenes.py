@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 _SLOPE = 1e-5
 _SLOPE_WHY = "a difference over 1e-3 of the penetration, to 1e-8 of which elastic balls are placed: 1e-5 of the balls' loads"
 #: What |Z| of a motion is compared with; "any": a user's scene, which ``periodic`` may be unable to take; "finer": no orbit is
-#: steady, or friction remembers how the motion began, so that the same motion in finer steps is the truth.
+#: steady, or friction: the motion depends on its start, so that the same motion in finer steps is the truth.
 _JUDGES: dict[str, Tables] = {
     "orbit": {"integrator.kind": "periodic"},
     "slow": {"integrator.kind": "quasi_static"},

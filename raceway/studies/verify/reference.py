@@ -16,7 +16,7 @@ from raceway.storage.tables import Tables
 BASES = {
     "published": "published numbers",
     "closed form": "numbers of closed forms",
-    "own": "numbers of this program by two ways",
+    "own": "internal comparisons",
 }
 
 

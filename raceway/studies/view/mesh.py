@@ -209,7 +209,7 @@ def mesh(
     try:
         meshes = mesh_bodies(resolve(scene))
     except MemoryError:
-        raise SceneError.at("mesh", None, "needs more memory than there is: choose larger elements") from None
+        raise SceneError.at("mesh", None, "needs more memory than available: choose larger elements") from None
     seconds = time.perf_counter() - start
     progress("judging the cells", 0, 0)
     content: Tables = {"title": scene.title, "mesher": scene.mesh.name, "seconds": seconds, **summary(meshes), "files": []}

@@ -269,7 +269,7 @@ def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("radius [mm]")
-    axes.set_title("section, rings as they stand unloaded", fontsize=11)
+    axes.set_title("section, rings unloaded", fontsize=11)
     axes.spines[["top", "right"]].set_visible(False)
 
 

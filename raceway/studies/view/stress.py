@@ -98,11 +98,11 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
 
 def contacts_left_out(result: Result) -> str:
     """What all elements' stresses lack of the contacts' own, for titles; empty where the mesh resolves the most loaded ones."""
-    words = "structure only, without the contacts' own stresses"  # resultants press on footprints far wider than Hertz's
+    words = "structure only, without contact stresses"  # resultants press on footprints far wider than Hertz's
     if not result.model.traits.resultants:
         if all(side.resolved for side in below_contacts(result.model.bearing, result.model, result.equilibrium)):  # type: ignore[arg-type]
             return ""
-        words = "the mesh does not resolve the contacts' own stresses"
+        words = "the mesh does not resolve contact stresses"
     peak = pressures(result.model, result.equilibrium.contact_force).max()
     return f"{words} (Hertz's pressure up to {1e-6 * peak:.4g} MPa)"
 

@@ -157,7 +157,7 @@ def _at_peak(result: Result) -> tuple[State, float]:
     SceneError: a result without motion.
     """
     if result.simulation is None:
-        message = "nothing moves in this scene: give it the table [excitation], and an identifier that looks at motion"
+        message = "no motion in this scene: add a table [excitation], and an identifier of motions"
         raise SceneError.at("excitation", None, message)
     record, model = result.simulation.record, result.model
     per_turn = max(record.schedule.steps_per_turn // record.schedule.stride, 1)
@@ -277,7 +277,7 @@ def _loads(state: State) -> str:
 
 def _widened(bearing: Bearing, state: State) -> str:
     factor = bearing.widening(state)
-    return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are {factor} times as large as they are"
+    return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are enlarged {factor} times"
 
 
 def _bearing_words(result: Result) -> str:
