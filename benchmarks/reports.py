@@ -221,21 +221,13 @@ def documents() -> list[Path]:
 
 
 def misses(reports: dict[str, dict[str, Any]], links: str = "") -> str:
-    """Every row outside its limits as a Markdown table; the reason is in its report."""
-    return _markdown(
-        ("report", "quantity", "value", "limit"),
-        (
-            (
-                f"[{name}]({links}{name}.json)",
-                row["quantity"],
-                shown(row["value"]),
-                limits(row["low"], row["high"]),
-            )
-            for name, data in reports.items()
-            for row in data["rows"]
-            if not holds(row)
-        ),
-    )
+    """Every row outside its limits under its report as a Markdown table; the reason is in the report."""
+    cells: list[tuple[str, ...]] = []
+    for name, data in reports.items():
+        rows = [row for row in data["rows"] if not holds(row)]
+        cells += [(f"**[{name}]({links}{name}.json)**",)] if rows else []
+        cells += [(row["quantity"], f"{shown(row['value'])}, {limits(row['low'], row['high'])}") for row in rows]
+    return _markdown(("quantity", "value, limit"), cells)
 
 
 def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:

@@ -21,13 +21,13 @@ Made by `python -m benchmarks.documents` from the commands.
 |---|---|
 | `--set table.key=value` | change a key of the scene, with or without unit; repeat for more |
 | `--plugin FILE.py` | a one-off plug-in file; repeat for more |
+| `--out DIR` | folder of the results; default: `raceway-out/TITLE`, with the name of the command after TITLE where it is not `run` or `view` |
 | `--pictures`, `--no-pictures` | draw pictures as PNG (studies: by default) |
 | `--json` | print one JSON object only, errors too |
 | `-v`, `--verbose` | report on stderr what is computed |
 | `--debug` | show tracebacks |
 | `-h`, `--help` | show the help |
 
-- Results go to `raceway-out/TITLE`, or to the folder of `--out`.
 - After a second a terminal shows progress on stderr.
 - Exit codes: 0 success, 1 numerical failure, 2 a mistake in the scene or on the command line; 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP.
 
@@ -61,7 +61,10 @@ def walk(group: click.Group, path: str) -> Iterator[tuple[str, click.Command]]:
 
 
 #: Options that all commands share, and the lines of a help that they take.
-_SHARED = re.compile(r"^  (?:-\w, )?--(?:set A|plugin|pictures|json|verbose|debug|help)\b.*\n(?: {5,}.*\n)*", re.MULTILINE)
+_SHARED = re.compile(
+    r"^  (?:-\w, )?--(?:set A|plugin|pictures|out DIR +Folder .raceway|json|verbose|debug|help)\b.*\n(?: {5,}.*\n)*",
+    re.MULTILINE,
+)
 
 
 def section(name: str) -> str:

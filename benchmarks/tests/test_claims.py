@@ -42,7 +42,7 @@ def test_what_does_not_hold_fails_and_leaves_no_row(rows, value, limits, words):
 def test_a_stated_miss_stays_visible(rows):
     claims_into(rows)("x", 2.0, at_most=1.0, basis="own other method", misses="the mesh is coarse")
     data = {"rows": [rows[0][1]]}
-    assert files.misses({"one": data}).endswith("| [one](one.json) | x | 2 | ≤ 1 |")
+    assert files.misses({"one": data}).endswith("| **[one](one.json)** |\n| x | 2, ≤ 1 |")
     assert "| x | **2**, ≤ 1 | 1; misses: the mesh is coarse |" in files.table(data)
 
 

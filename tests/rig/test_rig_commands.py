@@ -137,7 +137,7 @@ FILES = {
     "unit that is not known": (GOOD.replace("y_um", "y_mil"), "line 1: unknown column 'y_mil' (did you mean"),
     "no z": ("\n".join(line.replace(",2.0", "").replace(",z_um", "") for line in GOOD.splitlines()), "no column for z"),
     "no speed": ("\n".join(line.rpartition(",")[0] for line in GOOD.splitlines()), "line 1: no speed"),
-    "twice": (GOOD.replace("z_um", "y_m"), "y stands there twice"),
+    "twice": (GOOD.replace("z_um", "y_m"), "y is duplicated"),
     "NaN": (GOOD.replace("0.0030,1.0,", "0.0030,nan,"), "line 32: a sample is missing (0.0030,nan,2.0,0): cut the record there"),
     "empty cell": (GOOD.replace("0.0030,1.0,", "0.0030,,"), "line 32: 4 numbers are needed, found '0.0030,,2.0,0'"),
     "short line": (GOOD.replace("0.0030,1.0,", "0.0030,"), "line 32: 4 numbers are needed"),
