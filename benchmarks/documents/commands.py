@@ -68,7 +68,7 @@ _SHARED = re.compile(
 
 
 def section(name: str) -> str:
-    """One command: its help, 80 columns wide, without what all commands share."""
+    """One command: its usage as heading and its help, 80 columns wide, without what all commands share."""
     text = CliRunner().invoke(main, [*name.split()[1:], "--help"], prog_name="raceway", terminal_width=80).output
     # The default of workers is the number of cores of the machine that writes the page.
     text = (
@@ -76,4 +76,6 @@ def section(name: str) -> str:
         .removesuffix("Options:\n")
         .partition("\nCommands:")[0]
     )
-    return f"### {name}\n\n```text\n{text.rstrip()}\n```\n"
+    usage, _, text = text.partition("\n\n")
+    heading = " ".join(usage.removeprefix("Usage: ").replace("[OPTIONS]", "").split())
+    return f"### `{heading}`\n\n```text\n{text.rstrip()}\n```\n"
