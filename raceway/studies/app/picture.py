@@ -44,6 +44,8 @@ _OF_MOTIONS = (K.name, C.name, "largest_multiplier", "peak_ball_load")
 _TOGETHER = ("temperature",)
 _OVER_LOAD = ("stiffness", "ball load", "pressure p0", "reference life L10r")
 _ORBIT_POINTS = 181
+#: Few, so that browsers without a graphics card draw them in a tenth of a second.
+_FACETS = 60
 
 
 @attrs.frozen
@@ -125,7 +127,7 @@ def bodies_picture(result: Result, rings: bool) -> Tables:
         Rows of different bearings.
     """
     bearing, state = Bearing.of(result), at_rest(result)
-    return {**(rings_data(bearing) if rings else {}), **state_data(bearing, state)}
+    return {**(rings_data(bearing, _FACETS) if rings else {}), **state_data(bearing, state)}
 
 
 def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:

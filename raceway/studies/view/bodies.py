@@ -117,8 +117,8 @@ def _contact_patch(
     centre, towards, along : (3,) the ball's centre [mm], unit vectors to the contact and in the rolling direction
     half : semi-axes across and in the rolling direction [mm];  peak : its largest pressure
     """
-    share = np.linspace(0.0, 1.0, 7)[:, None]
-    angle = np.linspace(0.0, 2.0 * pi, 33)[None, :]
+    share = np.linspace(0.0, 1.0, 6)[:, None]
+    angle = np.linspace(0.0, 2.0 * pi, 25)[None, :]
     across = np.cross(along, towards)
     s, t = half[0] * share * np.cos(angle), half[1] * share * np.sin(angle)
     on_plane = 0.5 * diameter * towards + s[..., None] * across + t[..., None] * along
@@ -256,11 +256,11 @@ class Bearing:
         turn = np.cross([0.0, tilt_y, tilt_z], points)
         return np.asarray(points + turn + [x, y, z])
 
-    def rings(self, cut: tuple[float, float] | None = _CUT, glass: bool = True) -> list[Part]:
-        """Both rings of each row at rest, without the azimuths between ``cut``; ``glass``: one sees through the outer one."""
+    def rings(self, cut: tuple[float, float] | None = _CUT, glass: bool = True, facets: int = 120) -> list[Part]:
+        """Both rings of each row at rest, without the azimuths between ``cut``; ``glass``: one sees through the outer one; of ``facets``."""
         parts = []
         low, high = (0.0, 0.0) if cut is None else cut
-        azimuths = np.linspace(high, low + 2.0 * pi, 121)
+        azimuths = np.linspace(high, low + 2.0 * pi, facets + 1)
         for inner, colour in ((True, INNER), (False, OUTER)):
             for side, axial in self.shape.rows:
                 race, seat = self.lines(inner, side, axial)
@@ -279,7 +279,7 @@ class Bearing:
 
         shape = ring_shape(self.shape, inner)
         outline = shape.outline
-        arc = shape.surface(np.linspace(*outline.edges, 25))
+        arc = shape.surface(np.linspace(*outline.edges, 17))
         race = np.concatenate([outline.left[:-1], arc, outline.right[1:]])
         seat = np.column_stack([race[:, 0], np.interp(race[:, 0], *outline.seat.T)])
         lines = [_MM * (line * [side, 1.0] + [axial, 0.0]) for line in (race, seat)]

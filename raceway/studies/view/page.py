@@ -86,14 +86,17 @@ def _stage(bearing: Bearing, state: State) -> str:
     return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
 
 
-def rings_data(bearing: Bearing) -> Tables:
-    """Shapes that loads do not change, and the parts that they draw, for ``view.js``."""
+def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
+    """Shapes that loads do not change, and the parts that they draw, for ``view.js``; ``facets`` round a ring, a quarter round a ball."""
     from matplotlib.colors import to_rgb
 
-    rings = bearing.rings()
+    rings = bearing.rings(facets=facets)
     shapes = {f"ring {k}": _packed(part.surface) for k, part in enumerate(rings)}
     parts = [_part(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white"))) for k, part in enumerate(rings)]
-    return {"fixed_shapes": {"ball": _packed(ball(bearing.diameter, 20, 32)), **shapes}, "fixed_parts": parts}
+    return {
+        "fixed_shapes": {"ball": _packed(ball(bearing.diameter, facets // 6, facets // 4)), **shapes},
+        "fixed_parts": parts,
+    }
 
 
 def state_data(bearing: Bearing, state: State) -> Tables:
