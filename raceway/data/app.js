@@ -121,14 +121,14 @@ window.raceway_app = (function () {
     methods: {
       show() {
         if (!this.bodies || this.bodies.why || !this.rings) return;
-        const news = this.seen === this.rings.number ? this.bodies : { ...this.rings, ...this.bodies };
+        const state = JSON.parse(this.bodies.bodies), news = this.seen === this.rings.number ? state : { ...JSON.parse(this.rings.rings), ...state };
         this.seen = this.rings.number;
         if (this.drawing) this.drawing.update(news);
         else {
           this.drawing = raceway_stage(this.$refs.stage, this.$refs.words, (ring) => this[ring], news);
           if (!this.drawing) this.none = "This browser has no WebGL: the tables and curves have the same numbers.";
         }
-        this.$refs.bars.innerHTML = this.bodies.bars.join("");  // made by the server from numbers alone
+        this.$refs.bars.innerHTML = state.bars.join("");  // made by the server from numbers alone
       },
     },
     template: `<div v-show="bodies && !bodies.why && !none"><div class="stage" ref="stage"><canvas role="img" :aria-label="'Bearing ' + name + ' in three dimensions'"></canvas></div>

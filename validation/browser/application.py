@@ -35,7 +35,11 @@ const before = app.dataset.number, begun = performance.now();
 field.value = value;
 field.dispatchEvent(new Event("input"));
 field.dispatchEvent(new Event("change"));
-const painted = () => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now() - begun)));
+const painted = () => requestAnimationFrame(() => {  // a message is read after the frame was painted
+  const channel = new MessageChannel();
+  channel.port1.onmessage = () => done(performance.now() - begun);
+  channel.port2.postMessage(0);
+});
 const seen = new MutationObserver(() => {
   if (app.dataset.number !== before && app.dataset.done === app.dataset.number) { seen.disconnect(); painted(); }
 });

@@ -94,7 +94,7 @@ class Browser:
             "headless=new",
             "no-sandbox",
             "disable-dev-shm-usage",
-            "use-angle=swiftshader",
+            "disable-gpu",
             "enable-unsafe-swiftshader",
         ):
             options.add_argument(f"--{word}")

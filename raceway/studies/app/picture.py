@@ -20,9 +20,9 @@ from raceway.scene.changes import continuous_keys
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 from raceway.studies.rotor.export import export_ross
-from raceway.studies.view.bodies import Bearing
+from raceway.studies.view.bodies import Bearing, State
 from raceway.studies.view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
-from raceway.studies.view.view import at_rest
+from raceway.studies.view.view import at_rest as at_rest
 
 #: Relative tolerance of the orbits of curves, far below what is seen.
 _TOLERANCE = 1e-6
@@ -88,8 +88,8 @@ def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str
     return axes
 
 
-def result_picture(result: Result) -> Tables:
-    """The screen of a run, ball by ball, and the orbit.
+def result_picture(result: Result, state: State) -> Tables:
+    """The screen of a run, ball by ball, and the orbit; ``state``: of the bearing at rest.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def result_picture(result: Result) -> Tables:
     """
     content = result.to_dict()
     parts = screen(content)
-    state, balls = at_rest(result), content["equilibrium"]["balls"]
+    balls = content["equilibrium"]["balls"]
     polar = [[ball["azimuth_deg"], ball["load_inner_n"], ball["load_outer_n"]] for ball in balls]
     return {
         "title": parts.title, "bearing": parts.bearing, "warnings": parts.warnings, "left_out": parts.left_out,
@@ -118,15 +118,15 @@ def _orbit(result: Result) -> list[list[float]] | None:
     return [[float(f"{x:.5g}") for x in point] for point in path[samples]]
 
 
-def bodies_picture(result: Result, rings: bool) -> Tables:
-    """The bearing in three dimensions, at rest, as ``view.js`` draws it; ``rings``: with the shapes that loads do not change.
+def bodies_picture(result: Result, state: State, rings: bool) -> Tables:
+    """The bearing in three dimensions, as ``view.js`` draws it; ``rings``: with the shapes that loads do not change.
 
     Raises
     ------
     SceneError
         Rows of different bearings.
     """
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing = Bearing.of(result)
     return {**(rings_data(bearing, _FACETS) if rings else {}), **state_data(bearing, state)}
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import secrets
 import sys
+from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from importlib.resources import files
@@ -29,6 +31,8 @@ _EXAMPLE: Tables = {
     "contact": {"kind": "hertz", "damping": 0.001},
 }  # fmt: skip
 _NAMES = ("A", "B")
+#: What the worker reports within so long [s] is shown at once.
+_TOGETHER_S = 1e-3
 
 
 class Page:
@@ -45,6 +49,7 @@ class Page:
         self._job = -1  # the last that computes pictures
         self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
         self._curves: dict[int, list[Tables]] = {}
+        self._reports: deque[News] = deque()
         self.worker = Worker(list(plugins), self._from_worker)
         self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
         self.state.update(
@@ -162,53 +167,48 @@ class Page:
         self.state.charts = _charts(self._curves)
 
     def _from_worker(self, news: News) -> None:
+        """In the worker's thread: a picture and the end of its job go to the page together, which is drawn once."""
+        self._reports.append(news)
         if self._loop is not None:
-            self._loop.call_soon_threadsafe(self._news, news)
-        else:
-            self._early.append(news)
+            self._loop.call_soon_threadsafe(self._loop.call_later, _TOGETHER_S, self._take)
 
-    _early: list[News] = []
+    def _take(self) -> None:
+        with self.state:
+            while self._reports:
+                self._news(self._reports.popleft())
 
     def _news(self, news: News) -> None:
         """What the worker reports, unless the scene has changed meanwhile."""
-        with self.state:
-            panel, state = news.panel, self.state
-            if news.kind == "file":
-                state.note = f"written: {', '.join(news.content)}"
-            elif news.kind == "failed file":
-                state.note = f"not written: {'; '.join(sentence for _, sentence in news.content)}"
-            elif news.kind == "done":
-                if news.number == self._job:
-                    state.update({"busy": {}, "done": self.session.number})
-            elif self._numbers.get(panel) != news.number:
-                return
-            elif news.kind == "progress":
-                part, steps, total = news.content
-                state.busy = {**state.busy, str(panel): f"{part} {100 * steps // total} %" if total else part}
-            elif news.kind == "refused":
-                self._forget(panel)
-                panels = [dict(panel_state) for panel_state in state.panels]
-                panels[panel]["mistakes"] = news.content
-                state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
-            elif news.kind == "picture":
-                if "screen" in news.content:
-                    state[f"screen_{panel}"] = {**news.content["screen"], "number": news.number}
-                    self._bodies(panel, news.content["bodies"])
-                if "curves" in news.content:
-                    self._curves[panel] = news.content["curves"]
-                    for curve in news.content["curves"]:  # axes stay while a key is changed
-                        if curve["lines"]:
-                            self.ranges.setdefault(curve["axis"], (curve["x"][0], curve["x"][-1]))
-                    state.charts = _charts(self._curves)
-
-    def _bodies(self, panel: int, content: Tables | str) -> None:
-        if isinstance(content, str):
-            self.state[f"bodies_{panel}"] = {"why": content}
+        panel, state = news.panel, self.state
+        if news.kind == "file":
+            state.note = f"written: {', '.join(news.content)}"
+        elif news.kind == "failed file":
+            state.note = f"not written: {'; '.join(sentence for _, sentence in news.content)}"
+        elif news.kind == "done":
+            if news.number == self._job:
+                state.update({"busy": {}, "done": self.session.number})
+        elif self._numbers.get(panel) != news.number:
             return
-        fixed = {name: content.pop(name) for name in list(content) if name.startswith("fixed")}
-        if fixed:
-            self.state[f"rings_{panel}"] = {**fixed, "number": self.session.number}
-        self.state[f"bodies_{panel}"] = content
+        elif news.kind == "progress":
+            part, steps, total = news.content
+            state.busy = {**state.busy, str(panel): f"{part} {100 * steps // total} %" if total else part}
+        elif news.kind == "refused":
+            self._forget(panel)
+            panels = [dict(panel_state) for panel_state in state.panels]
+            panels[panel]["mistakes"] = news.content
+            state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
+        elif news.kind == "picture":
+            if "screen" in news.content:
+                state[f"screen_{panel}"] = {**news.content["screen"], "number": news.number}
+                state[f"bodies_{panel}"] = {name: news.content[name] for name in ("bodies", "why")}
+            if "rings" in news.content:
+                state[f"rings_{panel}"] = {"rings": news.content["rings"], "number": news.number}
+            if "curves" in news.content:
+                self._curves[panel] = news.content["curves"]
+                for curve in news.content["curves"]:  # axes stay while a key is changed
+                    if curve["lines"]:
+                        self.ranges.setdefault(curve["axis"], (curve["x"][0], curve["x"][-1]))
+                state.charts = _charts(self._curves)
 
     def serve(self, port: int, token: str, ready: Callable[[str], None]) -> None:
         """Until Ctrl-C."""
@@ -225,12 +225,12 @@ class Page:
 
         def begin(**_: object) -> None:
             self._loop = asyncio.get_running_loop()
-            for news in self._early:
-                self._news(news)
+            self._take()
             ready(f"http://127.0.0.1:{server.port}/index.html?token={token}")
 
         server.controller.on_server_bind.add(bind)
         server.controller.on_server_ready.add(begin)
+        os.environ["WSLINK_WS_COMPRESS"] = "0"  # nothing is far
         arguments, sys.argv = sys.argv, sys.argv[:1]
         try:
             server.start(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import json
 import threading
 import time
 import traceback
@@ -49,7 +50,7 @@ class Job:
 
 @attrs.frozen
 class News:
-    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies, curves), "refused", "stopped", "file", "failed file" or "done"."""
+    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies and rings as JSON, curves), "refused", "stopped", "file", "failed file" or "done"."""
 
     number: int
     panel: int
@@ -234,13 +235,16 @@ class _Pictures:
         if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
             tell("progress", (f"planned: {duration(planned)}", 0, 0))
         result = self._module.scene_result(scene, progress)
-        content = {"screen": self._module.result_picture(result)}
+        state = self._module.at_rest(result)
+        content = {"screen": self._module.result_picture(result, state)}
         shape = (scene.bearing, scene.bodies)
         try:
-            content["bodies"] = self._module.bodies_picture(result, self._shapes.get(panel) != shape)
+            bodies = self._module.bodies_picture(result, state, self._shapes.get(panel) != shape)
+            fixed = {name: bodies.pop(name) for name in list(bodies) if name.startswith("fixed")}
+            content |= {"bodies": json.dumps(bodies), "why": ""} | ({"rings": json.dumps(fixed)} if fixed else {})
             self._shapes[panel] = shape
-        except RacewayError as why:
-            content["bodies"] = str(why)
+        except RacewayError as error:
+            content |= {"bodies": "", "why": str(error)}
         if time.monotonic() - begun > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
             tell("picture", content)
             content = {}
