@@ -27,7 +27,9 @@ def rows() -> list[Row]:
             tab = Tab(browser, served.address)
             start = served.elapsed()
             times = sorted(tab.drag("load.axial", 700 + 10 * k) for k in range(_DRAGS))
-            memory = served.memory() + tab.memory()
+            page = tab.memory()
+            assert page > 1e7, "the processes of the page were not found"
+            memory = served.memory() + page
             faults = hurry(tab, _SEQUENCES, 3)
     finally:
         browser.close()
@@ -50,7 +52,7 @@ def rows() -> list[Row]:
 def _growth() -> float:
     """Of server and worker, after the first tenth of the changes."""
     scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "kinematics": {"spin_speed_rpm": 9000.0}}
-    session, finished, early = Session((as_given(scene),), "", Path()), threading.Event(), 0
+    session, finished, early = Session((as_given(scene),), Path()), threading.Event(), 0
 
     def hear(news: News) -> None:
         if news.kind == "done":

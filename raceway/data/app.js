@@ -4,6 +4,9 @@ window.raceway_app = (function () {
   const COLOURS = ["#0b5fa5", "#a8480f"];
   const FIRST = ["load.axial", "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.unbalance", "excitation.force",
     "bearing.preload", "bearing.contact_angle_deg"];
+  // Ends of sliders that begin at 0.
+  const START = { "load.axial": 2000, "excitation.speed_rpm": 20000, "kinematics.spin_speed_rpm": 20000, "excitation.unbalance": 1e-3,
+    "excitation.force": 1000, "bearing.preload": 1000, "bearing.contact_angle_deg": 40 };
   const number = (v, digits = 4) => v === null || v === undefined ? "-" : String(Number(v.toPrecision(digits)));
 
   // 1, 2 or 5 times a power of ten, some `count` of them from low to high.
@@ -24,7 +27,7 @@ window.raceway_app = (function () {
         if (y0 > 0 && y0 < 0.6 * y1) y0 = 0;
         if (y1 - y0 < 1e-3 * Math.abs(y1) || y1 === y0) { const pad = 0.02 * Math.abs(y1) || 1; y0 -= pad; y1 += pad; }
         y1 += 0.06 * (y1 - y0);
-        return { x0, x1, y0, y1, x: (v) => 58 + 290 * (v - x0) / (x1 - x0 || 1), y: (v) => 166 - 138 * (v - y0) / (y1 - y0) };
+        return { x0, x1, y0, y1, x: (v) => 58 + 286 * (v - x0) / (x1 - x0 || 1), y: (v) => 166 - 138 * (v - y0) / (y1 - y0) };
       },
       lines() {
         const f = this.frame, seen = {};
@@ -60,15 +63,15 @@ window.raceway_app = (function () {
     methods: {
       number,
       move(event) {
-        const box = this.$refs.svg.getBoundingClientRect(), x = (event.clientX - box.left) * 360 / box.width, f = this.frame;
-        this.at = x < 58 || x > 348 ? null : f.x0 + (x - 58) / 290 * (f.x1 - f.x0);
+        const box = this.$refs.svg.getBoundingClientRect(), x = (event.clientX - box.left) * 364 / box.width, f = this.frame;
+        this.at = x < 58 || x > 344 ? null : f.x0 + (x - 58) / 286 * (f.x1 - f.x0);
       },
     },
     template: `<figure class="chart" :data-test="'chart-' + chart.axis + '-' + chart.panel">
       <figcaption><b>{{ title }}</b> <span v-if="chart.unit && chart.unit !== '1'">[{{ chart.unit }}]</span>
         <span v-for="r in reading" class="reading" :style="{ color: r.colour }">{{ r.text }}</span></figcaption>
-      <svg v-if="lines.length" ref="svg" viewBox="0 0 360 206" role="img" :aria-label="label" @pointermove="move" @pointerleave="at = null">
-        <path v-for="x in xs" class="rule" :d="'M' + frame.x(x) + ' 22V166'"/><path v-for="y in ys" class="rule" :d="'M58 ' + frame.y(y) + 'H348'"/>
+      <svg v-if="lines.length" ref="svg" viewBox="0 0 364 206" role="img" :aria-label="label" @pointermove="move" @pointerleave="at = null">
+        <path v-for="x in xs" class="rule" :d="'M' + frame.x(x) + ' 22V166'"/><path v-for="y in ys" class="rule" :d="'M58 ' + frame.y(y) + 'H344'"/>
         <text v-for="x in xs" :x="frame.x(x)" y="181" text-anchor="middle">{{ number(x) }}</text>
         <text v-for="y in ys" x="53" :y="frame.y(y) + 4" text-anchor="end">{{ number(y) }}</text>
         <text x="203" y="199" text-anchor="middle">{{ chart.label }}</text>
@@ -132,7 +135,7 @@ window.raceway_app = (function () {
       },
     },
     template: `<div v-show="bodies && !bodies.why && !none"><div class="stage" ref="stage"><canvas role="img" :aria-label="'Bearing ' + name + ' in three dimensions'"></canvas></div>
-      <p class="small" ref="words">Drag to turn, wheel or two fingers to zoom; point at a ball for its numbers.</p>
+      <p class="small" ref="words">Drag or arrow keys to turn, wheel, fingers, + and - to zoom; point at a ball for its numbers.</p>
       <p class="rings"><label><input type="checkbox" v-model="outer"> outer ring</label><label><input type="checkbox" v-model="inner"> inner ring</label></p>
       <div class="bars" ref="bars"></div></div><p class="small" v-if="none || bodies?.why">{{ none || bodies.why }}</p>`,
   };
@@ -162,10 +165,10 @@ window.raceway_app = (function () {
     },
     template: `<div v-for="(s, k) in screens"><p class="warning" v-for="w in s?.warnings">{{ 'AB'[k] }}: {{ w }}</p></div>
       <div class="scroll" tabindex="0" role="region" aria-label="Numbers"><table data-test="numbers"><thead><tr><th scope="col">quantity</th>
-        <th v-for="(s, k) in screens" scope="col" class="number" :data-number="s?.number">{{ 'AB'[k] }}</th><th scope="col">remark</th></tr></thead>
-      <tbody><tr v-for="r in rows" :class="{ heading: r.heading }"><th scope="row" :colspan="r.heading ? screens.length + 1 : 1">{{ r.heading ? both(r, "name") : r.name }}</th>
+        <th v-for="(s, k) in screens" scope="col" class="number" :data-number="s?.number">{{ 'AB'[k] }}</th><th scope="col" v-if="screens.length < 2">remark</th></tr></thead>
+      <tbody><tr v-for="r in rows" :class="{ heading: r.heading }"><th scope="row" :colspan="r.heading ? screens.length + 1 : 1">{{ r.heading ? both(r, "name") : r.name }}<span class="small" v-if="screens.length > 1">{{ both(r, "remark") }}</span></th>
         <template v-if="!r.heading"><td v-for="(s, k) in screens" class="number" :class="{ stale: busy[k] }" :data-test="'value-' + k" :data-name="r.name">{{ r.cells[k]?.value ?? '' }}</td></template>
-        <td class="small">{{ both(r, "remark") }}</td></tr></tbody></table></div>
+        <td class="small" v-if="screens.length < 2">{{ both(r, "remark") }}</td></tr></tbody></table></div>
       <p class="small" v-for="(s, k) in screens"><template v-if="s">{{ 'AB'[k] }}: {{ s.bearing.split('\\n').slice(1).join('; ') }}; {{ s.left_out }}</template></p>`,
   };
 
@@ -178,16 +181,29 @@ window.raceway_app = (function () {
         return Object.values(axes);
       },
     },
+    methods: {
+      send(axis, field, end) {  // what is refused does not stay
+        const ends = { ...axis, [end]: field.value === "" ? null : +field.value };
+        field.value = axis[end];
+        this.$emit("range", axis.name, ends.low, ends.high);
+      },
+    },
     template: `<p class="small" v-for="a in axes" :key="a.name">{{ a.label }} from
-      <input type="number" :aria-label="a.label + ', from'" :value="a.low" @change="$emit('range', a.name, +$event.target.value, a.high)"> to
-      <input type="number" :aria-label="a.label + ', to'" :value="a.high" @change="$emit('range', a.name, a.low, +$event.target.value)"></p>`,
+      <input type="number" :aria-label="a.label + ', from'" :value="a.low" @change="send(a, $event.target, 'low')"> to
+      <input type="number" :aria-label="a.label + ', to'" :value="a.high" @change="send(a, $event.target, 'high')"></p>`,
   };
 
   const Form = {
-    props: ["form", "panels", "faults", "busy"], emits: ["set"],
+    props: ["panels", "busy"], emits: ["set"],
     data: () => ({ search: "", target: "both", open: {} }),
     computed: {
       two() { return this.panels.length > 1; },
+      form() { return this.panel().form; },
+      faults() {  // of the scenes that changes apply to
+        const out = {};
+        for (const k of this.chosen) for (const [path, words] of this.panels[k]?.mistakes ?? []) if (path) out[path] = (this.two ? "AB"[k] + ": " : "") + words;
+        return out;
+      },
       chosen() { return !this.two || this.target === "A" ? [0] : this.target === "B" ? [1] : [0, 1]; },
       first() {
         const fields = this.form.flatMap((g) => g.fields);
@@ -228,8 +244,8 @@ window.raceway_app = (function () {
       },
       top(field) {
         this.ends ??= {};
-        const value = Math.abs(parseFloat(this.holds(field.path))) || 1, known = this.ends[field.path];
-        if (!known || value > known || value < 0.05 * known) this.ends[field.path] = 2 * value;
+        const value = Math.abs(parseFloat(this.holds(field.path))), known = this.ends[field.path];
+        if (!known || value > known || (value && value < 0.05 * known)) this.ends[field.path] = 2 * value || START[field.path] || 1;
         return this.ends[field.path];
       },
       options(f) { return [...new Set(["", ...(f.choices ?? []), this.said(f.path)])]; },
@@ -237,13 +253,13 @@ window.raceway_app = (function () {
     template: `<div class="form"><label class="search">Search keys <input type="search" v-model="search"></label>
       <fieldset v-if="two"><legend>changes apply to</legend><label v-for="t in ['both', 'A', 'B']"><input type="radio" name="target" :value="t" v-model="target"> {{ t }}</label></fieldset>
       <fieldset class="first" v-show="!search"><legend>most used</legend><div v-for="f in first" :key="f.path" class="slider"><label :for="'s-' + f.path">{{ f.path }} <small>{{ holds(f.path) }} {{ f.unit }}</small></label>
-        <input type="range" :id="'s-' + f.path" :data-slider="f.path" min="0" :max="top(f)" :step="top(f) / 200" :value="parseFloat(holds(f.path))"
+        <input type="range" :id="'s-' + f.path" :data-slider="f.path" :min="parseFloat(holds(f.path)) < 0 ? -top(f) : 0" :max="top(f)" :step="top(f) / 200" :value="parseFloat(holds(f.path))"
           @input="drag(f, $event.target.value)" @change="dragged = null"></div></fieldset>
       <details v-for="g in groups" :key="g.name" :open="!!search || open[g.name]" @toggle="open[g.name] = $event.target.open">
         <summary>{{ g.name }}<span class="fault" v-if="g.fields.some((f) => faults[f.path])"> refused</span></summary>
         <template v-if="open[g.name] || search"><div v-for="f in g.fields" :key="f.path" class="field">
           <label :for="'f-' + f.path">{{ f.label }} <small v-if="f.unit">[{{ f.unit }}]</small></label>
-          <select v-if="f.choices" :id="'f-' + f.path" :data-field="f.path" :value="said(f.path)" :aria-describedby="'h-' + f.path" @change="set(f.path, $event.target.value)">
+          <select v-if="f.choices" :id="'f-' + f.path" :data-field="f.path" :value="said(f.path)" :aria-invalid="!!faults[f.path]" :aria-describedby="'h-' + f.path" @change="set(f.path, $event.target.value)">
             <option v-for="o in options(f)" :value="o">{{ o || 'default' + (holds(f.path) ? ': ' + holds(f.path) : '') }}</option></select>
           <template v-else><input type="text" :id="'f-' + f.path" :data-field="f.path" :value="said(f.path)" :placeholder="panel().holds[f.path] || f.default" autocomplete="off" spellcheck="false"
             :list="f.hints.length ? 'l-' + f.path : null" :aria-invalid="!!faults[f.path]" :aria-describedby="'h-' + f.path" @change="set(f.path, $event.target.value)">
@@ -255,10 +271,10 @@ window.raceway_app = (function () {
   };
 
   const Copy = {
-    props: ["text", "label"],
+    props: ["text", "label", "without"],
     data: () => ({ done: false }),
     methods: { copy() { navigator.clipboard.writeText(this.text).then(() => { this.done = true; setTimeout(() => { this.done = false; }, 1500); }); } },
-    template: `<button type="button" :disabled="!text" :data-text="text" @click="copy">{{ done ? "Copied" : label }}</button>`,
+    template: `<button type="button" :disabled="!text" :title="text ? null : without" :data-text="text" @click="copy">{{ done ? "Copied" : label }}</button>`,
   };
 
   // Ctrl+Z and Ctrl+Y outside of fields, which have their own.

@@ -161,6 +161,16 @@ window.raceway_stage = function (stage, words, shown, data) {
     zoom = Math.min(Math.max(zoom * Math.exp(-0.0015 * e.deltaY), 0.3), 30);
     redraw();
   }, { passive: false });
+  canvas.tabIndex = 0;
+  canvas.addEventListener("keydown", (e) => {
+    const step = { ArrowLeft: [0.1, 0, 1], ArrowRight: [-0.1, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1], "+": [0, 0, 1.15], "-": [0, 0, 1 / 1.15] }[e.key];
+    if (!step) return;
+    e.preventDefault();
+    yaw += step[0];
+    pitch = Math.min(Math.max(pitch + step[1], -1.55), 1.55);
+    zoom = Math.min(Math.max(zoom * step[2], 0.3), 30);
+    redraw();
+  });
   new ResizeObserver(redraw).observe(stage);
   update(data);
   draw();

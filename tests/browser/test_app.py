@@ -79,6 +79,17 @@ def test_two_excitation_models_stand_side_by_side(tab):
     assert "B" not in tab.text('[data-test="numbers"] thead')
 
 
+def test_a_second_scene_that_is_taken_away_at_once_leaves_nothing(tab):
+    for count in (2, 1) * 3:
+        tab.press_any("Compare two scenes")
+        while tab.panels() != count:  # the picture of the second is computed still
+            time.sleep(0.005)
+    tab.settle()
+    time.sleep(0.5)
+    readings = tab.browser.run("return [...document.querySelectorAll('.reading')].map((e) => e.textContent)")
+    assert readings and all(text.startswith("A") for text in readings)
+
+
 def test_a_reload_and_a_second_tab_show_the_same(tab, browser, application):
     tab.set("load.axial", "1700")
     first = tab.values(0)

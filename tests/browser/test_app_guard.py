@@ -6,14 +6,19 @@ import asyncio
 import http.client
 import json
 import os
+import shlex
+import signal
+import threading
+import time
 from pathlib import Path
 
 import pytest
 
 import raceway as rw
-from raceway.errors import SceneError
 from raceway.scene.inputs import as_given
+from raceway.studies.app.form import groups
 from raceway.studies.app.session import Session
+from raceway.studies.app.worker import Job, News, Worker
 from validation.browser.application import Application, Tab, proportional_memory
 from validation.browser.chromium import Browser
 from validation.command_line import EXAMPLES
@@ -79,22 +84,65 @@ def test_no_path_leads_out_of_the_served_files(application, path):
     assert status(application, f"{path}?token={application.token}") in (403, 404)
 
 
-@pytest.mark.parametrize("name", ["../out.toml", "/tmp/out.toml", "a/b.toml", "scene.py", "..", ".toml/../x"])
-def test_a_scene_is_saved_into_the_folder_only(tmp_path, name):
-    session = Session((as_given(SCENE),), SCENE, tmp_path / "in")
-    with pytest.raises(SceneError, match="name of a .toml file"):
-        session.save(0, name)
-    assert list(tmp_path.rglob("*")) == []
+@pytest.mark.parametrize("title", ["../out", "/tmp/out", "a/b", "..", "a\x00b", "a\nb = ../c"])
+def test_files_stay_in_the_folder_and_replace_none(tmp_path, title):
+    session = Session((as_given(SCENE),), tmp_path / "in")
+    session.change([0], "title", json.dumps(title))
+    first, second = session.save(0), session.save(0)
+    assert first != second and {first.parent, second.parent} == {tmp_path / "in"}
+    assert sorted(tmp_path.rglob("*.toml")) == sorted([first, second])
 
 
-def test_a_saved_scene_is_the_scene(tmp_path):
-    session = Session((as_given(SCENE),), SCENE, tmp_path)
-    session.change([0], "load.axial", "1.25 kN")
-    session.change([0], "excitation.kind", "unidirectional")
-    path = session.save(0, "")
+def test_a_saved_scene_and_a_copied_command_are_the_scene(tmp_path):
+    session = Session((as_given(SCENE),), tmp_path)
+    for key, text in (("load.axial", "1.25 kN"), ("excitation.kind", "unidirectional"), ("load.radial", "[10, 0]")):
+        session.change([0], key, text)
+    path, scene = session.save(0), session.checked(0)[0]
     assert path.parent == tmp_path
-    again, scene = rw.load_scene(path), session.checked(0)[0]
-    assert rw.run(again).equivalent_stiffness == rw.run(scene).equivalent_stiffness
+    numbers = scene.to_dict() | {"title": ""}
+    assert rw.load_scene(path).to_dict() | {"title": ""} == numbers
+    raceway, run, file, *settings = shlex.split(session.command(0))
+    assert (raceway, run, settings[::2]) == ("raceway", "run", ["--set"] * len(settings[1::2]))
+    assert rw.load_scene(file, settings[1::2]).to_dict() | {"title": ""} == numbers
+    session.change([0], "rotor.mass", "")
+    assert session.command(0) == ""  # --set takes no key out
+    assert Session((as_given(path.read_text()),), tmp_path).command(0) == ""  # no file
+
+
+def test_another_kind_takes_the_keys_that_it_lacks_with_it(tmp_path):
+    session = Session((as_given(SCENE),), tmp_path)
+    session.change([0], "excitation.kind", "run_up")
+    keys = session.scenes[0].merged()["excitation"]
+    assert "reference_speed_rpm" not in keys
+    paths = [path for path, _ in session.checked(0)[1]]
+    fields = {field["path"] for group in groups(session.scenes[0]) for field in group["fields"]}
+    assert set(paths) <= fields
+
+
+def test_a_worker_that_was_killed_is_replaced(tmp_path):
+    session, news, ended = Session((as_given(SCENE),), tmp_path), [], threading.Event()
+
+    def hear(report: News) -> None:
+        news.append(report)
+        if report.kind == "done":
+            ended.set()
+
+    worker = Worker([], hear)
+    try:
+        for _ in range(2):
+            ended.clear()
+            worker.submit(Job(0, {0: (0, session.scenes[0])}))
+            assert ended.wait(60.0)
+            before = worker.process_id
+            os.kill(before, signal.SIGKILL)  # as the system does where memory runs out
+            end = time.monotonic() + 20.0
+            while worker.process_id == before:
+                assert time.monotonic() < end
+                time.sleep(0.02)
+        kinds = [report.kind for report in news if report.kind != "progress"]
+        assert kinds.count("done") == 2 and set(kinds) == {"picture", "done"}
+    finally:
+        worker.close()
 
 
 @pytest.mark.needs("browser")

@@ -53,6 +53,14 @@ def proportional_memory(pid: int) -> int:
     return sum(1024 * int(line.split()[1]) for line in lines if line.startswith("Pss:"))
 
 
+def descendants(pid: int) -> list[int]:
+    """Processes that a process, and these, have started."""
+    children = [
+        int(word) for task in Path(f"/proc/{pid}/task").iterdir() for word in (task / "children").read_text().split()
+    ]
+    return children + [below for child in children for below in descendants(child)]
+
+
 class Application:
     """``raceway app`` as a process; ``address`` of its page."""
 
@@ -94,8 +102,7 @@ class Application:
 
     def processes(self) -> list[int]:
         """The server, and what it has started."""
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        return [self.process.pid, *map(int, children)]
+        return [self.process.pid, *descendants(self.process.pid)]
 
     def memory(self) -> int:
         """Resident memory of all its processes, shared pages in proportion [byte]."""
@@ -195,13 +202,10 @@ class Tab:
 
     def memory(self) -> int:
         """Of the processes that draw the page [byte]."""
-        found, left = 0, [self.driver.service.process.pid]
-        while left:
-            pid = left.pop()
-            left += map(int, Path(f"/proc/{pid}/task/{pid}/children").read_text().split())
-            if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                found += proportional_memory(pid)
-        return found
+        pids = descendants(self.driver.service.process.pid)
+        return sum(
+            proportional_memory(pid) for pid in pids if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        )
 
     def faults(self) -> list[str]:
         """Errors on the console."""
@@ -251,6 +255,11 @@ def hurry(page: Tab, sequences: int, seed: int) -> list[str]:
         for panel in range(page.panels()):
             shown = [(name, value) for name, value in page.values(panel) if value]
             refused = page.text(f'[data-test="mistakes-{panel}"]')
+            names = page.browser.run(
+                "return [...new Set([...document.querySelectorAll('.reading')].map((e) => e.textContent[0]))]"
+            )
+            if not set(names) <= set("AB"[: page.panels()]):
+                faults.append(f"curves of {names} with {page.panels()} scenes")
             if bool(refused) == bool(shown):
                 faults.append(f"panel {panel} shows {len(shown)} numbers and '{refused}'")
             elif shown and (different := set(shown) ^ set(expected(page.scene(panel)))):

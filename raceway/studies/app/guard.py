@@ -1,4 +1,4 @@
-"""Who may talk to the server: a browser on this machine that was source the address with its token."""
+"""Who may talk to the server: a browser on this machine that was given the address with its token."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from aiohttp.web import Request, StreamResponse
 
-#: Names of this machine that a browser may have been source; others are another site's that points here.
+#: Names of this machine that a browser may use; others are another site's that points here.
 _HOSTS = ("127.0.0.1", "localhost", "[::1]")
-_POLICY = (
+_POLICY = (  # {host}: address and port of the server
     "default-src 'self'; script-src 'self' 'unsafe-eval' 'unsafe-inline'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-    "connect-src 'self' ws://127.0.0.1:* ws://localhost:*; frame-ancestors 'none'; form-action 'none'; base-uri 'self'"
+    "connect-src 'self' ws://{host}; frame-ancestors 'none'; form-action 'none'; base-uri 'self'"
 )
 _HEADERS = {
     "Content-Security-Policy": _POLICY, "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store"
@@ -40,7 +40,7 @@ def guard(token: str) -> Callable[[Request, Handler], Awaitable[StreamResponse]]
             return Response(status=403, text="open the address that `raceway app` has printed: it carries a token\n")
         response = await handler(request)
         if not response.prepared:
-            response.headers.update(_HEADERS)
+            response.headers.update({name: words.replace("{host}", host) for name, words in _HEADERS.items()})
             if "token" in request.query:
                 response.set_cookie(name, token, httponly=True, samesite="Strict", path="/")
         return response

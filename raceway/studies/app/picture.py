@@ -142,7 +142,7 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
     list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
         missing (points without answer), why (no curves at all)
     """
-    scene, panels = result.model.scene, []
+    scene, panels = result.model.scene, list[Tables]()
     for name, axis in axes.items():
         wait(name)
         titles = {t: _chosen(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
@@ -150,7 +150,8 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
             outputs = [curve for names in titles.values() for curve in names]
             answer = _answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
         except RacewayError as why:
-            panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
+            if str(why) not in [panel["why"] for panel in panels]:
+                panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
             continue
         panels += [_panel(name, axis, t, names, answer) for t, names in titles.items() if names]
     return panels
@@ -164,6 +165,8 @@ def _chosen(result: Result, title: str, names: Sequence[str]) -> list[str]:
 
 def _has(result: Result, name: str) -> bool:
     scene = result.model.scene
+    if name == C.name and result.equivalent_damping is not None:  # the screen says that it is not resolved
+        return abs(result.equivalent_damping) > (result.equivalent_damping_error or 0.0)
     if name in _OF_MOTIONS:
         return scene.excitation is not None
     if name == "ball_load":
@@ -198,10 +201,11 @@ def _panel(name: str, axis: Axis, title: str, names: list[str], answer: Tables) 
     lines: list[Tables] = []
     for curve, label, values in _columns(names, answer, quantities):
         quantity = quantities[curve]
-        y = [float(quantity.read(v)) if ok and np.isfinite(v) else None for v, ok in zip(values, solved, strict=True)]
+        zero = 273.15 if quantity.unit == "K" else 0.0
+        y = [float(quantity.read(v)) - zero if ok and np.isfinite(v) else None for v, ok in zip(values, solved, strict=True)]
         lines.append({"name": curve, "label": label, "y": y})
     return {
-        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": quantities[names[0]].read_unit,
+        "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": quantities[names[0]].read_unit.replace("K", "°C"),
         "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
     }  # fmt: skip
 
@@ -212,7 +216,7 @@ def _columns(
     """Name, label and values (n,) of each curve; of ball loads the axial force of each row, sum of Q sin(alpha) at the outer races."""
     for name in names:
         if name != "ball_load":
-            yield name, quantities[name].label, answer[name]
+            yield name, quantities[name].label.removesuffix(" k"), answer[name]
             continue
         axial = answer[name] * np.sin(np.radians(answer["contact_angle"]))
         for k, part in enumerate(np.split(np.nan_to_num(axial[:, 1]), answer["rows"], axis=1)):
@@ -224,7 +228,7 @@ def scene_result(scene: Scene, progress: Callable[[str, int, int], None]) -> Res
     return run(scene, progress=progress)
 
 
-def write_file(kind: str, scene: Scene, folder: Path, progress: Callable[[str, int, int], None]) -> list[str]:
+def write_file(kind: str, scene: Scene, path: Path, progress: Callable[[str, int, int], None]) -> list[str]:
     """Pictures of the run ("png") or the coefficients over speed for ROSS ("ross").
 
     Returns
@@ -237,10 +241,10 @@ def write_file(kind: str, scene: Scene, folder: Path, progress: Callable[[str, i
         What the run, or the sweep over speed, raises; a folder that cannot be written.
     """
     if kind == "png":
-        return [str(path) for path in scene_result(scene, progress).picture(folder)]
+        return [str(picture) for picture in scene_result(scene, progress).picture(path)]
     axis = axes_of(scene, {}).get("speed")
     if axis is None:
         raise SceneError.at("excitation.speed_rpm", None, "is needed: ROSS reads coefficients over speed")
     swept = sweep(scene, {axis.key: f"{axis.low}:{axis.high}:21"}, progress=progress)
-    export_ross(swept, folder / "bearing.toml")
-    return [str(folder / "bearing.toml")]
+    export_ross(swept, path)
+    return [str(path)]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import secrets
 import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -52,9 +52,7 @@ class Page:
         self._reports: deque[News] = deque()
         self.worker = Worker(list(plugins), self._from_worker)
         self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
-        self.state.update(
-            {"charts": [], "note": "", "form": [], "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}}
-        )
+        self.state.update({"charts": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}})
         self.state.trame__title = "Raceway"
         self._show([0, 1])
         for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
@@ -86,29 +84,31 @@ class Page:
 
     def on_range(self, axis: str, low: float, high: float) -> None:
         """The ends of an axis of the curves."""
-        with suppress(TypeError, ValueError):
-            if 0.0 <= float(low) < float(high) < 1e12:
-                self.ranges = {**self.ranges, str(axis): (float(low), float(high))}
-                self.session.number += 1
-                self._show(list(range(len(self.session.scenes))))
+        if isinstance(low, int | float) and isinstance(high, int | float) and 0.0 <= low < high < 1e9:
+            self.ranges = {**self.ranges, str(axis): (float(low), float(high))}
+            self.session.number += 1
+            self._show(list(range(len(self.session.scenes))))
+        else:
+            self.state.note = f"an axis goes from 0 or more up to a larger number below 1e9, not from {low} to {high}"
 
     def on_stop(self) -> None:
         """What runs is not wanted."""
         self.worker.stop()
 
-    def on_write(self, kind: str, panel: int, name: str = "") -> None:
+    def on_write(self, kind: str, panel: int) -> None:
         """A file: of the scene ("scene"), the curves ("csv"), pictures ("png"), coefficients ("ross")."""
         session = self.session
-        panel = min(max(int(panel), 0), len(session.scenes) - 1)
+        panel = int(panel == 1 and len(session.scenes) == 2)
         try:
             if kind == "scene":
-                self.state.note = f"written: {session.save(panel, str(name))}"
+                self.state.note = f"written: {session.save(panel)}"
             elif kind == "csv":
                 text = csv_text(list(_curve_rows(self._curves)))
-                self.state.note = f"written: {write_whole(text.encode(), writable(session.folder) / 'curves.csv')}"
+                self.state.note = f"written: {write_whole(text.encode(), session.file('curves', '.csv'))}"
             elif kind in ("png", "ross"):
+                path = session.file(*{"png": ("pictures", ""), "ross": ("bearing", ".toml")}[kind], panel)
                 self.worker.submit(
-                    Job(session.number, {panel: (session.number, session.scenes[panel])}, file=kind, folder=session.folder)
+                    Job(session.number, {panel: (session.number, session.scenes[panel])}, file=kind, path=path)
                 )
                 self.state.note = "writing"
         except RacewayError as error:
@@ -119,7 +119,7 @@ class Page:
         self.state.note = ""
         try:
             self._show(act())
-        except SceneError as error:
+        except (SceneError, TypeError, ValueError) as error:
             self.state.note = str(error)
 
     def _show(self, changed: list[int]) -> None:
@@ -127,15 +127,13 @@ class Page:
         session = self.session
         scenes: dict[int, tuple[int, Given]] = {}
         panels: list[Tables] = []
-        faults: dict[str, str] = {}
         for k, tables in enumerate(session.scenes):
             scene, mistakes = session.checked(k)
             typed, valid = texts(tables, scene)
             panels.append({
-                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
+                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "form": groups(tables), "title": tables.merged().get("title", ""),
                 "command": session.command(k), "python": session.python(k) if scene is not None else "",
             })  # fmt: skip
-            faults |= {path: sentence for path, sentence in mistakes if path}
             if k in changed:
                 self._numbers[k] = session.number
                 if scene is None:
@@ -144,16 +142,14 @@ class Page:
                     scenes[k] = session.number, tables
         if len(panels) == 1:
             self._forget(1)
-        form = groups(session.scenes[0])
+            self._numbers.pop(1, None)  # what is computed of it still
         busy = {k: words for k, words in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
         busy |= {str(k): "computing" for k in scenes}
         undo, redo = session.can_undo
         self.state.update({
-            "panels": panels, "faults": faults, "can_undo": undo, "can_redo": redo, "number": session.number,
+            "panels": panels, "can_undo": undo, "can_redo": redo, "number": session.number,
             "busy": busy, "ranges": dict(self.ranges),
         })  # fmt: skip
-        if form != self.state.form:
-            self.state.form = form
         if scenes:
             self._job = session.number
             self.worker.submit(Job(session.number, scenes, dict(self.ranges)))
@@ -196,7 +192,7 @@ class Page:
             self._forget(panel)
             panels = [dict(panel_state) for panel_state in state.panels]
             panels[panel]["mistakes"] = news.content
-            state.panels, state.faults = panels, {**state.faults, **{p: s for p, s in news.content if p}}
+            state.panels = panels
         elif news.kind == "picture":
             if "screen" in news.content:
                 state[f"screen_{panel}"] = {**news.content["screen"], "number": news.number}
@@ -230,6 +226,7 @@ class Page:
 
         server.controller.on_server_bind.add(bind)
         server.controller.on_server_ready.add(begin)
+        logging.getLogger("aiohttp").setLevel(logging.CRITICAL)  # requests that are none
         os.environ["WSLINK_WS_COMPRESS"] = "0"  # nothing is far
         arguments, sys.argv = sys.argv, sys.argv[:1]
         try:
@@ -313,8 +310,7 @@ def app(
     paths = [Path(path) for path in plugins]
     registry_with(paths)
     tables = as_given(_EXAMPLE if scene is None else scene)
-    source = str(scene) if isinstance(scene, str | Path) and Path(str(scene)).is_file() else ""
-    session = Session((tables,), source, Path(out) if out is not None else Path("raceway-out") / "app")
+    session = Session((tables,), writable(Path(out) if out is not None else Path("raceway-out") / "app"))
     if scene is None:
         session.compare(True)
     Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)

@@ -14,7 +14,7 @@ from raceway.scene.changes import told
 from raceway.scene.inputs import Given, leaves
 from raceway.scene.scene import Scene
 from raceway.storage.files import slug, writable, write_whole
-from raceway.studies.app.form import value_of
+from raceway.studies.app.form import groups, value_of
 
 #: Changes that can be undone.
 _HISTORY = 200
@@ -29,13 +29,11 @@ class Session:
     Attributes
     ----------
     scenes : one, or two that are compared
-    source : what was opened: a file's name, or empty
     folder : where files are written, and nowhere else
     number : of changes so far
     """
 
     scenes: tuple[Given, ...]
-    source: str
     folder: Path
     number: int = 0
     _past: list[tuple[Given, ...]] = attrs.field(factory=list)
@@ -54,7 +52,9 @@ class Session:
             A key that no scene can have.
         """
         value = value_of(text)
-        changed = {panel: self.scenes[panel].changed({key: value}) for panel in panels if panel < len(self.scenes)}
+        changed = {panel: self.scenes[panel].changed({key: value}) for panel in panels if 0 <= panel < len(self.scenes)}
+        if key.endswith(".kind"):
+            changed = {panel: _fitting(scene, key.partition(".")[0]) for panel, scene in changed.items()}
         changed = {panel: scene for panel, scene in changed.items() if scene.merged() != self.scenes[panel].merged()}
         if changed:
             self._become(tuple(_short(changed.get(k, scene)) for k, scene in enumerate(self.scenes)), merge)
@@ -108,39 +108,50 @@ class Session:
             return None, [("", str(error))]
 
     def command(self, panel: int) -> str:
-        """The command line that computes the scene."""
+        """The command line that computes the scene; empty where --set cannot say it: no file, a key taken out, tables in a list."""
         scene = self.scenes[panel]
-        settings = " ".join(f"--set {shlex.quote(f'{key}={told(value)}')}" for key, value in self._changes(scene))
-        return f"raceway run {shlex.quote(self.source or 'scene.toml')} {settings}".strip()
+        old, new = dict(leaves(scene.tables)), dict(leaves(scene.merged()))
+        changes = {key: new.get(key) for key in dict.fromkeys((*old, *new)) if old.get(key) != new.get(key)}
+        if scene.folder is None or any(value is None or "{" in told(value) for value in changes.values()):
+            return ""
+        settings = [f"--set {shlex.quote(f'{key}={told(value)}')}" for key, value in changes.items()]
+        return " ".join(["raceway run", shlex.quote(str(scene.folder / f"{scene.name}.toml")), *settings])
 
     def python(self, panel: int) -> str:
         """Python that computes the scene, from its tables alone."""
         return f"import raceway as rw\n\nresult = rw.run({self.scenes[panel].plain(default_registry())!r})\nprint(result)"
 
-    def _changes(self, scene: Given) -> list[tuple[str, object]]:
-        """What differs from the file that was opened; all of a scene that was never saved."""
-        if not self.source:
-            return []
-        old, new = dict(leaves(scene.tables)), dict(leaves(scene.merged()))
-        return [(key, new.get(key)) for key in dict.fromkeys((*old, *new)) if old.get(key) != new.get(key)]
+    def file(self, stem: str, suffix: str, panel: int | None = None) -> Path:
+        """A path in the folder that is not there yet, with the name of one of two scenes.
 
-    def save(self, panel: int, name: str) -> Path:
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        name = stem if panel is None or len(self.scenes) == 1 else f"{stem}-{'AB'[panel]}"
+        paths = (writable(self.folder) / f"{name}{count}{suffix}" for count in ("", *(f"-{k}" for k in range(2, 1000))))
+        return next(path for path in paths if not path.exists())
+
+    def save(self, panel: int) -> Path:
         """Write the scene as a TOML file into the folder.
 
         Raises
         ------
-        SceneError
-            A name that leads out of the folder.
         RacewayError
             A folder that cannot be written.
         """
         import tomli_w
 
-        path = Path(name or f"{slug(str(self.scenes[panel].merged().get('title', 'scene')))}.toml")
-        if path.name != name.strip() and name or path.suffix != ".toml":
-            raise SceneError.at("name", name, "must be the name of a .toml file without folders")
-        text = tomli_w.dumps(self.scenes[panel].plain(default_registry()))
-        return write_whole(text.encode(), writable(self.folder) / path.name)
+        tables = self.scenes[panel].plain(default_registry())
+        return write_whole(tomli_w.dumps(tables).encode(), self.file(slug(str(tables["title"])), ".toml", panel))
+
+
+def _fitting(scene: Given, table: str) -> Given:
+    """Without the keys of a table that its new kind does not have."""
+    fields = {field["path"] for group in groups(scene) if group["name"] == table for field in group["fields"]}
+    beside = [f"{table}.{path}" for path, _ in leaves(scene.merged().get(table) or {}) if f"{table}.{path}" not in fields]
+    return scene.changed(dict.fromkeys(beside)) if beside else scene
 
 
 def _short(scene: Given) -> Given:

@@ -38,14 +38,14 @@ class Job:
     number : of the change that asks for it
     scenes : panel -> number of its last change, and scene
     ranges : axis of the curves -> its ends, where these are not the scene's own
-    file : "png" or "ross", to be written into ``folder``; empty: a picture
+    file : "png" or "ross", to be written at ``path``; empty: a picture
     """
 
     number: int
     scenes: dict[int, tuple[int, Given]]
     ranges: dict[str, tuple[float, float]] = attrs.field(factory=dict)
     file: str = ""
-    folder: Path = Path()
+    path: Path = Path()
 
 
 @attrs.frozen
@@ -69,6 +69,7 @@ class Worker:
         self._plugins, self._tell = list(plugins), on_news
         self._lock = threading.Lock()
         self._running: Job | None = None
+        self._closed = False
         self._waiting: list[Job] = []
         self._start()
 
@@ -103,7 +104,7 @@ class Worker:
     def close(self) -> None:
         """End the process."""
         with self._lock:
-            self._running = None
+            self._running, self._closed = None, True
             self._waiting.clear()
             self._process.terminate()
             self._process.join(5.0)
@@ -123,7 +124,8 @@ class Worker:
         self._running = self._waiting.pop(0) if self._waiting else None
         if self._running is not None:
             self._event.clear()
-            self._connection.send(self._running)
+            with contextlib.suppress(OSError):  # of a process that has ended, which is told where it is listened to
+                self._connection.send(self._running)
 
     def _interrupt(self, job: Job) -> None:
         """A job that still runs is not wanted."""
@@ -154,15 +156,16 @@ class Worker:
             if news.kind == "done":
                 self._next()
         with self._lock:
-            if self._running is None:
+            if self._closed:
                 return
             ended, self._running = self._running, None
             message = "stopped" if self._event.is_set() else "the process that computes has ended: was there memory enough?"
             connection.close()
             self._start()
-        for panel, (number, _) in ended.scenes.items():
-            self._tell(News(number, panel, "failed file" if ended.file else "refused", [("", message)]))
-        self._tell(News(ended.number, -1, "done"))
+        if ended is not None:
+            for panel, (number, _) in ended.scenes.items():
+                self._tell(News(number, panel, "failed file" if ended.file else "refused", [("", message)]))
+            self._tell(News(ended.number, -1, "done"))
         self._next()
 
     def _next(self) -> None:
@@ -181,8 +184,8 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         pictures, collected = _Pictures(picture, connection, stop), False
         while True:
             job: Job = connection.recv()
-            for panel, (number, source) in job.scenes.items():
-                pictures.answer(job, panel, number, source)
+            for panel, (number, scene_input) in job.scenes.items():
+                pictures.answer(job, panel, number, scene_input)
             connection.send(News(job.number, -1, "done"))
             if not collected:  # what was compiled has put Python's search for cycles off
                 gc.collect()
@@ -196,7 +199,7 @@ class _Pictures:
         self._module, self._connection, self._stop = module, connection, stop
         self._shapes: dict[int, object] = {}
 
-    def answer(self, job: Job, panel: int, number: int, source: Given) -> None:
+    def answer(self, job: Job, panel: int, number: int, scene_input: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
 
         reported, refusal = time.monotonic(), "failed file" if job.file else "refused"
@@ -214,9 +217,9 @@ class _Pictures:
 
         try:
             if job.file:
-                tell("file", self._file(job, source, progress))
+                tell("file", self._file(job, scene_input, progress))
             else:
-                self._draw(job, panel, source, tell, progress)
+                self._draw(job, panel, scene_input, tell, progress)
         except Stopped:
             tell(refusal if job.file else "stopped", [("", "stopped")])
         except SceneError as error:
@@ -226,12 +229,14 @@ class _Pictures:
         except Exception as error:  # a third party's own code: the page goes on
             tell(refusal, [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
 
-    def _draw(self, job: Job, panel: int, source: Given, tell: Callable[..., None], progress: Callable[..., None]) -> None:
+    def _draw(
+        self, job: Job, panel: int, scene_input: Given, tell: Callable[..., None], progress: Callable[..., None]
+    ) -> None:
         import raceway
         from raceway.framework.registry import default_registry
         from raceway.framework.shown import duration
 
-        scene, begun = source.scene(default_registry()), time.monotonic()
+        scene, begun = scene_input.scene(default_registry()), time.monotonic()
         if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
             tell("progress", (f"planned: {duration(planned)}", 0, 0))
         result = self._module.scene_result(scene, progress)
@@ -253,7 +258,7 @@ class _Pictures:
             "picture", content | {"curves": self._module.curves(result, axes, lambda name: progress(f"curves over {name}"))}
         )
 
-    def _file(self, job: Job, source: Given, progress: Callable[..., None]) -> list[str]:
+    def _file(self, job: Job, scene_input: Given, progress: Callable[..., None]) -> list[str]:
         from raceway.framework.registry import default_registry
 
-        return self._module.write_file(job.file, source.scene(default_registry()), job.folder, progress)
+        return self._module.write_file(job.file, scene_input.scene(default_registry()), job.path, progress)
