@@ -64,6 +64,25 @@ def test_stated_error_of_loads_at_which_balls_lift_off(tmp_path: Path) -> None:
     assert np.abs(values / expected - 1.0).max() <= instance.value("relative_error.equivalent_stiffness") <= 1e-4
 
 
+def test_map_says_that_its_tolerance_is_not_reached() -> None:
+    fmu = rw.export_fmu(FORCES["centrifugal"], ranges={"load.axial": (400.0, 2000.0)}, outputs=["kyy"], tolerance=1e-14)
+    assert "(kyy), above the tolerance 1e-14. Narrow its ranges with --range." in fmu.unit.words
+
+
+@pytest.mark.parametrize(("damping", "relative"), [(1e-3, True), (0.0, False)])
+def test_error_of_little_damping_is_relative_to_it_or_absolute(tmp_path: Path, damping: float, relative: bool) -> None:
+    scene, ranges = MAP | {"contact": {"damping": damping}}, {"load.axial": (400.0, 2000.0)}
+    instance = Instance(exported(tmp_path, scene, ranges=ranges)[2])
+    axial = np.linspace(400.0, 2000.0, 101)
+    expected = rw.function(scene, ranges, ["C"]).arrays(axial)
+    difference = np.abs([instance(load)[1] for load in axial] - expected)
+    if relative:
+        assert (difference / expected).max() <= instance.value("relative_error.equivalent_damping") < 1e-2
+    else:
+        assert difference.max() <= instance.value("error.equivalent_damping") < 1e-4
+        assert "relative_error.equivalent_damping" not in instance.references
+
+
 @pytest.mark.parametrize("version", [2, 3])
 def test_beyond_the_range_ends_stand_and_are_flagged(maps: dict[int, Path], version: int) -> None:
     instance = Instance(maps[version])
@@ -296,6 +315,17 @@ def test_refusals_of_a_map() -> None:
         rw.export_fmu(scene, ranges=["load.axial"])
     with pytest.raises(SceneError, match="of its own"):
         rw.export_fmu(scene, kind="force", outputs=["K"])
+    with pytest.raises(SceneError, match="--range kinematics.spin_speed_rpm=0:X only"):
+        rw.export_fmu(scene, kind="force", ranges={"kinematics.spin_speed_rpm": (5000.0, 9000.0)})
+    with pytest.raises(SceneError, match="second range of this key"):
+        rw.export_fmu(scene, ranges=["load.axial=400:800", "load.axial=400:900"])
+    for tolerance in (0.0, -1.0):
+        with pytest.raises(SceneError, match="must lie between 0 and 1"):
+            rw.export_fmu(scene, tolerance=tolerance)
+    with pytest.raises(
+        rw.RacewayError, match="1024 points would take about .* because rollers move: a map needs at least these"
+    ):
+        rw.export_fmu("examples/cylindrical_rollers.toml")
 
 
 def test_stiffness_of_a_static_scene_over_default_ranges(tmp_path: Path) -> None:

@@ -390,15 +390,17 @@ def box(ranges: Vary) -> dict[str, tuple[float, float]]:
     Raises
     ------
     SceneError
-        Ends that are no numbers in their order.
+        Ends that are no numbers in their order, or a second range of a key.
     """
     pairs = ranges.items() if isinstance(ranges, Mapping) else (text.partition("=")[::2] for text in ranges)
-    ends_of = {}
+    ends_of: dict[str, tuple[float, float]] = {}
     for key, text in pairs:
         ends = [parse_value(end) for end in text.split(":")] if isinstance(text, str) else tidy(text)
         numbers = isinstance(ends, list) and len(ends) == 2 and all(is_number(end) and math.isfinite(end) for end in ends)
         if not numbers or not ends[0] < ends[1]:
             raise SceneError.at(key, ends, "must be a range low:high of numbers, such as 300:2000")
+        if key.strip() in ends_of:
+            raise SceneError.at(key.strip(), text, "is a second range of this key: omit one")
         ends_of[key.strip()] = (float(ends[0]), float(ends[1]))
     return ends_of
 

@@ -57,13 +57,15 @@ class Series:
     Attributes
     ----------
     axes : of the inputs;  terms : (m, n_1, ..., n_d) coefficients;  size : (m,) least size of the quantities at the nodes
-    error, difference : (m,) largest difference at control points over the size of the quantity, and in its unit
+    error, relative, difference : (m,) largest difference at control points over the size of the quantity, over its value (or 1e-200
+        if that changes its sign), and in its unit
     """
 
     axes: tuple[Interval, ...]
     terms: np.ndarray
     size: np.ndarray
     error: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
+    relative: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
     difference: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
 
     def share(self, axis: int) -> np.ndarray:
@@ -116,7 +118,11 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
         terms = best.terms.take(range(max(2, int(np.sum(left > _DROPPED * tolerance)))), axis=k + 1)
         best = attrs.evolve(best, terms=terms)
     difference = np.abs(best(columns) - values)
-    return attrs.evolve(best, error=np.max(difference / size, axis=1), difference=np.max(difference, axis=1))
+    signed = np.abs(np.sign(values).sum(axis=1, keepdims=True)) == values.shape[1]
+    relative = np.max(difference / np.where(signed, np.abs(values), 1e-200), axis=1)
+    return attrs.evolve(
+        best, error=np.max(difference / size, axis=1), relative=relative, difference=np.max(difference, axis=1)
+    )
 
 
 def _interpolated(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> Series:

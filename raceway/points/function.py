@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 BLOCK = (8192, 2048)
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
 _LIMIT_S = 120.0
+_ADVICE = "give fewer points, or force = True. `raceway sweep` distributes such points among processes and resumes"
 #: Share of the memory that is free which inputs and outputs may take.
 _MEMORY = 0.8
 #: Rows without the reason of a run of their own, which is asked for a few only.
@@ -184,7 +185,7 @@ class Function:
         """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""
         n = len(next(iter(flat.values())))
         if self.why_slow:
-            self._refuse_time(n, self.why_slow)
+            self.refuse_time(n)
             return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
         return self._completed(flat, self.looped(flat))
 
@@ -420,13 +421,12 @@ class Function:
     def _seconds(self, count: int) -> float:
         return count * max(make_plan(self.scene).predicted_wall_s, 2e-3)
 
-    def _refuse_time(self, n: int, why: str) -> None:
+    def refuse_time(self, n: int, advice: str = _ADVICE) -> None:
+        """Raise a RacewayError where runs of all points would take longer than two minutes."""
         seconds = self._seconds(n)
         if seconds > _LIMIT_S and not self.force:
-            raise RacewayError(
-                f"{n} points would take about {duration(seconds)}, one run after another, because {why}: give fewer points, or force = True. "
-                "`raceway sweep` distributes such points among processes and resumes"
-            )
+            time = f"{n} points would take about {duration(seconds)}, one run after another"
+            raise RacewayError(f"{time}, because {self.why_slow}: {advice}")
 
     def _refuse_size(self, n: int) -> None:
         z = self.scene.bearing.balls_in_all

@@ -132,7 +132,7 @@ def export_fmu(
     SceneError
         A key, an output or a scene that cannot be exported.
     RacewayError
-        A point within the ranges that has no answer.
+        A point within the ranges that has no answer, or a map of runs for longer than two minutes.
 
     Examples
     --------
@@ -142,6 +142,8 @@ def export_fmu(
     >>> [variable.name for variable in fmu.unit.inputs]
     ['load.axial']
     """
+    if not 0.0 < tolerance < 1.0:
+        raise SceneError.at("tolerance", tolerance, "must lie between 0 and 1, such as 1e-5")
     read = as_scene(scene, plugins=plugins)
     title = "".join(filter(str.isprintable, read.title.partition("\n")[0]))
     name = re.sub(r"\W|^(?=\d)", "_", slug(title), flags=re.ASCII) + f"_{member('kind', kind, ('map', 'force'))}"
@@ -149,8 +151,8 @@ def export_fmu(
     if kind == "map":
         names = asked or (["K", "C"] if read.excitation is not None else ["stiffness"])
         unit = map_unit(read, name, limits or default_ranges(read), names, tolerance)
-    elif asked or not limits.keys() <= {SPIN}:
-        raise SceneError.at("kind", kind, f"has inputs and outputs of its own: no --outputs, and --range of {SPIN} only")
+    elif asked or not limits.keys() <= {SPIN} or limits.get(SPIN, (0.0, 0.0))[0]:
+        raise SceneError.at("kind", kind, f"has inputs and outputs of its own: no --output, and --range {SPIN}=0:X only")
     else:
         unit = force_unit(read, name, limits[SPIN][1] if limits else None)
     notes = [] if limits else ["ranges are not set (--range): about the scene's own numbers"]

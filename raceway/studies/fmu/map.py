@@ -27,17 +27,20 @@ _RANGES = {
     _SPEED: (0.25, 1.25),
     "kinematics.spin_speed_rpm": (0.25, 1.25),
 }
-#: Points of one fit.
-_MOST_POINTS = 20_000
+#: Points of one fit;  of a map at least, for its error.
+_MOST_POINTS, _LEAST_POINTS = 20_000, 1024
 #: Share of points, or two, that may need a run of their own.
 _IRREGULAR = 0.02
 _NARROW = "Narrow its ranges with --range."
 #: The stated error over the largest difference at control points.
 _SAFETY = 2.0
-#: Loss factor w C / K below which an error of C is taken of what C would be there.
+#: Largest relative error that is stated: beyond it a value is hardly more than its error.
+_RESOLVED = 0.01
+_STATED = "twice the largest at points that the fit did not use"
+#: Loss factor w C / K below which the tolerance of C is taken of what C would be there.
 _LOSS = 1e-3
-#: Entries of the stiffness below this part of the mean of their diagonal entries are rounding; a quantity below this part of its largest
-#: value has errors relative to that.
+#: Entries of the stiffness below this part of the mean of their diagonal entries are rounding;  the tolerance of a quantity below this part
+#: of its largest value is taken of that.
 _ROUNDING, _SMALL = 1e-9, 1e-3
 
 
@@ -65,10 +68,12 @@ def map_unit(
     SceneError
         A key or an output that the function does not have.
     RacewayError
-        A point within the ranges that has no answer.
+        A point within the ranges that has no answer, or runs for longer than two minutes.
     """
     names = function(scene, ranges, asked).outputs
     f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))
+    if f.why_slow:
+        f.refuse_time(_LEAST_POINTS, "a map needs at least these. `raceway sweep` computes a table of fewer")
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
     scales = _columns(f, names, corners).items()
     outputs = [
@@ -84,10 +89,15 @@ def map_unit(
     terms, axes, low, high = series.terms, series.axes, *np.array(list(ranges.values())).T
     keys = [key_of(scene, path) for path in ranges]
     words = "; ".join(f"{key.path} {a:g} to {b:g} {key.unit}" for key, a, b in zip(keys, low, high, strict=True))
-    errors, differences = _SAFETY * series.error, _SAFETY * series.difference
+    relative, difference, excess = (_SAFETY * x for x in (series.relative, series.difference, series.error))
+    bounds = list(zip(outputs, difference, relative, strict=True))
+    largest, of = max(((r, v.name) for v, _, r in bounds if r < _RESOLVED), default=(0.0, ""))
+    stated = f"relative error at most {largest:.1e} ({of})" if of else "errors are those of each output"
+    if excess.max() > tolerance:
+        stated += f", above the tolerance {tolerance:g}. {_NARROW[:-1]}"
     return Unit(
         name,
-        f"map over {words}; relative error at most {errors.max():.1e}.",
+        f"map over {words}; {stated}.",
         "map.c",
         {
             "TERMS": terms[0].size,
@@ -104,12 +114,16 @@ def map_unit(
             for key in keys
         ),
         tuple(
-            attrs.evolve(v, words=f"{v.words}; error at most {difference:.1e} {v.unit}, relative {error:.1e}")
-            for v, error, difference in zip(outputs, errors, differences, strict=True)
+            attrs.evolve(
+                v, words=f"{v.words}; error at most {d:.1e} {v.unit}{f', relative {r:.1e}' if r < _RESOLVED else ''}"
+            )
+            for v, d, r in bounds
         ),
         tuple(
-            Variable(f"relative_error.{v.name}", "1", "twice the largest at points that the fit did not use", float(error))
-            for v, error in zip(outputs, errors, strict=True)
+            Variable(f"relative_error.{v.name}", "1", _STATED, float(r))
+            if r < _RESOLVED
+            else Variable(f"error.{v.name}", v.unit, _STATED, float(d))
+            for v, d, r in bounds
         ),
     )
 
