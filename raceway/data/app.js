@@ -88,7 +88,7 @@ window.raceway_app = (function () {
       bars() {
         return this.balls.map((b, k) => {
           const a = b[0] * Math.PI / 180, at = (r) => [90 + r * Math.cos(a), 84 - r * Math.sin(a)], reach = (q) => 18 + 48 * q / this.top;
-          return { outer: [at(18), at(reach(b[2]))], inner: [at(18), at(reach(b[1]))], name: at(76), k, text: k + ": " + number(b[1]) + " N inner, " + number(b[2]) + " N outer" };
+          return { outer: [at(18), at(reach(b[2]))], inner: [at(18), at(reach(b[1]))], name: at(76), k, alone: this.balls.findIndex((c) => Math.abs(c[0] - b[0]) < 1e-6) === k, text: k + ": " + number(b[1]) + " N inner, " + number(b[2]) + " N outer" };
         });
       },
     },
@@ -98,7 +98,7 @@ window.raceway_app = (function () {
       <g v-for="b in bars"><title>{{ b.text }}</title>
         <line class="outer" :x1="b.outer[0][0]" :y1="b.outer[0][1]" :x2="b.outer[1][0]" :y2="b.outer[1][1]"/>
         <line class="inner" :x1="b.inner[0][0]" :y1="b.inner[0][1]" :x2="b.inner[1][0]" :y2="b.inner[1][1]"/>
-        <text :x="b.name[0]" :y="b.name[1] + 4" text-anchor="middle">{{ b.k }}</text></g></svg>
+        <text v-if="b.alone" :x="b.name[0]" :y="b.name[1] + 4" text-anchor="middle">{{ b.k }}</text></g></svg>
       <figcaption>ball loads at rest, circle {{ number(top) }} N; inner (dark), outer</figcaption></figure>`,
   };
 

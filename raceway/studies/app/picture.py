@@ -26,7 +26,7 @@ from raceway.studies.view.view import at_rest as at_rest
 
 #: Relative tolerance of the orbits of curves, far below what is seen.
 _TOLERANCE = 1e-6
-_MULTIPLIER = Quantity("largest_multiplier", "1", "Floquet multiplier of the orbit: above 1 it is unstable")
+_MULTIPLIER = Quantity("largest_multiplier", "1", "of the orbit: above 1 it is unstable", label="Floquet multiplier")
 #: Panels over speed and over load: title, and names of the curves in it, those of a motion first.
 _PANELS = {
     "stiffness": (K.name, "kyy_tilts_follow", "kyy"),
