@@ -214,7 +214,7 @@ class BytesPath:
         (lambda: rw.run(BytesPath()), "no such file"),
         (lambda: rw.make_plan(Unlucky()), "a Scene"),
         (lambda: rw.sweep(SCENE, dict), "`axes`"),
-        (lambda: rw.fit({"axial [N]": [10**400]}, SCENE, "load.axial"), "no number"),
+        (lambda: rw.fit({"axial [N]": [10**400]}, SCENE, "load.axial"), "not a number"),
         (lambda: rw.sensitivities(SCENE, ["load.axial"])["load.radial"], "must be one of 'load.axial'"),
         (lambda: rw.fit({"axial [N]": [400.0, 1000.0], "kxx [N/um]": [39.4, 67.4]}, SCENE, "bearing.contact_angle_deg")["K"], "must be one of"),
     ],

@@ -36,7 +36,7 @@ from raceway.studies.rig import study as rig
 from raceway.studies.view import pictures as view_pictures
 from raceway.studies.view import stress
 from raceway.studies.view.bodies import Bearing
-from raceway.studies.view.view import _at_rest
+from raceway.studies.view.view import at_rest
 from raceway.testing import b7206c, run
 from tests import test_compare
 from tests.elastic.test_below_contact import TINY
@@ -160,7 +160,7 @@ def of_a_record() -> list[Figure]:
 
 def of_contacts() -> list[Figure]:
     found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [view_pictures.contacts(Bearing.of(found), _at_rest(found), "made up")]
+    return [view_pictures.contacts(Bearing.of(found), at_rest(found), "made up")]
 
 
 #: Module that makes figures -> how they come about here.

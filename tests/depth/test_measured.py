@@ -94,7 +94,7 @@ GOOD = "\n".join(f"{k * 1e-4:.6f},{k % 3}.5" for k in range(12))
         ("t,Fy\n" + GOOD.replace("2.5", "nan"), "line 4: a sample is missing (0.000200,nan)"),
         ("t,Fy\n" + GOOD.replace("2.5", "2.5,7"), "line 4: 2 numbers are needed"),
         ("t,Fy\n" + GOOD.replace("0.000300", "0.000200"), "line 5: time must grow"),
-        ("t,Fy,Fy\n" + "\n".join(f"{k * 1e-4},1,2" for k in range(12)), "twice"),
+        ("t,Fy,Fy\n" + "\n".join(f"{k * 1e-4},1,2" for k in range(12)), "duplicated"),
         (b"t,Fy\n\xff\xfe\n", "line 2: 2 numbers are needed"),
         ("t,Fy\n" + "\n".join(f"{k * 1e-4},0.0" for k in range(12)), "the force is zero"),
     ],

@@ -66,7 +66,7 @@ def test_stiffness_of_pairs(claim):
     ):
         claim(f"{where}: relative error, {word}", max(own, scenes), at_most=limit, basis="published", source=source)
     said = rw.run({"bearing": {"preset": "7014C"}, "load": {"axial": 1000.0}}).to_dict()["geometry"]["words"]
-    assert "known to about" in said
+    assert "uncertain by about" in said
 
 
 def test_inferred_of_bearings_whose_balls_are_printed(claim):

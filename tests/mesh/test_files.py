@@ -95,7 +95,7 @@ def test_an_abaqus_file_written_by_hand(tmp_path):
         Abaqus().read(path)
     Abaqus().write(path, block())
     path.write_text(path.read_text() + "*ELSET, ELSET=Fixed_end\n1, 2, 3\n")
-    with pytest.warns(UserWarning, match=r"hand.inp': element sets fixed_end are not taken over"):
+    with pytest.warns(UserWarning, match=r"hand.inp': element sets fixed_end are ignored"):
         Abaqus().read(path)
 
 

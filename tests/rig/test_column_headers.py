@@ -96,7 +96,7 @@ MESSAGES = {
     "time_s,x_um,y_um,z_um": ["'x_um' may be along the shaft or across it", '--map "x_um=ignore"'],
     "time_s,y_um,z_um,Oil [C],key": ["unknown column 'Oil [C]'", '--map "Oil [C]=ignore"', 'columns={"Oil [C]": "ignore"}'],
     "time_s,X [V],Y [V],key": ["is a voltage: multiply it by the sensor's sensitivity first"],
-    "time_s,y_um,y_mm,key": ["y stands there twice", "'y_mm' as y_mm", '--map "y_mm=ignore"'],
+    "time_s,y_um,y_mm,key": ["y is duplicated", "'y_mm' as y_mm", '--map "y_mm=ignore"'],
 }  # fmt: skip
 
 
