@@ -194,11 +194,11 @@ window.raceway_app = (function () {
   };
 
   const Form = {
-    props: ["panels", "busy"], emits: ["set"],
+    props: ["panels", "forms", "busy"], emits: ["set"],
     data: () => ({ search: "", target: "both", open: {} }),
     computed: {
       two() { return this.panels.length > 1; },
-      form() { return this.panel().form; },
+      form() { return this.forms[this.chosen[0]] ?? this.forms[0]; },
       faults() {  // of the scenes that changes apply to
         const out = {};
         for (const k of this.chosen) for (const [path, words] of this.panels[k]?.mistakes ?? []) if (path) out[path] = (this.two ? "AB"[k] + ": " : "") + words;

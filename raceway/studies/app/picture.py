@@ -78,12 +78,9 @@ def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str
     ):
         if name not in axes and present.get(key):
             now = float(present[key])
-            ends = sorted([0.05 * now, 2.0 * now]) if name not in ranges else [*ranges[name], 1.1 * now, 0.9 * now]
-            ends = [
-                end
-                for end in ends
-                if name not in ranges or end in ranges[name] or not ranges[name][0] <= now <= ranges[name][1]
-            ]
+            ends = list(ranges.get(name, (0.05 * now, 2.0 * now)))
+            if not min(ends) <= now <= max(ends):
+                ends += [0.9 * now, 1.1 * now]
             axes[name] = Axis(key, label, float(f"{min(ends):.3g}"), float(f"{max(ends):.3g}"), count, now)
     return axes
 
@@ -143,6 +140,8 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
         missing (points without answer), why (no curves at all)
     """
     scene, panels = result.model.scene, list[Tables]()
+    stated = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
+    quantities = KNOWN | named(_MULTIPLIER) | stated
     for name, axis in axes.items():
         wait(name)
         titles = {t: _chosen(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
@@ -153,7 +152,7 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
             if str(why) not in [panel["why"] for panel in panels]:
                 panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
             continue
-        panels += [_panel(name, axis, t, names, answer) for t, names in titles.items() if names]
+        panels += [_panel(name, axis, t, names, answer, quantities) for t, names in titles.items() if names]
     return panels
 
 
@@ -194,10 +193,9 @@ def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
     return {**columns, "points": numbers, "reason": reasons, "rows": len(scene.bearing.rows)}
 
 
-def _panel(name: str, axis: Axis, title: str, names: list[str], answer: Tables) -> Tables:
-    quantities: dict[str, Quantity] = (
-        KNOWN | named(_MULTIPLIER) | {n: quantity for n, (_, quantity) in plugin_quantities(default_registry()).items()}
-    )
+def _panel(
+    name: str, axis: Axis, title: str, names: list[str], answer: Tables, quantities: Mapping[str, Quantity]
+) -> Tables:
     solved = answer["status"] == PointStatus.COMPUTED
     lines: list[Tables] = []
     for curve, label, values in _columns(names, answer, quantities):
@@ -224,11 +222,6 @@ def _columns(
             yield name, f"row {k + 1}", abs(part.sum(axis=1))
 
 
-def scene_result(scene: Scene, progress: Callable[[str, int, int], None]) -> Result:
-    """The run of a scene."""
-    return run(scene, progress=progress)
-
-
 def write_file(kind: str, scene: Scene, path: Path, progress: Callable[[str, int, int], None]) -> list[str]:
     """Pictures of the run ("png") or the coefficients over speed for ROSS ("ross").
 
@@ -242,7 +235,7 @@ def write_file(kind: str, scene: Scene, path: Path, progress: Callable[[str, int
         What the run, or the sweep over speed, raises; a folder that cannot be written.
     """
     if kind == "png":
-        return [str(picture) for picture in scene_result(scene, progress).picture(path)]
+        return [str(picture) for picture in run(scene, progress=progress).picture(path)]
     axis = axes_of(scene, {}).get("speed")
     if axis is None:
         raise SceneError.at("excitation.speed_rpm", None, "is needed: ROSS reads coefficients over speed")

@@ -52,7 +52,9 @@ class Page:
         self._reports: deque[News] = deque()
         self.worker = Worker(list(plugins), self._from_worker)
         self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
-        self.state.update({"charts": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}})
+        self.state.update(
+            {"charts": [], "forms": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}}
+        )
         self.state.trame__title = "Raceway"
         self._show([0, 1])
         for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
@@ -131,7 +133,7 @@ class Page:
             scene, mistakes = session.checked(k)
             typed, valid = texts(tables, scene)
             panels.append({
-                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "form": groups(tables), "title": tables.merged().get("title", ""),
+                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
                 "command": session.command(k), "python": session.python(k) if scene is not None else "",
             })  # fmt: skip
             if k in changed:
@@ -140,9 +142,8 @@ class Page:
                     self._forget(k)
                 else:
                     scenes[k] = session.number, tables
-        if len(panels) == 1:
+        if len(panels) == 1 and self._numbers.pop(1, None) is not None:  # what is computed of it still is dropped
             self._forget(1)
-            self._numbers.pop(1, None)  # what is computed of it still
         busy = {k: words for k, words in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
         busy |= {str(k): "computing" for k in scenes}
         undo, redo = session.can_undo
@@ -150,6 +151,8 @@ class Page:
             "panels": panels, "can_undo": undo, "can_redo": redo, "number": session.number,
             "busy": busy, "ranges": dict(self.ranges),
         })  # fmt: skip
+        if (forms := [groups(tables) for tables in session.scenes]) != self.state.forms:  # the largest part, of kinds alone
+            self.state.forms = forms
         if scenes:
             self._job = session.number
             self.worker.submit(Job(session.number, scenes, dict(self.ranges)))

@@ -13,13 +13,13 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.synchronize import Event
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import attrs
 
 from raceway.errors import RacewayError, SceneError
 from raceway.scene.inputs import Given
+from raceway.storage.tables import Tables
 
 #: A run that does not end at a chunk of steps after so long [s] is ended with its process.
 _GRACE_S = 2.0
@@ -179,9 +179,9 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
 
     with contextlib.suppress(EOFError, KeyboardInterrupt, BrokenPipeError):
         registry_with(plugins)
-        from raceway.studies.app import picture
+        from raceway.studies.app import picture  # noqa: F401  while nobody waits
 
-        pictures, collected = _Pictures(picture, connection, stop), False
+        pictures, collected = _Pictures(connection, stop), False
         while True:
             job: Job = connection.recv()
             for panel, (number, scene_input) in job.scenes.items():
@@ -195,8 +195,8 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
 class _Pictures:
     """Answers to jobs."""
 
-    def __init__(self, module: ModuleType, connection: Connection, stop: Event) -> None:
-        self._module, self._connection, self._stop = module, connection, stop
+    def __init__(self, connection: Connection, stop: Event) -> None:
+        self._connection, self._stop = connection, stop
         self._shapes: dict[int, object] = {}
 
     def answer(self, job: Job, panel: int, number: int, scene_input: Given) -> None:
@@ -235,16 +235,17 @@ class _Pictures:
         import raceway
         from raceway.framework.registry import default_registry
         from raceway.framework.shown import duration
+        from raceway.studies.app import picture
 
         scene, begun = scene_input.scene(default_registry()), time.monotonic()
         if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
             tell("progress", (f"planned: {duration(planned)}", 0, 0))
-        result = self._module.scene_result(scene, progress)
-        state = self._module.at_rest(result)
-        content = {"screen": self._module.result_picture(result, state)}
+        result = raceway.run(scene, progress=progress)
+        state = picture.at_rest(result)
+        content: Tables = {"screen": picture.result_picture(result, state)}
         shape = (scene.bearing, scene.bodies)
         try:
-            bodies = self._module.bodies_picture(result, state, self._shapes.get(panel) != shape)
+            bodies = picture.bodies_picture(result, state, self._shapes.get(panel) != shape)
             fixed = {name: bodies.pop(name) for name in list(bodies) if name.startswith("fixed")}
             content |= {"bodies": json.dumps(bodies), "why": ""} | ({"rings": json.dumps(fixed)} if fixed else {})
             self._shapes[panel] = shape
@@ -253,12 +254,11 @@ class _Pictures:
         if time.monotonic() - begun > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
             tell("picture", content)
             content = {}
-        axes = self._module.axes_of(scene, job.ranges)
-        tell(
-            "picture", content | {"curves": self._module.curves(result, axes, lambda name: progress(f"curves over {name}"))}
-        )
+        axes = picture.axes_of(scene, job.ranges)
+        tell("picture", content | {"curves": picture.curves(result, axes, lambda name: progress(f"curves over {name}"))})
 
     def _file(self, job: Job, scene_input: Given, progress: Callable[..., None]) -> list[str]:
         from raceway.framework.registry import default_registry
+        from raceway.studies.app import picture
 
-        return self._module.write_file(job.file, scene_input.scene(default_registry()), job.path, progress)
+        return picture.write_file(job.file, scene_input.scene(default_registry()), job.path, progress)
