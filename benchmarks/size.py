@@ -1,7 +1,7 @@
-"""``python -m benchmarks.size [--tree FOLDER] [--write]``: size of the package, what its smallest run touches, how its folders depend on
+"""``python -m benchmarks.size [--tree FOLDER]``: size of the package, what its smallest run touches, how its folders depend on
 each other.
 
-``--write`` makes the present numbers the ceilings of ``tests/test_size.py``; ``validation.size`` says how they are counted.
+``validation.size`` says how its numbers are counted.
 """
 
 from __future__ import annotations
@@ -83,7 +83,6 @@ def in_tree(tree: Path, what: str) -> Any:
 def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.size", description=__doc__.partition("\n\n")[0])
     parser.add_argument("--tree", type=Path, default=_HERE, metavar="FOLDER", help="another work tree")
-    parser.add_argument("--write", action="store_true", help="make these numbers the ceilings of the tests")
     parser.add_argument("--print", choices=("smallest_run", "arrows"), help=argparse.SUPPRESS)
     options = parser.parse_args(words)
     if options.print:
@@ -103,8 +102,6 @@ def main(words: list[str]) -> int:
     _show("imports between folders", {"arrows": sum(map(len, imported.values())), "circles": len(groups)})
     for group in groups:
         print(f"    {', '.join(group)}")
-    if options.write:
-        size.write_ceilings(measures)
     return 0
 
 

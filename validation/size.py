@@ -1,4 +1,4 @@
-"""Size of the package by its sources, and the ceilings that ``tests/test_size.py`` keeps it below.
+"""Size of the package by its sources.
 
 public_names counts functions and classes at the top of modules without a leading underscore, public_constants what is assigned there.
 vague_percent counts bindings: names that are assigned (also by ``for``, ``with`` and in comprehensions) and parameters of functions,
@@ -8,16 +8,13 @@ vague_percent counts bindings: names that are assigned (also by ``for``, ``with`
 from __future__ import annotations
 
 import ast
-import math
 import re
-import tomllib
 from collections import Counter
 from pathlib import Path
 
 import attrs
 
 ROOT = Path(__file__).resolve().parents[1]
-CEILINGS = Path(__file__).with_name("size.toml")
 VAGUE = frozenset({
     "found", "one", "own", "given", "told", "tells", "known", "whole", "rest", "kept", "place", "that", "there", "said", "asked", "wanted",
     "chosen", "some", "other", "others", "many", "such", "what", "which", "this", "those", "done", "made", "taken", "seen", "left", "like",
@@ -120,26 +117,3 @@ def _assigned(node: ast.stmt) -> list[str]:
 def _arguments(node: Function) -> int:
     arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
     return sum(argument.arg not in _HIDDEN for argument in arguments)
-
-
-def ceilings() -> Measures:
-    """Largest numbers that are allowed, as ``measures``."""
-    with CEILINGS.open("rb") as file:
-        return tomllib.load(file)
-
-
-def write_ceilings(found: Measures) -> None:
-    """The present numbers as ceilings: lines rounded up to the next 50, percents to the next tenth."""
-    lines = [
-        "# Ceilings of tests/test_size.py, by `python -m benchmarks.size --write`: raise one with a reason in CHANGELOG.md."
-    ]
-    for part, numbers in found.items():
-        lines += ["", f"[{part}]" if re.fullmatch(r"\w+", part) else f'["{part}"]']
-        lines += [f"{name} = {_ceiling(name, number):g}" for name, number in numbers.items()]
-    CEILINGS.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
-def _ceiling(name: str, number: float) -> float:
-    if name == "lines":
-        return 50 * math.ceil(number / 50)
-    return math.ceil(10 * number) / 10 if name == "vague_percent" else number
