@@ -43,9 +43,50 @@ def test_broken_kernels_are_refused(kernel, found):
         _probe(getattr(broken_laws, kernel))
 
 
-def test_a_kernel_that_writes_into_the_old_state_is_refused():
-    with pytest.raises(PluginError, match="changes state_old at gap -1e-09"):
-        _probe(broken_laws.writing, state_size=1)
+@jit(LAW)
+def clamped(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Hertz's law, which leaves no approach in ``gap``."""
+    for i in range(gap.size):
+        gap[i] = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * gap[i] ** 1.5
+        d_gap[i] = -1.5 * params[i, 0] * gap[i] ** 0.5
+        d_rate[i] = 0.0
+
+
+@jit(LAW)
+def wearing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Hertz's law, which wears where a contact presses hard and halves the rate."""
+    for i in range(gap.size):
+        deep = max(-gap[i], 0.0)
+        force[i] = params[i, 0] * deep**1.5
+        d_gap[i] = -1.5 * params[i, 0] * deep**0.5
+        d_rate[i] = 0.0
+        gap_rate[i] *= 0.5
+        params[i, 0] *= 0.999 if params[i, 0] > 9.9e9 and deep > 5e-6 else 1.0
+
+
+@pytest.mark.parametrize(
+    ("kernel", "found"),
+    [
+        (broken_laws.writing, "state_old at gap -1e-09"),
+        (clamped, "gap at gap 0.001"),
+        (wearing, "params at gap -1e-05 m, one contact alone"),
+    ],
+)
+def test_a_kernel_that_writes_into_its_inputs_is_refused(kernel, found):
+    with pytest.raises(PluginError, match=f"changes {found}.*inputs are read only"):
+        _probe(kernel, state_size=int(kernel is broken_laws.writing))
+
+
+def test_a_rate_that_a_kernel_writes_is_refused_in_a_run():
+    with pytest.raises(PluginError, match="contact law 'broken' .*changes gap_rate at gap .* rate -0.02"):
+        run(with_law(wearing, 1000.0, lambda pairs: np.full((len(pairs.hertz_factor), 1), 1e9)))
+
+
+@jit(FORCE)
+def counting(t, params, out):
+    params[0] += 1.0
+    out[:] = params[0]
 
 
 @pytest.mark.parametrize(
@@ -96,6 +137,7 @@ def undefined(t, params, out):
         (half, "leaves `out` as it was at t = 0 s"),
         (diverging, "gives `out` = inf"),
         (undefined, "gives `out` = nan"),
+        (counting, "changes params at t = 0 s; the contract says inputs are read only"),
         (broken_laws.sticky, "its kernel has .* the rule is .*: decorate it with @jit.FORCE"),
     ],
 )

@@ -44,7 +44,7 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     2. ``state_size``: columns of memory a contact; 0 for none.  ``dissipative``: whether a closed cycle loses energy.
     3. ``build(pairs)``: parameters, an array (n, k) of float64, from ``ContactPairs``.
     4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
-       approach, derivatives exact, ``state_old`` untouched, outputs overwritten whole, no allocation.
+       approach, derivatives exact, inputs untouched, outputs overwritten whole, no allocation.
     5. A law for both discretisations distinguishes them by ``pairs.area``, which is None for resultants.
     6. May be left out, as the rest, with the defaults of ``raceway.framework.duties``: ``constraint`` = True says that the law stands for
        no penetration at all: condensed bodies then hold the gap exactly and do not call the kernel.

@@ -5,7 +5,7 @@ This takes less than a millisecond.  It finds what would corrupt a run; ``racewa
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -205,7 +205,7 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
     for part in (0.0, 0.13, 0.5, 3.7):
         out = np.full(5, _MARK)
         where = f"at t = {part * period:g} s"
-        _guarded(kernel, who, where, part * period, params, out)
+        _guarded(kernel, who, where, {"params": params}, part * period, params, out)
         _check_outputs({"out": out}, who, where)
     _remember(mark)
 
@@ -252,14 +252,15 @@ def _call_law(
 ) -> tuple[np.ndarray, ...]:
     n = len(state)
     force, d_gap, d_rate = np.full((3, n), _MARK)
-    new, old = np.full_like(state, _MARK), state.copy()
-    _guarded(kernel, who, where, np.full(n, gap), np.full(n, rate), params, old, new, 1e-6, force, d_gap, d_rate)
-    if not np.array_equal(old, state):
-        raise PluginError(f"{who}: changes state_old {where}; the contract says it is read only")
+    new = np.full_like(state, _MARK)
+    inputs = {"gap": np.full(n, gap), "gap_rate": np.full(n, rate), "params": params, "state_old": state}
+    _guarded(kernel, who, where, inputs, *inputs.values(), new, 1e-6, force, d_gap, d_rate)
     return force, d_gap, d_rate, new
 
 
-def _guarded(kernel: Kernel, who: str, where: str, *arguments: object) -> None:
+def _guarded(kernel: Kernel, who: str, where: str, inputs: Mapping[str, np.ndarray], *arguments: object) -> None:
+    """Call a kernel; refused where it raises or writes into what it only may read."""
+    before = {word: array.copy() for word, array in inputs.items()}
     try:
         kernel(*arguments)
     except Exception as why:  # the plug-in's own code
@@ -267,6 +268,10 @@ def _guarded(kernel: Kernel, who: str, where: str, *arguments: object) -> None:
             f"{who}: the kernel raises {type(why).__name__}: {why} {where}; the contract says it never raises: inside a "
             "compiled loop an exception is lost"
         ) from why
+    for word, array in inputs.items():
+        if not np.array_equal(array, before[word]):
+            array[...] = before[word]
+            raise PluginError(f"{who}: changes {word} {where}; the contract says inputs are read only")
 
 
 def _check_outputs(outputs: Tables, who: str, where: str) -> None:
