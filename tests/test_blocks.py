@@ -286,6 +286,6 @@ def test_too_many_points_are_refused_with_bytes_or_time(tmp_path: Path, monkeypa
     axes = {"load.axial": np.linspace(300.0, 2000.0, 1000), "rotor.mass": np.linspace(1.0, 2.0, 1000)}
     with pytest.raises(rw.RacewayError, match=r"1000000 runs would take about \d+ [dh]"):
         rw.sweep({**STATIC, **ROTATING, "integrator": {"kind": "newmark", "turns": 1000}}, axes)
-    monkeypatch.setattr("raceway.points.function._free_bytes", lambda: 1e8)
-    with pytest.raises(rw.RacewayError, match=r"1000000 points need 6\.64e\+08 bytes .*, of 1e\+08 that are free"):
+    monkeypatch.setattr("raceway.points.function.available_bytes", lambda: 1e8)
+    with pytest.raises(rw.RacewayError, match=r"1000000 points need 6\.64e\+08 bytes .*, of 1e\+08 available"):
         rw.sweep(STATIC, axes)

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.bodies.elastic import _allowed_bytes
 from raceway.core.ring.orbit import steady_orbit
 from raceway.elastic.iterative_solver import LinearSolver
 from raceway.elastic.ring import from_orbit
 from raceway.pipeline.run import _Allowance
 from raceway.scene.unused import unused
+from raceway.storage.memory import allowed_bytes
 from raceway.testing import run, solve_equilibrium
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.
@@ -255,14 +255,14 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic._allowed_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 
 
 def test_a_limit_of_the_process_counts_as_memory(monkeypatch):
     monkeypatch.setattr("resource.getrlimit", lambda kind: (2**33, 2**33))
-    assert 0.0 < _allowed_bytes() < 2.0**33
+    assert 0.0 < allowed_bytes() < 2.0**33
 
 
 def test_friction_at_rest_is_left_out_and_told(static):

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from math import ceil, inf, pi
-from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
@@ -19,6 +17,7 @@ from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
 from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem
+from raceway.storage.memory import allowed_bytes
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -174,38 +173,6 @@ def _stable_step(problem: Problem) -> float:
     return float((elements**-2 + contacts**-2) ** -0.5)
 
 
-def _allowed_bytes() -> float:
-    """Memory that this process may take: the machine's, its container's or its own limit; inf where the system does not tell."""
-    return min(_machine_bytes(), _container_bytes(), _own_bytes())
-
-
-def _machine_bytes() -> float:
-    try:
-        return float(os.sysconf("SC_PAGE_SIZE")) * float(os.sysconf("SC_PHYS_PAGES"))
-    except (AttributeError, ValueError, OSError):
-        return inf
-
-
-def _container_bytes() -> float:
-    """Limit of the control group, as containers and job schedulers set it."""
-    try:
-        return float(Path("/sys/fs/cgroup/memory.max").read_text())
-    except (ValueError, OSError):  # "max", or no such system
-        return inf
-
-
-def _own_bytes() -> float:
-    """What ``ulimit -v`` leaves."""
-    try:
-        import resource
-
-        limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-        resident = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    except (ImportError, ValueError, OSError):
-        return inf
-    return inf if limit == resource.RLIM_INFINITY else float(limit - resident)
-
-
 _OTHER = "or use bodies.kind = 'condensed'"
 _ONE_ROW = f"elastic bodies are one row of balls: use 'single', {_OTHER}"
 _SHAPES = f"fits and temperatures change the shape of elastic bodies: give kinematics.radial_expansion instead, {_OTHER}"
@@ -246,7 +213,7 @@ _RULES: tuple[Rule[Problem], ...] = (
 def _memory_faults(problem: Problem) -> list[Mistake]:
     """Meshes whose matrices this process cannot hold."""
     cost = _elastic_cost(problem)
-    most = _SHARE * _allowed_bytes()
+    most = _SHARE * allowed_bytes()
     if cost is None or cost.bytes <= most:
         return []
     why = (

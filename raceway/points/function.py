@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from enum import IntEnum
@@ -36,6 +35,7 @@ from raceway.scene.changes import key_of, with_columns, with_numbers
 from raceway.scene.inputs import SceneSource, as_scene
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
+from raceway.storage.memory import available_bytes
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ BLOCK = (8192, 2048)
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
 _LIMIT_S = 120.0
 _ADVICE = "give fewer points, or force = True. `raceway sweep` distributes such points among processes and resumes"
-#: Share of the memory that is free which inputs and outputs may take.
+#: Share of the memory that is left which inputs and outputs may take.
 _MEMORY = 0.8
 #: Rows without the reason of a run of their own, which is asked for a few only.
 _REASONS, _REFUSED = 200, "a rule of the scene refuses its numbers"
@@ -436,22 +436,16 @@ class Function:
 
 
 def refuse_bytes(n: int, entries: int, advice: str) -> None:
-    """Refuse points with so many numbers each that they do not fit into the memory that is free.
+    """Refuse points with so many numbers each that they do not fit into the memory that is available.
 
     Raises
     ------
     RacewayError
         With both numbers of bytes.
     """
-    needed, free = 8.0 * n * entries, _free_bytes()
-    if needed > _MEMORY * free:
-        raise RacewayError(f"{n} points need {needed:.4g} bytes for their numbers, of {free:.4g} that are free: {advice}")
-
-
-def _free_bytes() -> float:
-    """Memory that is free [B]."""
-    pages = "SC_AVPHYS_PAGES" if "SC_AVPHYS_PAGES" in os.sysconf_names else "SC_PHYS_PAGES"
-    return float(os.sysconf(pages)) * os.sysconf("SC_PAGE_SIZE")
+    needed, left = 8.0 * n * entries, available_bytes()
+    if needed > _MEMORY * left:
+        raise RacewayError(f"{n} points need {needed:.4g} bytes for their numbers, of {left:.4g} available: {advice}")
 
 
 def _numbers(key: str, value: ArrayLike) -> np.ndarray:

@@ -58,7 +58,7 @@ def test_the_plan_refuses_meshes_beside_everything_else(mesh, path, words):
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic._allowed_bytes", lambda: float("inf"))
+    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout
