@@ -11,7 +11,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from typing import Any
 
 import attrs
@@ -306,16 +306,34 @@ def test_damaged_facts_are_refused(tmp_path):
             open_store(tmp_path / "s")
 
 
-def test_a_full_disk_keeps_what_is_finished(tmp_path):
+@contextmanager
+def small_files():
     """No file of this process can grow beyond 40 kB for a while."""
-    design = grid(["excitation.speed_rpm=10980:15000:48"])
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, hard))
     try:
-        with pytest.raises(RacewayError, match=r"free some space, and run the command again, a sweep with --resume"):
-            swept(tmp_path / "s", design)
+        yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def test_a_disk_that_is_full_before_the_first_block_is_written_holds_nothing_and_says_so(tmp_path):
+    tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}}
+    with (
+        small_files(),
+        pytest.raises(RacewayError, match=r"Nothing is stored: free some space, and run the command again\.$"),
+    ):
+        front(tables, {"load.axial": "500:1500:400"}, store=tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_full_disk_keeps_what_is_finished(tmp_path):
+    design = grid(["excitation.speed_rpm=10980:15000:48"])
+    with (
+        small_files(),
+        pytest.raises(RacewayError, match=r"Finished points are stored: free .*again, a sweep with --resume"),
+    ):
+        swept(tmp_path / "s", design)
     with open_store(tmp_path / "s") as store:
         assert 0 < store.status()["done"] < 48
     assert swept(tmp_path / "s", design, resume=True) == swept(tmp_path / "whole", design)

@@ -179,9 +179,9 @@ class Store:
         return state == "waiting" or (state in _STATES and columns[-1] == self._digest(key, state, *columns[:-1]))
 
 
-def connected(folder: Path) -> sqlite3.Connection:
-    """To the file of a store that is there."""
-    return sqlite3.connect(f"{(folder / POINTS).resolve().as_uri()}?mode=rw", uri=True, timeout=30.0)
+def connected(folder: Path, patience: float = 30.0) -> sqlite3.Connection:
+    """To the file of a store that is there; ``patience`` : for another process that writes [s]."""
+    return sqlite3.connect(f"{(folder / POINTS).resolve().as_uri()}?mode=rw", uri=True, timeout=patience)
 
 
 @contextmanager
@@ -236,8 +236,7 @@ def written(path: str | Path | None, facts: ReadTables | None = None, keys: Coll
 def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
     """Close a store that was written; one that was begun and got nowhere is taken away."""
     with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
-        query = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
-        empty = new and (not _made(connection) or connection.execute(query).fetchone() is None)
+        empty = new and not _holds_rows(connection)
         connection.execute("PRAGMA journal_mode = DELETE")
         connection.close()
         if empty:
@@ -258,6 +257,12 @@ def exists(folder: Path) -> bool:
 
 def _made(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT 1 FROM sqlite_master WHERE name = 'facts'").fetchone() is not None
+
+
+def _holds_rows(connection: sqlite3.Connection) -> bool:
+    """Whether anything finished is stored."""
+    query = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
+    return _made(connection) and connection.execute(query).fetchone() is not None
 
 
 def _make(connection: sqlite3.Connection, facts: ReadTables, keys: Iterable[Key]) -> None:
@@ -317,9 +322,12 @@ def told(folder: Path) -> Iterator[None]:
         yield
     except (sqlite3.DatabaseError, UnicodeDecodeError) as why:
         if isinstance(why, sqlite3.OperationalError):
+            stored, again = "Nothing is stored", "."
+            with suppress(sqlite3.Error), closing(connected(folder, 0.0)) as connection:
+                if _holds_rows(connection):
+                    stored, again = "Finished points are stored", ", a sweep with --resume."
             raise RacewayError(
-                f"`{folder}` cannot be written or read: {why}. Finished points are stored: free some space, and run the "
-                "command again, a sweep with --resume."
+                f"`{folder}` cannot be written or read: {why}. {stored}: free some space, and run the command again{again}"
             ) from None
         raise RacewayError(f"`{folder / POINTS}` is not a store ({why}): choose another folder.") from None
     except OSError as why:
