@@ -217,10 +217,7 @@ def _put(store: Store, row: Row) -> None:
 
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
-        raise RacewayError(
-            f"{item.name}: {answer.reason}, perhaps out of memory; finished points are stored: run the command again, with "
-            "--processes 1"
-        )
+        raise RacewayError(f"{item.name}: {answer.reason}, perhaps out of memory: run the command again, with --processes 1")
     return lost(item, answer.reason)
 
 
