@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, make_plan, scene_from_dict
+from raceway.bodies.elastic_change import elastic_change
 from raceway.core import structural as calibration
 from raceway.core.revolution.body import _seat_areas
 from raceway.testing import b7206c, run, settled
@@ -99,6 +100,10 @@ def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():
     assert model["elasticity"][0][0] == pytest.approx(0.055, abs=0.01)
     assert model["elasticity"][1][1] == pytest.approx(0.08, abs=0.01)
     assert model["elasticity"][0][2] is None
+    # Without a mesh: kyy within 10 % of its change and the stated margin of 10 % above it, kxx not below it.
+    estimate = elastic_change(*settled(tables(bodies={"kind": "rigid"})))
+    assert model["elasticity"][1][1] < estimate["kyy"] < 1.2 * model["elasticity"][1][1]
+    assert model["elasticity"][0][0] < estimate["kxx"] < estimate["kyy"]
     assert 3.0 < model["mesh"]["nodes_per_semi_axis"] < 5.0
     assert error["mesh"] == model["mesh"]["change_from_coarser"]
     assert 0.0 < error["mesh"] < 5e-3
