@@ -301,7 +301,15 @@ def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, exp
             raise SceneError.at("contact.kind", law, "is stiffer than elastic bodies allow")
         return build(bench)
 
+    exact = scenes._force_and_slope
+
+    def rounded(*pair):
+        """Powers of other processors differ in the last digits."""
+        force, slope = exact(*pair)
+        return force, (1.0 + 1e-14) * slope
+
     monkeypatch.setattr(Bench, "model", refuse)
+    monkeypatch.setattr(scenes, "_force_and_slope", rounded)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
     arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
     (row,) = _rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
