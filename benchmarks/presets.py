@@ -243,7 +243,8 @@ def _quoted(key: str) -> str:
 
 
 def _cells(numbers: Iterable[float], errors: Iterable[float]) -> str:
-    return f"[{', '.join([f'{x:.10g}' for x in numbers] + [f'{x:.1e}' for x in errors])}]"
+    """Errors that are the rounding of a processor are none."""
+    return f"[{', '.join([f'{x:.10g}' for x in numbers] + [f'{x if abs(x) > 1e-9 else 0.0:.1e}' for x in errors])}]"
 
 
 def _toml(value: object) -> str:
