@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import builtins
 import re
+import subprocess
+from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -47,7 +50,34 @@ def test_names_in_docstrings_are_there():
 @pytest.mark.parametrize(
     "module", [module for module in MODULES if module.path.name == "__init__.py"], ids=lambda module: str(module.path)
 )
-def test_a_package_lists_no_module_that_is_gone(module):
-    listed = {name for heads in ENTRY.findall(module.docstrings[0]) for name in "".join(heads).split(", ")}
-    present = {entry.stem for entry in (ROOT / "raceway" / module.path).parent.iterdir()} | set(raceway.__all__)
-    assert listed - present == set()
+def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(module):
+    folder, text = module.path.parent, module.docstrings[0]
+    listed = Counter(name for heads in ENTRY.findall(text) for name in "".join(heads).split(", "))
+    present = {
+        path.stem
+        for path in (ROOT / "raceway" / folder).iterdir()
+        if path.suffix == ".py" or (path / "__init__.py").exists()
+    }
+    public = {"data", *raceway.__all__} if folder == Path() else set()
+    assert set(listed) - public == present - {"__init__", "__main__"} and max(listed.values()) == 1
+    own = set().union(*(words for path, words in WORDS.items() if Path(path).parent == folder), raceway.__all__)
+    names = [name for name in NAME.findall(text) if not name.startswith("raceway.")]
+    assert [name for name in names if not set(name.split(".")) <= own | {"raceway", *listed}] == []
+
+
+def test_no_module_of_several_plug_ins_is_called_by_the_name_of_one():
+    several = 0
+    for module in MODULES:
+        names = [
+            name.replace("_", " ") for name in re.findall(r'^    name: ClassVar\[str\] = "(\w+)"', module.text, re.MULTILINE)
+        ]
+        several += len(names) > 1
+        called = [name for name in names if module.docstrings[0].lower().startswith(name)]
+        assert len(names) < 2 or len(called) != 1, module.path
+    assert several > 3
+
+
+def test_no_file_holds_a_mark_of_a_merge():
+    mark = "^(<{7} |={7}$|>{7} |[|]{7} )"
+    found = subprocess.run(["git", "grep", "-InE", mark], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (found.returncode, found.stdout) == (1, ""), found.stderr

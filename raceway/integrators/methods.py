@@ -1,4 +1,4 @@
-"""Newmark's method."""
+"""Time integration by Newmark's method, generalised-alpha and central differences; series of equilibria, steady orbits."""
 
 from __future__ import annotations
 

@@ -16,6 +16,5 @@ lubricant   oils, their viscosity, and the table [lubricant]
 heat        the table [heat]: what carries the heat of friction off
 tolerance   ranges of numbers: the table [tolerances], classes of ISO 492 and ISO 3290
 unused      keys without effect, and those that a change makes so
-ratings     load ratings, by keys, catalogue or geometry
 growth      of the grooves by speed, fits and temperatures; mass, inertia and shoulders of the rings
 """

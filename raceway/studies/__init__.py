@@ -7,7 +7,7 @@ app         a page of a scene, served to this machine
 fit         numbers of a scene from measured data, with what these do not determine
 catalogue   the bearings of the catalogue; balls and grooves from printed numbers
 article, rig         whole studies that end in a page: plug-ins of the hook ``raceway_studies``, as others' are
-shaft       the rotor that ``rig`` and ``measured`` set the bearing in
+shaft       the rotor that ``rig`` and ``fit`` set the bearing in
 """
 
 from __future__ import annotations
