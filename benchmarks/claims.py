@@ -4,6 +4,8 @@
 the module's report.  A module is one report and belongs to one tier: quick (no mark), ``night`` or ``release``.  Evidence is made of a
 commit: with uncommitted changes, or of a part of a module, nothing is written.
 
+No quick test is decided by the clock: a claim in a unit of time, or of a machine, is made by tests of night and release.
+
 A row that misses its limits says why (``misses=``), and fails once it holds, so that the reason goes.  Only where the value depends on
 the machine (``machine=True``: processor times and their ratios) the reason is left out where the row holds.
 """
@@ -25,6 +27,8 @@ from benchmarks import reports as files
 
 #: What a limit rests on; README shows the first three.
 BASES = (*files.OUTSIDE, "own other method", "regression")
+#: Units of times that a machine takes.
+_TIMES = {"s", "CPU s", "ms", "us"}
 #: Where the modules of reports are.
 FOLDER = Path(__file__).resolve().parents[1] / "tests" / "evidence"
 
@@ -83,7 +87,8 @@ def limits_of(
 @pytest.fixture
 def claim(request: pytest.FixtureRequest) -> Callable[..., None]:
     """``claim(quantity, value, near=, within=, at_least=, at_most=, unit=, basis=, source=, misses=, machine=)``: see ``Claim``."""
-    return claims_into(request.node.user_properties)
+    by_night = any(request.node.get_closest_marker(tier) for tier in ("night", "release"))
+    return claims_into(request.node.user_properties, by_night)
 
 
 def _cpu_s() -> float:
@@ -91,8 +96,8 @@ def _cpu_s() -> float:
     return sum(os.times()[:4])
 
 
-def claims_into(properties: list[tuple[str, Any]]) -> Callable[..., None]:
-    """What the fixture is: asserts a claim, and appends its row to the properties of a test."""
+def claims_into(properties: list[tuple[str, Any]], by_night: bool = True) -> Callable[..., None]:
+    """What the fixture is: asserts a claim, and appends its row to the properties of a test, quick where not ``by_night``."""
     before = _cpu_s()
 
     def claim(
@@ -112,6 +117,8 @@ def claims_into(properties: list[tuple[str, Any]]) -> Callable[..., None]:
         nonlocal before
         if basis not in BASES:
             raise TypeError(f"basis {basis!r} is none of {', '.join(BASES)}")
+        if not by_night and (machine or unit in _TIMES):
+            raise TypeError(f"`{quantity}` depends on the machine: mark its test `night`")
         now = _cpu_s()
         # Numbers of numpy do not travel from a worker's process.
         low, high = (limit if limit is None else float(limit) for limit in limits_of(near, within, at_least, at_most))

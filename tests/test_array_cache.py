@@ -12,7 +12,7 @@ import pytest
 
 from raceway.storage import array_cache
 from raceway.storage.array_cache import kept
-from validation.command_line import invoke, python
+from validation.command_line import PATIENCE_S, invoke, python
 
 INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped", "ratio": 0.29, "offsets": None}
 
@@ -143,7 +143,7 @@ def test_two_processes_may_make_the_same_entries_at_once(folder):
         for _ in range(2)
     ]
     for process in both:
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE_S)
         assert out == "whole\n", err
     names = [path.name for path in folder.iterdir()]
     assert len(names) == 20 and all(name.endswith(".arrays") for name in names)

@@ -13,7 +13,7 @@ import pytest
 
 from raceway.errors import SceneError
 from raceway.scene.inputs import read_toml
-from validation.command_line import ARTICLE, MINIMAL, install, invoke, law, raceway
+from validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, law, raceway
 
 #: What is set; the path that is named; words of the message.
 SCENES = {
@@ -305,7 +305,7 @@ def test_numba_without_its_compiler_is_refused(tmp_path):
 
 def test_a_reader_that_goes_away_is_no_error():
     command = f"{sys.executable} -m raceway dev schema | head -n 1"
-    found = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False)
+    found = subprocess.run(["bash", "-c", command], capture_output=True, text=True, timeout=PATIENCE_S, check=False)
     assert found.stdout == "{\n"
     assert found.stderr == ""
 

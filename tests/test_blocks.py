@@ -20,12 +20,15 @@ import pytest
 import raceway as rw
 from raceway.framework.contracts import Lost
 from raceway.out.quantities import COLUMNS
+from raceway.planning.cost import column_time, slowness
 from raceway.plugins.processes import Processes, Serial
+from raceway.points import sweep
 from raceway.points.axes import grid, listed_points, sampled, tables_at
 from raceway.points.dataset import open_store, values_of
+from raceway.points.function import BLOCK
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import default_registry
-from validation.command_line import invoke
+from validation.command_line import PATIENCE_S, invoke
 
 STATIC: dict[str, Any] = {
     "title": "static",
@@ -181,7 +184,7 @@ def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "raceway", *words, "--out", str(tmp_path / "s")], stdout=subprocess.DEVNULL
     )
-    done, end = 0, time.monotonic() + 100.0
+    done, end = 0, time.monotonic() + PATIENCE_S
     while not 0 < done < 120_000 and process.poll() is None and time.monotonic() < end:
         time.sleep(0.02)
         if (tmp_path / "s" / "points.sqlite").is_file():
@@ -204,23 +207,26 @@ def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
     np.testing.assert_allclose(some.p0, rw.sweep(tables, axes).p0, rtol=1e-9)
 
 
-def test_ctrl_c_is_answered_within_a_second(tmp_path: Path) -> None:
+def test_ctrl_c_is_answered_by_the_end_of_a_block_which_takes_less_than_a_second(tmp_path: Path) -> None:
+    # On the machine that the plan's constants are of: how fast this one is decides no test.
+    each = column_time(rw.make_plan(rw.Scene.from_dict(STATIC)), moving=False) / slowness()
+    assert sweep._SHARED * BLOCK[False] * each < 1.0
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
-    sweep = prepare(STATIC, grid(["load.axial=300:2000:1000", "kinematics.spin_speed_rpm=1000:24000:1000"]), tmp_path / "s")
-    pressed: list[float] = []
+    design = grid(["load.axial=300:2000:1000", "kinematics.spin_speed_rpm=1000:24000:1000"])
+    events: list[str] = []
 
     def press() -> None:
-        pressed.append(time.monotonic())
+        events.append("pressed")
         os.kill(os.getpid(), signal.SIGINT)
 
     def after_a_block(_what: str, _done: int, _total: int) -> None:
-        if not pressed:
+        if not events:
             threading.Timer(0.2, press).start()
-            pressed.append(0.0)
+        events.append("block")
 
     with pytest.raises(KeyboardInterrupt):
-        fill_store(sweep, Serial(), on_progress=after_a_block)
-    assert time.monotonic() - pressed[1] < 1.0
+        fill_store(prepare(STATIC, design, tmp_path / "s"), Serial(), on_progress=after_a_block)
+    assert events[events.index("pressed") :].count("block") <= 2  # the one under way, and one that ended as the signal came
     signal.signal(signal.SIGINT, before)
     with open_store(tmp_path / "s") as store:
         assert store.status()["waiting"] > 0

@@ -229,7 +229,7 @@ def test_a_larger_inner_raceway_moves_less_for_the_same_load(static):
 def test_the_plan_tells_size_and_cost_and_builds_nothing():
     plan = make_plan(scene())
     assert plan.dofs > 5_000
-    assert 0.5 < plan.predicted_wall_s < 60.0
+    assert 0.5 < plan.predicted_work_s < 60.0  # on the machine that the plan's constants are of
     assert any("every node" in part.why for part in plan.kept)
     assert any(part.part == "travel of the balls" for part in plan.left_out)
 

@@ -57,21 +57,18 @@ def test_a_mistake_in_a_study_is_told_before_the_compiler_is_loaded(code):
     assert not loaded(code, status=2) & HEAVY
 
 
-def least_seconds(*words, runs=9):
-    """Processor time of a process, the least of several: what others do on the machine only adds."""
-    taken = []
-    for _ in range(runs):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        assert python(*words).returncode == 0
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        taken.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return min(taken)
+def seconds(*words):
+    """Processor time of a process."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert python(*words).returncode == 0
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 @pytest.mark.parametrize(
-    ("words", "other", "limit"),
-    [(("-c", "import raceway"), "pass", 0.1), (("-m", "raceway", "--help"), "import attrs, click", 0.15)],
-    ids=["import", "help"],
+    ("words", "limit"), [(("-c", "import raceway"), 0.7), (("-m", "raceway", "--help"), 1.5)], ids=["import", "help"]
 )
-def test_the_import_and_the_help_take_little_more_than_their_libraries(words, other, limit):
-    assert least_seconds(*words) - least_seconds("-c", other) <= limit
+def test_the_import_and_the_help_take_no_longer_than_a_library_that_they_leave_out(words, limit):
+    """Over the import of numpy, a tenth of a second: a quarter and two thirds; numba or scipy alone would add three of it."""
+    ratios = [seconds(*words) / seconds("-c", "import numpy") for _ in range(7)]
+    assert min(ratios) <= limit  # what others do on the machine meets both

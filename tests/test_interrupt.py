@@ -20,7 +20,7 @@ from raceway.framework.orphans import WATCH, deaf_to_terminals
 from raceway.plugins.processes import Processes
 from raceway.points.dataset import open_store
 from raceway.points.store import Store, connected, exists
-from validation.command_line import ARTICLE, MINIMAL, python, raceway
+from validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
 from validation.sessions import left, members
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
@@ -152,7 +152,7 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
     words = ["sweep", ARTICLE, "--set", "integrator.turns=40", "--grid", "load.axial=400:2000:60", "--out", tmp_path / "s"]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    end = time.monotonic() + 100.0
+    end = time.monotonic() + PATIENCE_S
     done = 0
     while not done and time.monotonic() < end:
         time.sleep(0.05)
@@ -162,7 +162,7 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
         except RacewayError:
             continue  # it is being made
     process.send_signal(number)
-    error = process.communicate(timeout=60.0)[1].decode()
+    error = process.communicate(timeout=PATIENCE_S)[1].decode()
     assert process.returncode == CODES[number], error
     assert error.count(f"stopped by {number.name}; no file is left half-written") == 1
     assert "Traceback" not in error and len(error.strip().splitlines()) == 2, error  # and what is done of how many
@@ -198,11 +198,11 @@ def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_a
     ]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    end = time.monotonic() + 100.0
+    end = time.monotonic() + PATIENCE_S
     while not stored(tmp_path) and time.monotonic() < end:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
-    error = process.communicate(timeout=60.0)[1].decode()
+    error = process.communicate(timeout=PATIENCE_S)[1].decode()
     assert process.returncode == 130, error
     assert f"are in {tmp_path / 'points.sqlite'}; the same command continues" in error and "Traceback" not in error
     assert not left(process.pid)  # the tracker of the executor's processes ends a moment after them
@@ -281,7 +281,7 @@ def test_what_is_started_deaf_to_terminals_stays_so_and_nothing_is_lost():
         assert seen == [signal.SIGHUP] and not blocked(os.getpid())
         assert blocked(child.pid) == {signal.SIGINT, signal.SIGHUP}
         child.terminate()
-        assert child.wait(60.0) == -signal.SIGTERM
+        assert child.wait(PATIENCE_S) == -signal.SIGTERM
     finally:
         signal.signal(signal.SIGHUP, before)
 
@@ -305,7 +305,7 @@ def test_ctrl_c_ends_with_130_and_one_line(tmp_path):
     with subprocess.Popen(words, preexec_fn=listen, **streams) as process:
         time.sleep(2.5)  # past the imports, inside the 360 million steps
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=30)
+        out, err = process.communicate(timeout=PATIENCE_S)
     # While a compiled module is being imported (a busy machine gets no further in that time) Python ends by the signal
     # itself after the same message; a shell reports both as 130.
     assert process.returncode in (130, -signal.SIGINT)

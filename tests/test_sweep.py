@@ -32,7 +32,7 @@ from raceway.points.sweep import fill_store as study
 from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
-from validation.command_line import ARTICLE, EXAMPLES, invoke
+from validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
 
 SCENE: dict[str, Any] = {
     "title": "test",
@@ -205,7 +205,7 @@ def test_killed_while_it_computes(tmp_path):
     words = ["-m", "raceway", "sweep", ARTICLE, "--set", "integrator.kind=quasi_static", *words]
     process = subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     file, done = tmp_path / "s" / "points.sqlite", 0
-    end = time.monotonic() + 100.0
+    end = time.monotonic() + PATIENCE_S
     while done < 8 and process.poll() is None and time.monotonic() < end:
         time.sleep(0.02)
         if file.is_file() and file.stat().st_size > 0:

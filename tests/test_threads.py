@@ -8,6 +8,7 @@ import threading
 import pytest
 
 from raceway.core.threads import BOUNDS, ThreadPool, usable_cores
+from validation.command_line import PATIENCE_S
 
 
 def helpers() -> int:
@@ -32,7 +33,7 @@ def test_every_job_is_done_once_and_the_threads_end_with_the_pool(count):
 
 
 def test_jobs_run_at_the_same_time_while_the_pool_is_open_and_one_by_one_after():
-    meeting = threading.Barrier(3, timeout=30.0)
+    meeting = threading.Barrier(3, timeout=PATIENCE_S)
     pool = ThreadPool(3)
     with pool:
         pool.do(3, lambda number: meeting.wait())  # three have to be there at once
@@ -42,7 +43,7 @@ def test_jobs_run_at_the_same_time_while_the_pool_is_open_and_one_by_one_after()
 
 
 def test_a_failure_is_handed_on_when_nothing_runs_any_more():
-    begun, running, tick = [], [], threading.Barrier(2, timeout=30.0)
+    begun, running, tick = [], [], threading.Barrier(2, timeout=PATIENCE_S)
 
     def job(number: int) -> None:
         begun.append(number)

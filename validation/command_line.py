@@ -17,6 +17,10 @@ EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")
 
 
+#: After which a process is taken as hung [s]: none is judged by it, and one that compiles on a busy machine takes minutes.
+PATIENCE_S = 600.0
+
+
 def invoke(*words: Any) -> Result:
     """A command in this process; nothing but an exit may leave it."""
     found = CliRunner().invoke(main, [str(word) for word in words])
@@ -34,7 +38,7 @@ def python(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.Compl
     """A Python process; keywords become environment variables."""
     variables = {**os.environ, **{name: str(value) for name, value in environment.items()}}
     command = [sys.executable, *(str(word) for word in words)]
-    return subprocess.run(command, capture_output=True, text=True, env=variables, cwd=cwd, timeout=120, check=False)
+    return subprocess.run(command, capture_output=True, text=True, env=variables, cwd=cwd, timeout=PATIENCE_S, check=False)
 
 
 def install(folder: Path, name: str, code: str, entry: str | None = None) -> Path:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+from validation.command_line import PATIENCE_S
+
 
 def members(session: int) -> list[str]:
     """Numbers of the processes of a session that live."""
@@ -19,7 +21,7 @@ def members(session: int) -> list[str]:
     return found
 
 
-def left(session: int, patience_s: float = 5.0) -> list[str]:
+def left(session: int, patience_s: float = PATIENCE_S) -> list[str]:
     """Those that live after some time; as soon as there are none."""
     end = time.monotonic() + patience_s
     while (found := members(session)) and time.monotonic() < end:

@@ -52,6 +52,14 @@ def test_a_value_of_the_machine_misses_or_holds(rows, value, misses):
     assert rows[0][1]["misses"] == misses
 
 
+@pytest.mark.parametrize("clock", [{"unit": "s"}, {"unit": "ms"}, {"machine": True}])
+def test_no_quick_test_is_decided_by_the_clock(rows, clock):
+    with pytest.raises(TypeError, match="mark its test `night`"):
+        claims_into(rows, by_night=False)("x", 0.5, at_most=1.0, basis="regression", **clock)
+    claims_into(rows)("x", 0.5, at_most=1.0, basis="regression", **clock)
+    assert len(rows) == 1
+
+
 @pytest.mark.parametrize("limits", [{}, {"near": 1.0}, {"near": 1.0, "within": 0.1, "at_most": 2.0}])
 def test_a_claim_has_one_kind_of_limits(limits):
     with pytest.raises(TypeError, match="`near` with `within`"):

@@ -8,7 +8,7 @@ import pytest
 
 from validation.browser.application import Application, Tab, expected, hurry
 from validation.browser.chromium import Browser
-from validation.command_line import EXAMPLES
+from validation.command_line import EXAMPLES, PATIENCE_S
 
 pytestmark = pytest.mark.needs("browser")
 SCENE = str(EXAMPLES / "b7206.toml")
@@ -113,7 +113,7 @@ def test_a_server_that_has_stopped_is_seen(browser, tmp_path):
     with Application(tmp_path, SCENE) as served:
         Tab(browser, served.address)
         assert served.stop() in (0, 130)
-        end = time.monotonic() + 20.0
+        end = time.monotonic() + PATIENCE_S
         while "onnect" not in (words := browser.run("return document.body.innerText")):
             assert time.monotonic() < end
             time.sleep(0.1)
@@ -172,7 +172,7 @@ def test_files_are_written_into_the_folder(browser, tmp_path):
             ("ROSS", "bearing.toml"),
         ):
             tab.press(words, changes=False)
-            end = time.monotonic() + 60.0
+            end = time.monotonic() + PATIENCE_S
             while not ((note := tab.text('[data-test="note"]')).startswith("written: ") and note.endswith(name)):
                 assert time.monotonic() < end, note
                 time.sleep(0.05)
@@ -189,7 +189,7 @@ def test_long_work_is_stopped(browser, tmp_path):
         tab.wait(last)
         last = tab.number
         tab.type("integrator.turns", "8000")
-        end = time.monotonic() + 30.0
+        end = time.monotonic() + PATIENCE_S
         while "planned" not in (words := tab.text('[data-test="busy"]')) and "%" not in words:
             assert time.monotonic() < end, words
             time.sleep(0.05)

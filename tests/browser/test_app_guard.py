@@ -21,7 +21,7 @@ from raceway.studies.app.session import Session
 from raceway.studies.app.worker import Job, News, Worker
 from validation.browser.application import Application, Tab, proportional_memory
 from validation.browser.chromium import Browser
-from validation.command_line import EXAMPLES
+from validation.command_line import EXAMPLES, PATIENCE_S
 
 SCENE = str(EXAMPLES / "b7206.toml")
 
@@ -34,7 +34,7 @@ def application(tmp_path_factory):
 
 def status(application, path: str, host: str = "", **headers: str) -> int:
     """Of a GET request."""
-    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=PATIENCE_S)
     try:
         connection.request("GET", path, headers={"Host": host or f"127.0.0.1:{application.port}", **headers})
         return connection.getresponse().status
@@ -132,10 +132,10 @@ def test_a_worker_that_was_killed_is_replaced(tmp_path):
         for _ in range(2):
             ended.clear()
             worker.submit(Job(0, {0: (0, session.scenes[0])}))
-            assert ended.wait(60.0)
+            assert ended.wait(PATIENCE_S)
             before = worker.process_id
             os.kill(before, signal.SIGKILL)  # as the system does where memory runs out
-            end = time.monotonic() + 20.0
+            end = time.monotonic() + PATIENCE_S
             while worker.process_id == before:
                 assert time.monotonic() < end
                 time.sleep(0.02)
@@ -183,7 +183,7 @@ def test_broken_connections_and_messages_leave_the_server_alive(application):
 
 def flood(application, requests: int) -> None:
     """So many requests without a token, then one with it."""
-    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", application.port, timeout=PATIENCE_S)
     for _ in range(requests):
         connection.request("GET", "/index.html?token=guess")
         response = connection.getresponse()

@@ -8,6 +8,7 @@ from collections import defaultdict
 from functools import cache
 
 import numpy as np
+import pytest
 
 import raceway as rw
 from raceway.core.jit import working_process_time
@@ -185,6 +186,7 @@ def test_radial_stiffness(claim):
     claim(quantity, np.quantile(off, 0.9), at_most=stated, basis="published", source=source)
 
 
+@pytest.mark.night
 def test_time(claim):
     spent = sum(one[1] for one in (inferred("nsk", "--conformity", "0.522"), inferred("gmn"), of_scenes()))
     quantity = "processor time of both inferences and 384 scenes"

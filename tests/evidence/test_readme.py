@@ -32,6 +32,7 @@ def processor_seconds(*words):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+@pytest.mark.night
 def test_a_run_takes_about_a_second(claim, tmp_path):
     words = ("run", "examples/minimal.toml", "--out", str(tmp_path / "out"))
     processor_seconds(*words)
@@ -47,6 +48,7 @@ def test_a_run_takes_about_a_second(claim, tmp_path):
     )
 
 
+@pytest.mark.night
 @pytest.mark.parametrize(("bodies", "limit"), [("rigid", 0.01), ("condensed", 0.5)])
 def test_a_static_answer(claim, bodies, limit):
     """README: milliseconds; milliseconds to tenths of a second.  The first load is not counted: set-up."""

@@ -15,9 +15,8 @@ from typing import Any, Self
 
 from raceway.pipeline.run_screen import screen
 from validation.browser.chromium import Browser
+from validation.command_line import PATIENCE_S
 
-#: Longest wait for a picture [s].
-PATIENCE_S = 60.0
 _READY = """
 const app = document.querySelector(".app"), last = arguments[0];
 return Boolean(app) && app.dataset.done === app.dataset.number && app.dataset.number !== last;
