@@ -228,6 +228,34 @@ def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeyp
     assert clock["loaded"] == loaded + 2
 
 
+def around(first, second):
+    """A kernel around others, each of which holds what it was made of."""
+
+    @jit(numba.float64(numba.float64))
+    def both(x):
+        return first(x) + second(x)
+
+    return both
+
+
+def test_closures_over_closures_are_found_again(tmp_path, monkeypatch):
+    """Each is made anew, as in another process: numba then marks the same function by another number."""
+
+    def countdown():
+        @numba.njit(numba.float64(numba.float64))
+        def down(x):
+            return x if x < 1.0 else down(x - 1.0)
+
+        return down
+
+    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
+    for again in (False, True):
+        before, files = clock["loaded"], len(list(tmp_path.rglob("*.nbc")))
+        made = [around(scaled(2.0), scaled(3.0)), around(scaled(3.0), around(scaled(1.0), countdown()))]
+        assert [kernel(4.5) for kernel in made] == [22.5, 18.5]
+        assert (clock["loaded"] - before >= 2, len(list(tmp_path.rglob("*.nbc"))) == files) == (again, again)
+
+
 @jit(numba.float64(Pointer(numba.float64(numba.float64)), numba.float64))
 def called(function, x):
     return function(x)

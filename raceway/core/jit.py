@@ -12,15 +12,17 @@ from __future__ import annotations
 
 import gc
 import hashlib
+import marshal
 import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache, cached_property
 from importlib import import_module
 from itertools import count
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numba
@@ -31,6 +33,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
 from numba.core.types.functions import BaseFunction
@@ -369,7 +372,9 @@ class Kernel(_Dispatcher):
         """
         self.enable_caching()
         cache_: _Numba = self._cache
-        key = cache_._index_key(self.signature, self.targetctx.codegen())
+        machine = self.targetctx.codegen().magic_tuple()
+        key = self.signature, machine, hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+        cache_._index_key = lambda signature, codegen: key
         base = f"{cache_._impl.filename_base}.{hashlib.blake2b(repr(key).encode(), digest_size=8).hexdigest()}"
         cache_._cache_file = IndexDataCacheFile(cache_.cache_path, base, cache_._impl.locator.get_source_stamp())
         return FilesOfKernel(base, Path(cache_.cache_path))
@@ -384,6 +389,26 @@ class Kernel(_Dispatcher):
                 pass
         lines = [line.strip() for line in str(why).splitlines() if line.strip()]
         return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
+
+
+def _marks(value: _Numba, above: list[_Numba]) -> Any:
+    """Of a function, or of what a closure holds, all that decides machine code, the same in every process.
+
+    numba's own mark of a function in a closure is a random number: kernels around it would never be found again.  ``above`` : functions
+    that hold it, for one that calls itself.
+    """
+    function = getattr(value, "py_func", value)
+    if not isinstance(function, FunctionType):
+        return dumps(value)
+    if function in above:
+        return above.index(function)
+    code, cells = function.__code__, [_marks(cell.cell_contents, [*above, function]) for cell in function.__closure__ or ()]
+    stamp: object = None
+    with suppress(OSError):  # a file that is changed changes globals, too
+        status = Path(code.co_filename).stat()
+        stamp = status.st_mtime_ns, status.st_size
+    options = str(getattr(value, "signature", "")), sorted(getattr(value, "targetoptions", {}).items())
+    return function.__module__, marshal.dumps(code, 2), function.__defaults__, stamp, options, cells
 
 
 class _Linked(JITCodeLibrary):
