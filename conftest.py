@@ -7,5 +7,6 @@ long.  It is read when numpy is imported, which the plug-ins below do.
 import os
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ |= {"RACEWAY_PLUGINS": "", "RACEWAY_DISABLE": ""}
 
 pytest_plugins = ["validation.system_libraries", "benchmarks.claims"]

@@ -1,11 +1,14 @@
 """A broken, blocked, missing or doubled plug-in is named, and never takes the others down."""
 
+from importlib.metadata import entry_points
+
 import pytest
 
 from raceway.errors import PluginError
 from raceway.framework.registry import Registry
 from raceway.scene.reading import _check_requires
 from tests.fake_site import LAW, FakeSite
+from validation.command_line import install, law
 
 BROKEN = {
     "import": ("import a_module_that_nobody_has", "fails to import: ModuleNotFoundError"),
@@ -58,6 +61,14 @@ BROKEN = {
         "has no class attribute `name`",
     ),
 }
+
+
+def test_tests_see_built_in_plug_ins_only(tmp_path, monkeypatch):
+    """Whatever is installed: here a law that looks so."""
+    install(tmp_path, "foreign", law("foreign"))
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "foreign" in {point.name for point in entry_points(group="raceway")}
+    assert {entry.distribution for entry in Registry().all()} == {"raceway"}
 
 
 @pytest.fixture

@@ -42,6 +42,7 @@ def test_a_third_party_plug_in_appears(tmp_path, monkeypatch):
 
     install(tmp_path, "elsewhere", law("elsewhere_law"))
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setenv("RACEWAY_PLUGINS", "elsewhere")
     schema = scene_schema(Registry())
     kinds = [b["properties"]["kind"]["const"] for b in schema["properties"]["contact"]["oneOf"]]
     assert "elsewhere_law" in kinds

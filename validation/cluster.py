@@ -12,13 +12,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 from raceway.points import engine as work
 from raceway.points.axes import grid
 from raceway.points.dataset import SweepStore
 from raceway.points.sweep import Sweep, prepare
 from raceway.testing import b7206c
-from validation.command_line import install
+from validation.command_line import found_on, install
 
 #: Some ten milliseconds a point here; on the workers it sleeps, so that they are killed at work.
 POINTS = 24
@@ -79,7 +80,7 @@ class Cluster:
     def worker(self, name: str) -> None:
         """One that has the plug-in, whose points take a quarter of a second."""
         path = os.pathsep.join([str(self.plugin), os.environ.get("PYTHONPATH", "")])
-        self.bare_worker(name, PYTHONPATH=path, LAW_TAKES="0.25")
+        self.bare_worker(name, PYTHONPATH=path, LAW_TAKES="0.25", **found_on(path))
 
     def bare_worker(self, name: str, **environment: str) -> None:
         words = ("--no-nanny", "--nthreads", "1", "--name", name, "--local-directory", self.folder / name)
@@ -121,7 +122,8 @@ def installed(folder: Path) -> Iterator[Path]:
     own, work._OWN = work._OWN, {}
     sys.path.insert(0, str(folder))
     try:
-        yield folder
+        with patch.dict(os.environ, found_on(folder)):
+            yield folder
     finally:
         sys.path.remove(str(folder))
         work._OWN = own

@@ -36,9 +36,15 @@ def raceway(*words: Any, **environment: Any) -> subprocess.CompletedProcess[str]
 
 def python(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
     """A Python process; keywords become environment variables."""
-    variables = {**os.environ, **{name: str(value) for name, value in environment.items()}}
+    variables = {**os.environ, **found_on(environment.get("PYTHONPATH", "")), **{k: str(v) for k, v in environment.items()}}
     command = [sys.executable, *(str(word) for word in words)]
     return subprocess.run(command, capture_output=True, text=True, env=variables, cwd=cwd, timeout=PATIENCE_S, check=False)
+
+
+def found_on(path: object) -> dict[str, str]:
+    """Environment in which the plug-ins of the distributions on a path are loaded, and no others."""
+    folders = [Path(folder) for folder in str(path).split(os.pathsep) if folder]
+    return {"RACEWAY_PLUGINS": ",".join(info.name.partition("-")[0] for f in folders for info in f.glob("*.dist-info"))}
 
 
 def install(folder: Path, name: str, code: str, entry: str | None = None) -> Path:
