@@ -224,6 +224,29 @@ def test_what_the_loop_cannot_do_is_run() -> None:
         f(np.full(1_000_000, 400.0))
 
 
+def test_what_a_run_lacks_is_no_number() -> None:
+    scene = {**TURNING, "integrator": {"kind": "quasi_static", "turns": 1}}
+    answer = rw.function(scene, ["load.axial"], ["kyy", "largest_multiplier"])([900.0])
+    assert answer["status"] == rw.PointStatus.RUN and answer["kyy"] > 0.0
+    assert np.isnan(answer["largest_multiplier"]) and "has no largest_multiplier" in answer["reason"][0]
+
+
+def test_an_orbit_along_which_the_stiffness_changes_much_is_left_to_a_run() -> None:
+    """Forces of 200 N and of 2 kN on 300 N of preload: the loop finds both orbits; beside the second there may be others."""
+    scene = TURNING | {"load": {"axial": 300.0}, "supports": {"tilt": "locked"}}
+    f = rw.function(scene, ["excitation.unbalance"], ["K"], tolerance=1e-6)
+    answer = f.looped({"excitation.unbalance": np.array([200.0, 2000.0]) / (9000.0 * np.pi / 30.0) ** 2})
+    assert answer["status"].tolist() == [rw.PointStatus.COMPUTED, rw.PointStatus.FAILED]
+
+
+def test_tilts_follow_on_a_shaft_that_resists_about_both_axes() -> None:
+    """Static condensation of the five by five stiffness, where a load beside the axes couples all."""
+    scene = {**STATIC, "load": {"axial": 1.0, "radial": [300.0, 100.0]}, "supports": {"tilt": 2e4}}
+    answer = rw.function(scene, ["load.axial"], ["kyy_tilts_follow", "stiffness"])(900.0)
+    k = answer["stiffness"] + np.diag([0.0, 0.0, 0.0, 2e4, 2e4])
+    assert answer["kyy_tilts_follow"] == pytest.approx(k[1, 1] - k[1, 3:] @ np.linalg.solve(k[3:, 3:], k[3:, 1]), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("tables", "key", "words"),
     [

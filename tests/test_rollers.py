@@ -229,6 +229,18 @@ def test_columns_are_the_runs_to_rounding():
         assert (many["p0_inner"][k], many["p0_outer"][k]) == pytest.approx(tuple(pressure), rel=1e-12)
 
 
+@pytest.mark.parametrize(("share", "refused"), [(0.98, False), (1.02, True)])
+def test_rollers_are_refused_where_a_contact_is_half_as_wide_as_they_are(share, refused):
+    """b = [4 Q R / (pi L E*)]^(1/2) of Hertz, wider at the outer race."""
+    d, pitch, modulus = 9e-3, 46.5e-3, 212e9 / (2.0 * (1.0 - 0.29**2))
+    radius = 1.0 / (2.0 / d - 2.0 / (pitch + d))
+    load = 0.25 * np.pi * LENGTH * modulus * (share * d / 4.0) ** 2 / radius
+    bearing = {**TABLES["bearing"], "radial_clearance": 0.0}
+    f = rw.function({**TABLES, "bearing": bearing, "kinematics": {"ball_inertia": False}}, ["load.radial[0]"], ["ball_load"])
+    force = load / f(FORCE)["ball_load"].max() * FORCE  # all loads grow alike where there is no clearance
+    assert (f.looped({"load.radial[0]": np.array([force])})["status"][0] == rw.PointStatus.FAILED) == refused
+
+
 # --- by number
 
 
