@@ -140,6 +140,8 @@ def _read(path: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 @lru_cache(maxsize=8)
 def _parse(path: str, _time: int, _size: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     table = read_numbers(Path(path), _judge)
+    if table.notes:
+        raise ValueError(table.notes[0])
     if len(table.values) < _LEAST:
         raise ValueError(f"{len(table.values)} samples; at least {_LEAST} are needed")
     table.values.setflags(write=False)

@@ -1,10 +1,7 @@
-"""Headings of measured files: column headers below an instrument's preamble, their units, the sample interval.
+"""Headings of measured files: where the table of numbers begins, and what the text above it says of names, units and times.
 
-A file begins with its column headers, or as one of ``_FORMATS``; a line of units may follow the headers in each.
-
-References
-----------
-Tektronix, LabVIEW, Keysight, Rigol, PicoScope: the sources are in tests/validation/instrument_files.py.
+The table is where several lines have numbers in the same places.  Above it stand its column headers, a line of units, and what an
+instrument says of itself.  No maker's format is known here; samples and sources of those that are tested: tests/validation/instrument_files.py.
 """
 
 from __future__ import annotations
@@ -12,178 +9,239 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Sequence
-from itertools import islice
+from itertools import groupby, islice, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import attrs
 
 if TYPE_CHECKING:
     import numpy as np
 
-#: Lines within which an instrument's column headers begin, and characters of one that are looked at.
-_LINES, _LONGEST = 200, 2**16
-#: Units in a line of their own, and how they are written here.
-_UNITS = {"second": "s", "seconds": "s", "volt": "V", "volts": "V", "ampere": "A", "sequence": "s"}
-_UNITS |= {
-    unit.lower(): unit
-    for unit in ("s", "ms", "us", "µs", "ns", "ps", "V", "mV", "uV", "µV", "kV", "A", "mA", "N", "m", "mm", "um", "µm", "g")
-}
-_TIMES = {"time", "zeit", "x-axis", "x_value", "x"}
-
-
-@attrs.frozen
-class _Format:
-    """A maker's files.
-
-    first, header : patterns of the first line and of the line of column headers
-    units : tag of the preamble's line of units; "": they stand below the headers
-    start, interval : tags of the first time and of the interval [s]
-    fault : why such a file is refused
-    """
-
-    maker: str
-    first: str
-    header: str = ""
-    units: str = ""
-    start: str = ""
-    interval: str = ""
-    fault: str = ""
-
-
-_FORMATS = (
-    _Format("Tektronix", r"#?(Model|Firmware Version|Waveform Type),", r"#?TIME,", "Vertical Units"),
-    _Format(
-        "Tektronix", r"Record Length,[^,]*,.*,",
-        fault="a file of one channel and its settings, as written by TDS oscilloscopes: force and displacement are needed. "
-        "Join the channels in one file with a line of column headers, time_s,CH1,CH2",
-    ),
-    _Format("LabVIEW", r"LabVIEW Measurement", r"X_Value", "Y_Unit_Label", "X0", "Delta_X"),
-    _Format("Keysight", r"x-axis,", r"x-axis,"),
-    _Format("Rigol", r"X,.*Start,Increment", r"X,", start="Start", interval="Increment"),
-)  # fmt: skip
+#: Lines within which a table begins, and characters of one that are looked at; rows that are several; signs before a comment.
+_LINES, _LONGEST, _SEVERAL, _MARKS = 500, 2**16, 3, "#;%!* \t"
+#: Words of a line of units; others stand there in brackets.
+_UNITS = {
+    "s", "sec", "second", "seconds", "ms", "us", "µs", "ns", "ps", "v", "volt", "volts", "mv", "uv", "µv", "kv", "a", "ma", "ampere", "n", "kn",
+    "newton", "newtons", "m", "mm", "um", "µm", "nm", "micron", "microns", "g", "m/s", "mm/s", "m/s2", "m/s^2", "m/s²", "hz", "rpm", "°c", "-",
+    "sequence",
+}  # fmt: skip
+#: Names of times without a unit, and any name with one; what stands before the units of channels.
+_TIME = re.compile(r"(?i)(?:time|zeit|temps|t|x-axis|x_value)$|.*[\[(\s_](?P<unit>[mnuµ]?s|sec|seconds?)[\])_]*$")
+_LABEL = re.compile(r"(?i)(?!h|x).*unit")
+#: Rate or interval of samples, in the text above a table.
+_CLOCK = re.compile(
+    r"(?:(?:sampl\w*?|abtast)[ _]?(?P<rate>rate|frequen\w*)|(?:sampl\w*|abtast)[ _]?(?:interval\w*|period)|delta_x|increment)\W+"
+    r"(?P<size>\d+[.,]?\d*(?:e[-+]?\d+)?|[.,]\d+(?:e[-+]?\d+)?)\s?(?P<unit>[mnuµkg])?(?:hz|sa?/s|s)?(?![a-z])"
+)
+_PARTS = {None: 1.0, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9, "k": 1e3, "g": 1e9}
 
 
 @attrs.frozen
 class Heading:
     """Column headers of a file, with their units in brackets where a line beside them states these.
 
-    line, last : numbers of the header line and of the last line above the numbers
-    sign : between the columns;  maker : of the instrument, or ""
-    start, interval : of the time [s], whose column counts samples or, with ``absent``, is none; None: the column has times
+    line, last : numbers of the line of headers, or of the first row without one, and of the last line above the numbers
+    sign : between the columns, " " for blanks;  fields : of a row that hold numbers, None: all;  most : fields of a row
+    notes : sentences on what was left out or assumed
+    interval : of samples [s] that the first column counts or, with ``absent``, that have no times;  clock : column of rounded times
     """
 
     header: list[str]
     line: int
     last: int
     sign: str
-    maker: str = ""
-    start: float = 0.0
+    fields: tuple[int, ...] | None = None
+    most: int = 0
+    notes: tuple[str, ...] = ()
     interval: float | None = None
     absent: bool = False
+    clock: int | None = None
 
     @property
     def width(self) -> int:
         """Columns of numbers in a row of the file."""
         return len(self.header) - self.absent
 
+    def picked(self, rows: list[str]) -> list[str]:
+        """Rows of text without the fields that hold no numbers, tabs between the others; one with more fields than all as it is."""
+        if self.fields is None:
+            return rows
+        split = ([*_words(text, self.sign), *[""] * self.most] for text in rows)
+        picked = (("\t".join([words[k] for k in self.fields]), any(words[self.most :])) for words in split)
+        return [text if more else part for text, (part, more) in zip(rows, picked, strict=True)]
+
     def with_times(self, values: np.ndarray) -> np.ndarray:
         """Rows (n, k) with times [s] of the clock in the first column: of counted samples, or of times that were rounded."""
         import numpy as np
 
         if self.interval is not None:
-            counts = np.arange(len(values)) if self.absent else values[:, 0]
-            times = self.start + self.interval * counts
-            return np.column_stack([times, values if self.absent else values[:, 1:]])
-        if self.maker and self.header[0].lower().startswith("time") and len(values) > 2:
-            even, steps = np.linspace(values[0, 0], values[-1, 0], len(values)), np.diff(values[:, 0])
-            if np.abs(values[:, 0] - even).max() <= np.ptp(steps) < np.median(steps):
-                values[:, 0] = even
+            counts = np.arange(len(values)) if self.absent else values[:, 0] - values[:1, 0]
+            return np.column_stack([self.interval * counts, values if self.absent else values[:, 1:]])
+        if self.clock is not None:
+            values[:, self.clock] = evened(values[:, self.clock])
         return values
 
 
+def evened(times: np.ndarray) -> np.ndarray:
+    """Times (n,) of a clock that were rounded, even again; others as they are."""
+    import numpy as np
+
+    if len(times) < 3:
+        return times
+    even, steps = np.linspace(times[0], times[-1], len(times)), np.diff(times)
+    return even if np.abs(times - even).max() <= np.ptp(steps) < np.median(steps) else times
+
+
 def heading_of(path: Path, encoding: str) -> Heading:
-    """The heading of a text file.
+    """The heading of a text file: that of its table, or its first line where it has none.
 
     Raises
     ------
     ValueError
-        An empty file, or an instrument's without what its format promises: line, rule and remedy.
+        An empty file, or one whose samples have no common clock: line, rule and remedy.
     """
     with open(path, encoding=encoding) as stream:
         lines = [text[:_LONGEST] for text in islice(stream, _LINES)]
     filled = [k for k, text in enumerate(lines) if text.strip()]
     if not filled:
         raise ValueError("is empty: a header line and samples are needed")
-    first = filled[0]
-    form = next((form for form in _FORMATS if re.match(form.first, lines[first], re.IGNORECASE)), _Format("", "", ""))
-    if form.fault:
-        raise ValueError(f"line {first + 1}: {form.fault}")
-    at = next((k for k in filled if re.match(form.header, lines[k])), None)
-    if at is None:
-        raise ValueError(
-            f"line {first + 1} begins a file of {form.maker}, whose column headers begin with {form.header.lstrip('#?')!r}: no line of the "
-            f"first {_LINES} does. Export the waveforms of all channels again, or put the line time_s,CH1,CH2 above the numbers"
-        )
-    sign = _sign(lines[at])
-    names = _words(lines[at], sign)
-    tags = {words[0].lstrip("#"): words[1:] for k in filled if k < at and (words := _words(lines[k], _sign(lines[k])))}
-    below = next((k for k in filled if k > at), at)
-    units = _words(lines[below], sign)
-    if form.interval in names:  # beside the columns, its number in the line of units
-        end = names.index(form.start)
-        tags |= {form.start: units[end:], form.interval: units[end + 1 :]}
-        names, units = names[:end], units[:end]
-    last = at
-    if form.units:
-        units = ["s", *tags.get(form.units, [])]
-    elif below > at and any(units) and all(not unit or unit.strip("()[]").lower() in _UNITS for unit in units):
-        last = below
-    else:
-        units = []
-    if not (form.maker or units):
-        return Heading(names, at + 1, at + 1, sign)
-    return _with_units(form, Heading(names, at + 1, last + 1, sign, form.maker or "other"), units, tags)
+    tables = [max(_runs(lines, filled, sign)) for sign in "\t;, "]
+    rank, first, fields = max(
+        tables, key=lambda table: table[0][:3]
+    )  # the first of equal ones: blanks stand beside commas, too
+    sign = "\t;, "[tables.index((rank, first, fields))]
+    if not fields:
+        sign = next((sign for sign in "\t;" if sign in lines[filled[0]].strip()), ",")
+        return Heading(_words(lines[filled[0]], sign), filled[0] + 1, filled[0] + 1, sign)
+    begin = filled.index(first)
+    rows = [_words(lines[k], sign) for k in filled[begin : begin + rank[3]]]
+    for k in reversed(filled[:begin]):  # rows without a sample, or with a number amid their text
+        numbers = _numbers(words := _words(lines[k], sign), sign)
+        if fields[0] not in numbers and len(numbers) < max(sum(map(bool, words)), 1):
+            break
+        first = k
+    above, most = [k for k in filled if k < first], max(map(len, rows))
+    names, units, line = _names(lines, above, sign, fields, most)
+    texts = [k for k in range(most) if k not in fields and any(words[k : k + 1] > [""] for words in rows)]
+    notes = tuple(f"the text of '{_name(names, units, k)}' is left out" for k in texts)
+    picked = None if sign != " " and fields == tuple(range(most)) else fields
+    header = [_name(names, units, k) for k in fields]
+    heading = Heading(header, (first if line is None else line) + 1, first, sign, picked, most, notes)
+    beside = [f"{name};{unit}" for name, unit in list(zip(names, units, strict=False))[fields[-1] + 1 :]]
+    text = "\n".join([lines[k] for k in above if k != line] + beside)
+    return _with_clock(
+        heading,
+        text.replace(",", ";") if sign == "," else text,
+        [float(words[fields[0]].replace(",", ".")) for words in rows],
+    )
 
 
-def _with_units(form: _Format, heading: Heading, units: Sequence[str], tags: dict[str, list[str]]) -> Heading:
-    """The heading of an instrument's file: units beside its names, times by its clock."""
-    names = [name.lstrip("#") for name in heading.header]
-    while names and names[-1] in ("", "Comment"):
-        names.pop()
-    names = [match[1] if (match := re.fullmatch(r"X\((\w+)\)", name)) else name for name in names]
-    if names.count("X_Value") > 1 or tags.get("X_Columns", [""])[0] == "Multi":
-        raise ValueError(
-            f"line {heading.line}: each channel has its own times: save one column of times (X value columns: one only)"
-        )
-    if (kind := tags.get("X_Dimension", ["Time"])[0]) != "Time":
-        raise ValueError(f"X_Dimension is {kind}: a record over time is needed. Save the signals instead")
-    counted = bool(form.interval) and (units[:1] == ["Sequence"] or tags.get("X_Columns", [""])[0] == "No")
-    header = []
-    for k, name in enumerate(names):
-        unit = units[k].strip("()[]") if k < len(units) else ""
-        unit = "s" if counted and k == 0 else _UNITS.get(unit.lower(), unit)
-        name = "time" if k == 0 and name.lower() in _TIMES else name
-        header.append(f"{name} ({unit})" if unit else name)
-    heading = attrs.evolve(heading, header=header)
-    if not counted:
+_Rank: TypeAlias = tuple[bool, bool, float, int]
+
+
+def _runs(lines: Sequence[str], filled: Sequence[int], sign: str) -> list[tuple[_Rank, int, tuple[int, ...]]]:
+    """Consecutive lines with numbers in the same fields: what makes a table of them, the first line, the fields.
+
+    Columns, several rows, words that are numbers, many rows.
+    """
+    runs = []
+    for fields, group in groupby(filled, key=lambda k: _numbers(_words(lines[k], sign), sign)):
+        among = list(group)
+        share = len(fields) / max(sum(map(bool, _words(lines[among[0]], sign))), 1)
+        runs.append(((len(fields) > 1, len(among) >= _SEVERAL, share, len(among)), among[0], fields))
+    return runs
+
+
+def _names(
+    lines: Sequence[str], above: Sequence[int], sign: str, fields: tuple[int, ...], most: int
+) -> tuple[list[str], list[str], int | None]:
+    """Names and units by field of a row, from the lines above it, and the index of the line of names."""
+    units: list[str] = []
+    for k in above:  # a line that names its units as such, those of the channels, perhaps with that of time
+        words = _words(lines[k].strip(_MARKS), sign)
+        if _LABEL.match(words[0]) and any(map(_is_unit, words[1:])):
+            units = words[1:] if len(words) > fields[-1] + 1 and words[-1] else ["", *words[1:]]
+    for k in reversed(above):
+        words = _words(lines[k].strip(_MARKS), sign)
+        if len(words) == most + 1 and _TIME.match(words[1]):  # what the line names stands before it
+            del words[0]
+        here = [words[field] if field < len(words) else "" for field in fields]
+        if _LABEL.match(words[0]):
+            continue
+        if 2 * sum(map(_is_unit, here)) > max(sum(map(bool, here)), 1):
+            units = words if k == above[-1] else units
+            continue
+        numbers = [word for word in here if is_number(word) or not re.search(r"[^\W\d_]", word)]
+        counted = units and lines[k].strip()[0] not in _MARKS and all(word.isdigit() for word in numbers)
+        if (not numbers or counted) and here[0] not in numbers:
+            return words, units, k
+    return ["" if _is_unit(word) else word for word in units], units, None
+
+
+def _is_unit(word: str) -> bool:
+    return word.lower() in _UNITS or bool(re.fullmatch(r"\(.*\)|\[.*\]", word))
+
+
+def _name(names: Sequence[str], units: Sequence[str], field: int) -> str:
+    """A column's header; by its number where no name stands above it, or that of another."""
+    name, unit = (words[field] if field < len(words) else "" for words in (names, units))
+    if not name or names.index(name) < field and not _TIME.match(name):
+        name = f"{name or 'column'} {field + 1}"
+    return f"{name} ({unit.strip('()[]')})" if _is_unit(unit) and unit != "-" else name
+
+
+def _with_clock(heading: Heading, preamble: str, begin: Sequence[float]) -> Heading:
+    """The heading with its times: those of a column, or of the interval or rate that the text above the table states.
+
+    begin : of the first column
+    """
+    header, notes = heading.header, heading.notes
+    times = [k for k, name in enumerate(header) if _TIME.match(name)]
+    if len({header[k] for k in times}) < len(times):
+        raise ValueError(f"line {heading.line}: each channel has its own times: save one column of times for all channels")
+    if (dimension := re.search(r"(?m)^X_Dimension\W+(?!Time)(\w+)", preamble)) is not None:
+        raise ValueError(f"X_Dimension is {dimension[1]}: a record over time is needed. Save the signals instead")
+    found = _CLOCK.search(preamble.lower())
+    if times and preamble:
+        name = header[times[0]]
+        if not _TIME.sub(r"\g<unit>", name):
+            header = [*header[: times[0]], "time (s)", *header[times[0] + 1 :]]
+            notes = (*notes, f"'{name}' is read as seconds: no unit stands beside it")
+        return attrs.evolve(heading, header=header, clock=times[0], notes=notes)
+    size = float(found["size"].replace(",", ".")) if found and not times else 0.0
+    if found is None or not size:
         return heading
+    interval = (
+        1.0 / size / {"m": 1e6}.get(found["unit"], _PARTS[found["unit"]]) if found["rate"] else size * _PARTS[found["unit"]]
+    )
+    apart = [after - before for before, after in pairwise(begin)]
+    if apart and all(abs(step - interval) < 0.5 * interval for step in apart):
+        note = f"'{header[0]}' grows by the sampling interval: read as time in seconds"
+        return attrs.evolve(heading, header=["time (s)", *header[1:]], clock=0, notes=(*notes, note))
+    absent = not apart or any(step != 1.0 for step in apart)
+    note = f"times are those of the interval of {interval:.6g} s that the file states above its table"
+    header = ["time (s)", *header[not absent :]]
+    return attrs.evolve(heading, header=header, interval=interval, absent=absent, notes=(*notes, note))
+
+
+def _numbers(words: Sequence[str], sign: str) -> tuple[int, ...]:
+    """Indices of the words that are numbers; a comma is a decimal sign where none stands between columns."""
+    return tuple(k for k, word in enumerate(words) if is_number(word if sign == "," else word.replace(",", ".")))
+
+
+def is_number(word: str) -> bool:
+    """Whether Python reads a number in a word."""
     try:
-        start, interval = (float(tags[tag][0].replace(",", ".")) for tag in (form.start, form.interval))
-    except (KeyError, IndexError, ValueError):
-        start, interval = 0.0, 0.0
-    if not interval > 0.0:
-        raise ValueError(
-            f"line {heading.line}: no sample interval ({form.interval}) in the file's heading: save the times, too"
-        )
-    return attrs.evolve(heading, start=start, interval=interval, absent=form.maker == "LabVIEW")
+        float(word)
+    except ValueError:
+        return False
+    return True
 
 
 def _words(text: str, sign: str) -> list[str]:
-    return [word.strip() for word in next(csv.reader([text.rstrip("\r\n")], delimiter=sign), [])]
-
-
-def _sign(header: str) -> str:
-    """Tab, semicolon or comma, the first of them that stands outside quotes."""
-    bare = "".join(header.split('"')[::2])
-    return next((sign for sign in "\t;" if sign in bare.strip()), ",")
+    """Fields of a line, at least one; between blanks a unit in brackets belongs to the name before it."""
+    if sign == " ":
+        text = re.sub(r"(?<=\w) (?=[\[(])", "", " ".join(text.split()))
+    words = next(csv.reader([text.strip("\r\n")], delimiter=sign, skipinitialspace=True), [])
+    return [word.strip() for word in words] or [""]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from raceway.errors import RacewayError, extra
-from raceway.storage.files import size_of
+from raceway.storage.files import memory_for, size_of
 from raceway.storage.number_table import LARGEST
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def read_tdms(path: Path) -> dict[str, np.ndarray]:
-    """Header with unit -> numbers (n,), times first, of the file's one group of channels.
+    """Header with unit -> numbers (n,), or text, times first, of the file's one group of channels.
 
     Notes
     -----
@@ -34,23 +34,26 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
         raise RacewayError(f"{path}: .tdms files need nptdms: {extra('measurements')}") from None
     import numpy as np
 
-    size_of(path, LARGEST)
     try:
-        file = TdmsFile.read(path)
-    except (ValueError, KeyError, IndexError) as why:
-        raise ValueError(f"cannot be read: it is no .tdms file ({why})") from None
+        with memory_for(size_of(path, LARGEST)):
+            file = TdmsFile.read(path)
+    except OSError:
+        raise
+    except Exception as why:  # nptdms raises whatever its parsers stumble over
+        raise ValueError(f"cannot be read: it is no .tdms file, or damaged ({why})") from None
+    last = (file.file_status.channel_statuses or {}).items()
+    if lost := ", ".join(f"{name} {n}" for name, block in last if (n := block.expected_length - block.read_length)):
+        raise ValueError(
+            f"is cut off, samples are missing at its end: {lost}. Copy it again, or export those that are there"
+        )
     channels = [channel for group in file.groups() for channel in group.channels()]
     if not channels:
         raise ValueError("has no channels: save the signals, too")
     columns: dict[str, np.ndarray] = {}
-    clocks = {
-        channel.name: (
-            len(channel),
-            channel.properties.get("wf_increment", 0.0),
-            channel.properties.get("wf_start_offset", 0.0),
-        )
-        for channel in channels
-    }
+    steps, starts = (
+        [channel.properties.get(f"wf_{name}", 0.0) for channel in channels] for name in ("increment", "start_offset")
+    )
+    clocks = {channel.name: (len(channel), *clock) for channel, *clock in zip(channels, steps, starts, strict=True)}
     if len(clocks) < len(channels):
         raise ValueError("two groups have channels of one name: save one measurement in a file")
     if len(set(clocks.values())) > 1:
@@ -63,5 +66,5 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
         columns["time (s)"] = start + step * np.arange(count)
     for channel in channels:
         unit = str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", ""))).strip()
-        columns[f"{channel.name} ({unit})" if unit else channel.name] = np.asarray(channel[:], dtype=float)
+        columns[f"{channel.name} ({unit})" if unit else channel.name] = np.asarray(channel[:])
     return columns

@@ -1,13 +1,12 @@
-"""Tables of numbers from CSV files: a heading and finite numbers below it, read in parts of some megabytes.
+"""Tables of numbers from text files: a heading and finite numbers below it, read in parts of some megabytes.
 
-Commas, semicolons or tabs stand between the columns, whichever the header has; where it is no comma, a comma in a number is its
-decimal sign.
+Commas, semicolons, tabs or blanks stand between the columns; where it is no comma, a comma in a number is its decimal sign.
 """
 
 from __future__ import annotations
 
 import csv
-import math
+from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING, TextIO
 import attrs
 
 from raceway.storage.files import size_of
-from raceway.storage.headings import Heading, heading_of
+from raceway.storage.headings import Heading, heading_of, is_number
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +25,8 @@ LARGEST = 2**29
 _PART, _SHOWN = 2**22, 60
 #: Longest interval that is bridged, over the usual one.
 _GAP = 5.0
+#: Size from which a number is a sign that there is none: 9.9e37 and more in files of instruments (SCPI 1999, volume 1, 7.2.1.4).
+NONE = 9.9e37
 _NO_TABLE = "cannot be read: it is not a text file of comma-separated values"
 
 
@@ -33,13 +34,14 @@ _NO_TABLE = "cannot be read: it is not a text file of comma-separated values"
 class NumberTable:
     """``header``: the columns' names; ``values`` (n, k); ``lines`` (n,): the number of each row's line in the file.
 
-    ``word``: what the number of a row counts, for messages.
+    ``word``: what the number of a row counts, for messages;  ``notes``: what was left out or assumed.
     """
 
     header: list[str]
     values: np.ndarray
     lines: np.ndarray
     word: str = "line"
+    notes: tuple[str, ...] = ()
 
     def refuse_uneven(self, time: np.ndarray) -> None:
         """``ValueError`` where the times (n,) [s] of the rows do not grow, or leave a gap."""
@@ -79,22 +81,23 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
         with open(path, encoding=encoding) as stream:
             for _ in range(heading.last):
                 stream.readline()
-            most = _lines_of(path)
+            with open(
+                path, "rb"
+            ) as ends:  # at least as many as Python's text files have: each line ends in one or two of these signs
+                most = 1 + sum(part.count(b"\n") + part.count(b"\r") for part in iter(lambda: ends.read(_PART), b""))
             values, lines = np.empty((most, heading.width)), np.empty(most, dtype=np.int64)
-            count = 0
-            points = False
+            count, marks = 0, ""
             for rows, numbers in _parts(stream, heading.last):
-                if heading.maker:  # instruments end rows with a sign, and leave columns at both ends empty
-                    rows = [text.strip().strip(heading.sign) for text in rows]
+                rows = heading.picked(rows)
                 if heading.sign != ",":
-                    points = points or any("." in text for text in rows)
-                    rows = _with_points(rows, numbers, points)
+                    rows, marks = _with_points(rows, numbers, marks)
                 end = count + len(rows)
-                values[count:end], lines[count:end] = _values(rows, numbers, heading.width, heading.sign), numbers
+                sign = heading.sign if heading.fields is None else "\t"
+                values[count:end], lines[count:end] = _values(rows, numbers, heading.width, sign), numbers
                 count = end
     except (UnicodeDecodeError, csv.Error):
         raise ValueError(_NO_TABLE) from None
-    return NumberTable(heading.header, heading.with_times(values[:count]), lines[:count])
+    return NumberTable(heading.header, heading.with_times(values[:count]), lines[:count], "line", heading.notes)
 
 
 def read_heading(path: Path) -> Heading:
@@ -112,39 +115,37 @@ def read_heading(path: Path) -> Heading:
         raise ValueError(_NO_TABLE) from None
 
 
-def _lines_of(path: Path) -> int:
-    """At least as many as Python's text files have: each line ends in one or two of these signs, but perhaps the last."""
-    with open(path, "rb") as stream:
-        return 1 + sum(part.count(b"\n") + part.count(b"\r") for part in iter(lambda: stream.read(_PART), b""))
-
-
 def _encoding(path: Path) -> str:
-    """UTF-8, unless the first two lines are text in Windows' Western letters alone: spreadsheets write a unit's micro sign so."""
+    """UTF-8, or what a mark says, unless its first part is text in Windows' Western letters alone: a unit's micro sign is written so."""
     with open(path, "rb") as stream:
-        first = b" ".join(stream.readline(_SHOWN * 2**8).strip() for _ in range(2))
+        first = stream.read(_SHOWN * 2**10)
+    if first[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return "utf-16"
     try:
-        first.decode("utf-8-sig")
+        getincrementaldecoder("utf-8-sig")().decode(first)  # a letter may be cut in two at the end
     except UnicodeDecodeError:
-        text = first.decode("cp1252", errors="replace").strip()
-        if text.isprintable() and "\ufffd" not in text:
+        text = first.decode("cp1252", errors="replace")
+        if "\ufffd" not in text and "".join(text.split()).isprintable():
             return "cp1252"
     return "utf-8-sig"
 
 
-def _with_points(rows: list[str], numbers: np.ndarray, points: bool) -> list[str]:
+def _with_points(rows: list[str], numbers: np.ndarray, marks: str) -> tuple[list[str], str]:
     """Decimal commas as points.
 
     Parameters
     ----------
-    points : whether the file has decimal points, beside which a comma says nothing
+    marks : the file's decimal sign, "" where none is known yet; beside the other one it says nothing
+    Returns as well : the same with these rows
     """
     for text, number in zip(rows, numbers, strict=True):
-        if points and "," in text:
+        marks += "".join(mark for mark in ",." if mark in text and mark not in marks)
+        if len(marks) > 1:
             shown = text.strip()[:_SHOWN]
             raise ValueError(
                 f"line {number}: commas and points in the file's numbers ({shown}): write one decimal sign only"
             )
-    return [text.replace(",", ".") for text in rows]
+    return [text.replace(",", ".") for text in rows] if marks == "," else rows, marks
 
 
 def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
@@ -167,21 +168,16 @@ def _values(rows: list[str], numbers: np.ndarray, width: int, sign: str) -> np.n
 
     try:
         values = np.loadtxt(rows, delimiter=sign, comments=None, quotechar='"', ndmin=2)
-        if values.shape == (len(rows), width) and np.isfinite(values).all():
+        if values.shape == (len(rows), width) and (np.abs(values) < NONE).all():
             return values
     except ValueError:
         pass
-    return np.array([_row(text, number, width, sign) for text, number in zip(rows, numbers, strict=True)])
-
-
-def _row(text: str, number: int, width: int, sign: str) -> list[float]:
-    shown = text.strip()[:_SHOWN]
-    try:
-        values = [float(word) for word in next(csv.reader([text], delimiter=sign))]
-    except ValueError:
-        values = []
-    if len(values) != width:
-        raise ValueError(f"line {number}: {width} numbers are needed, found {shown!r}")
-    if not all(math.isfinite(value) for value in values):
-        raise ValueError(f"line {number}: a sample is missing ({shown}): cut the record there")
-    return values
+    table = []
+    for text, number in zip(rows, numbers, strict=True):
+        words, shown = next(csv.reader([text], delimiter=sign)), text.strip()[:_SHOWN]
+        if len(words) != width or not all(map(is_number, words)):
+            raise ValueError(f"line {number}: {width} numbers are needed, found {shown!r}")
+        table.append([float(word) for word in words])
+        if not all(abs(value) < NONE for value in table[-1]):
+            raise ValueError(f"line {number}: a sample is missing ({shown}): cut the record there")
+    return np.array(table)

@@ -92,7 +92,7 @@ def test_a_map_names_columns_on_the_command_line_and_in_python(tmp_path):
 #: Heads, and what the one message says: what was found, and the map that mends it.
 MESSAGES = {
     "Time (s),Ch 1,Ch 2,Ch 3": ["3 columns are not known", "'Time (s)' as time_s", '--map "Ch 1=y_um" --map "Ch 2=z_um" --map "Ch 3=key"'],
-    "Time,X,Y": ["'X' has no unit", '--map "Time=time_s" --map "X=y_um" --map "Y=z_um"'],
+    "Time,X,Y,key": ["'X' has no unit", '--map "Time=time_s" --map "X=y_um" --map "Y=z_um"'],
     "time_s,x_um,y_um,z_um": ["'x_um' may be along the shaft or across it", '--map "x_um=ignore"'],
     "time_s,y_um,z_um,Oil [C],key": ["unknown column 'Oil [C]'", '--map "Oil [C]=ignore"', 'columns={"Oil [C]": "ignore"}'],
     "time_s,X [V],Y [V],key": ["is a voltage: multiply it by the sensor's sensitivity first"],

@@ -131,9 +131,9 @@ GOOD = "time_s,y_um,z_um,key\n" + "\n".join(f"{k * 1e-4:.4f},1.0,2.0,{int(k % 50
 FILES = {
     "no such file": (None, "no such file"),
     "empty": ("", "is empty"),
-    "no text": (b"\xff\xfe\x00\x80binary", "cannot be read"),
+    "no text": (b"\x89PNG\r\n\x1a\n\x00\x80\xff\x81", "cannot be read"),
     "not a CSV": ("%PDF-1.4\nstream\n", "unknown column '%PDF-1.4'"),
-    "no header": (GOOD.partition("\n")[2], "line 1 must name the columns, for instance time_s,y_um,z_um,key"),
+    "no header": (GOOD.partition("\n")[2], "line 1: 4 columns are not known; missing: time, y, z, key"),
     "unit that is not known": (GOOD.replace("y_um", "y_mil"), "line 1: unknown column 'y_mil' (did you mean"),
     "no z": ("\n".join(line.replace(",2.0", "").replace(",z_um", "") for line in GOOD.splitlines()), "no column for z"),
     "no speed": ("\n".join(line.rpartition(",")[0] for line in GOOD.splitlines()), "line 1: no speed"),

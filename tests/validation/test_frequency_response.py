@@ -1,4 +1,4 @@
-"""Frequency response functions in universal files: K within its interval, round trips bit for bit, units right or refused."""
+"""Frequency responses and time histories in universal files: K within its interval, round trips bit for bit, units right or refused."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import raceway as rw
 from raceway import SceneError
 from raceway.studies.fit.linear import fit_record
 from raceway.studies.fit.response import FrequencyResponse, response_of
-from tests.validation.instrument_files import DAMPING, MASS, STIFFNESS, write
+from tests.validation.instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write
 from validation.command_line import invoke
 
 pyuff = pytest.importorskip("pyuff")
@@ -94,6 +94,46 @@ def test_the_command_fits_a_universal_file(tmp_path):
     assert answer.exit_code == 0, answer.output
 
 
+def history(values, kind, unit="NONE", **more):
+    """A time history, as test laboratories save it."""
+    over = {
+        "x": record()[0],
+        "abscissa_spec_data_type": 17,
+        "abscissa_axis_units_lab": "s",
+        "abscissa_spacing": int(kind != 11),
+    }
+    return function(values, kind, (unit, "NONE"), **({"func_type": 1, "binary": 0} | over | more))
+
+
+#: Response to the record's force: data type, order of the derivative, unit, direction and the factor that both make.
+RESPONSES = {
+    "displacement": (8, 0, "um", 3, 1e6),
+    "velocity": (11, 1, "m/s", 3, 1.0),
+    "acceleration": (12, 2, "g", -3, -1.0 / 9.80665),
+}
+
+
+@pytest.mark.parametrize("response", RESPONSES)
+def test_k_of_time_histories_lies_within_its_interval(response, tmp_path):
+    kind, order, unit, direction, size = RESPONSES[response]
+    random, inside, time = np.random.default_rng(2), [], record()[0]
+    force = NEWTONS_PER_VOLT * record()[1]
+    omega = 2.0 * np.pi * np.fft.rfftfreq(2 * len(force), time[1])
+    twice = np.fft.rfft(np.concatenate([force[::-1], force]))  # moving before the record begins
+    moved = np.fft.irfft(twice * (1j * omega) ** order / (STIFFNESS + 1j * omega * DAMPING - MASS * omega**2))[len(force) :]
+    for trial in range(20):
+        noisy = (values + 1e-3 * values.std() * random.standard_normal(len(values)) for values in (force, size * moved))
+        sets = [
+            history(next(noisy), 13, "N"),
+            history(moved, kind, rsp_node=8),
+            history(next(noisy), kind, unit, rsp_dir=direction),
+        ]
+        fitted = rw.fit(file(tmp_path / f"record{trial}.uff", *sets), None, "K,C,mass")
+        inside += [abs(fitted[name] - truth) < fitted.half_width(name) < 0.01 * truth for name, truth in TRUTH.items()]
+    assert f"function 3 is read as {response} in {unit}" in " ".join(fitted.warnings)
+    assert sum(inside) >= 51  # of 60 with the probability 0.95; less are 1 in 1000
+
+
 #: Files that are refused, and the words of the rule and the remedy.
 REFUSED = {
     "unknown unit": ([function(RECEPTANCE, 8, ("furlong", "N"))], ["unit 'furlong'", '--map "1=receptance*FACTOR"']),
@@ -101,6 +141,10 @@ REFUSED = {
     "two drive points": ([function(RECEPTANCE, 8), function(RECEPTANCE, 8, id1="other")], ["1: drive point", "2: other", '--map "NUMBER=ignore"']),
     "no frequency": ([function(RECEPTANCE, 8, abscissa_spec_data_type=17)], ["is not over frequency"]),
     "frequencies that do not grow": ([function(RECEPTANCE, 8, x=HZ[::-1].copy())], ["frequencies must grow"]),
+    "spectra": ([function(np.abs(RECEPTANCE), 12, func_type=2)] * 2, ["holds 2 x auto spectrum of acceleration", "time histories"]),
+    "two responses": ([history(OMEGA, 13, x=HZ), *[history(OMEGA, 8, x=HZ, rsp_node=k) for k in (8, 9)]], ["y is duplicated", '--map "3=ignore"', "response 9:3"]),
+    "a history of what": ([history(OMEGA, 13, x=HZ), history(OMEGA, 0, x=HZ)], ["missing: displacement", '--map "2=y_um"', "an unknown quantity"]),
+    "no force": ([history(OMEGA, 12, x=HZ)], ["238 samples", "missing is force"]),
     "real numbers": ([function(np.abs(RECEPTANCE), 8)], ["complex numbers"]),
 }  # fmt: skip
 

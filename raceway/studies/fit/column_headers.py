@@ -1,7 +1,8 @@
 """Column headers of a record: quantity, axis and unit, whatever program wrote them.
 
-``time_s``, ``Time (s)``, ``"t [ms]"``, ``X [µm]``, ``Displacement Y / mm``, ``Keyphasor (V)``, ``Speed [r/min]`` and ``Force [N]`` are
-understood.  Sensors named X and Y stand across a shaft along z: they are y and z here, where x is the shaft.
+``time_s``, ``Time (s)``, ``"t [ms]"``, ``Zeit [s]``, ``in s``, ``X [µm]``, ``Displacement Y / mm``, ``Keyphasor (V)``, ``Speed [r/min]``,
+``Force [N]`` and ``Acceleration [m/s^2]`` are understood.  Sensors named X and Y stand across a shaft along z: they are y and z here, where
+x is the shaft.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import attrs
 
 from raceway.framework.options import nearest
+from raceway.storage.headings import is_number
 
 _LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 _FORCE = {"n": 1.0, "kn": 1e3}  # no "mn": mN and MN are the same in small letters
@@ -26,6 +28,8 @@ UNITS: dict[str, dict[str, float]] = {
     "force": _FORCE,
     "force_y": _FORCE,
     "force_z": _FORCE,
+    "velocity": {"m_s": 1.0, "mm_s": 1e-3},
+    "acceleration": {"m_s2": 1.0, "mm_s2": 1e-3, "g": 9.80665},
 }
 #: Columns by name: quantity and factor to SI; the voltage of a once-per-turn probe may have any unit.
 COLUMNS = {f"{name}_{unit}": (name, factor) for name, units in UNITS.items() for unit, factor in units.items()}
@@ -33,21 +37,28 @@ COLUMNS["key"] = ("key", 1.0)
 #: Name of a column that is left out.
 IGNORE = "ignore"
 #: Unit in which a column is proposed whose header has none.
-_USUAL = {"time": "s", "y": "um", "z": "um", "speed": "rpm", "force": "n", "force_y": "n", "force_z": "n"}
+_USUAL = {"time": "s", "y": "um", "z": "um", "speed": "rpm"} | dict.fromkeys(("force", "force_y", "force_z"), "n")
+#: Quantities that a record of force and displacement must have, and one of a rig: their words; others that stand for them.
+FORCED, ORBIT = {"time": "time", "force": "force", "y": "displacement"}, {name: name for name in ("time", "y", "z", "key")}
+_INSTEAD = {"force": {"force_y", "force_z"}, "displacement": {"z", "velocity", "acceleration"}, "key": {"speed"}}
 #: Other words for a quantity, and words that name none.
 _WORDS = {
     "t": "time", "keyphasor": "key", "trigger": "key", "mark": "key", "rpm": "speed", "spin speed": "speed", "rotor speed": "speed",
-    "f": "force", "fx": "force x", "fy": "force y", "fz": "force z",
+    "acc": "acceleration", "accel": "acceleration", "f": "force", "fx": "force x", "fy": "force y", "fz": "force z",
 }  # fmt: skip
 _SENSOR = {"displacement", "gap", "sensor", "probe", "position", "signal"}
 _FILLING = {*_SENSOR, "shaft"}
 #: Other spellings of a unit.
 _SPELLINGS = {
     "sec": "s", "second": "s", "seconds": "s", "r/min": "rpm", "1/min": "rpm", "min^-1": "rpm", "min-1": "rpm", "rad/s": "rad_s",
+    "newton": "n", "newtons": "n", "kilonewton": "kn", "micron": "um", "microns": "um", "m/s": "m_s", "mm/s": "mm_s", "m/s2": "m_s2", "m/s^2": "m_s2",
+    "mm/s2": "mm_s2", "mm/s^2": "mm_s2",
 }  # fmt: skip
 _VOLTS = {"v", "mv", "uv", "kv", "volt", "volts"}
 _ALL_UNITS = {unit for units in UNITS.values() for unit in units} | _VOLTS
-_WITH_UNIT = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<a>[^\]]*)\]|\((?P<b>[^)]*)\)|/\s*(?P<c>\S+)|\s(?P<d>rpm))$")
+_WITH_UNIT = re.compile(
+    r"^(?P<name>.*?)\s*(?:\[(?P<a>[^\]]*)\]|\((?P<b>[^)]*)\)|/\s*(?P<c>\S+)|\s(?P<d>rpm)|(?:^|\s)in\s(?P<e>\S+))$"
+)
 _AXIS = re.compile(r"(?P<kind>force )?[xyz]")
 #: A name with a factor: of a sensor's sensitivity per volt.
 _SCALED = re.compile(r"(?P<name>.*?)\s*(?P<sign>[*/])\s*(?P<size>[-+]?[\d.]+(?:e[-+]?\d+)?)", re.IGNORECASE)
@@ -74,14 +85,17 @@ class _Header:
 
 
 def columns_of(
-    headers: Sequence[str], mapping: Mapping[str, str] | None = None, where: str = "line 1: "
+    headers: Sequence[str],
+    mapping: Mapping[str, str] | None = None,
+    where: str = "line 1: ",
+    needed: Mapping[str, str] = ORBIT,
 ) -> dict[str, tuple[int, float]]:
     """Index and factor to SI of each quantity among the columns.
 
     Parameters
     ----------
     mapping : header, with its unit or without, -> a header that is understood, perhaps with a factor ("x_um/8e-3": 8e-3 V per um),
-        or "ignore";  where : prefix of messages
+        or "ignore";  where : prefix of messages;  needed : quantities that columns which are not understood may be, and their words
 
     Raises
     ------
@@ -89,12 +103,10 @@ def columns_of(
         Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
     """
     mapping = _mapping(headers, mapping or {})
-    if all(_is_number(text) for text in headers):
-        raise ValueError(f"{where.rstrip(': ')} must name the columns, {_EXAMPLE}")
     _refuse_mapping(headers, mapping, where)
     columns = _recognised(headers, mapping)
     if any(header.fault for header in columns):
-        raise ValueError(_message(columns, where))
+        raise ValueError(_message(columns, where, needed))
     named = [(COLUMNS[header.name][0], header) for header in columns if header.name]
     quantities = [quantity for quantity, _ in named]
     doubled = [(quantity, header) for quantity, header in named if quantities.count(quantity) > 1]
@@ -103,11 +115,12 @@ def columns_of(
             f"{where}{', '.join(sorted({quantity for quantity, _ in doubled}))} is duplicated. Found: {', '.join(map(str, columns))}. "
             f"Ignore one: {_options([(doubled[-1][1].text, IGNORE)], where)}"
         )
-    return {
-        COLUMNS[header.name][0]: (k, COLUMNS[header.name][1] * header.scale)
-        for k, header in enumerate(columns)
-        if header.name
-    }
+    if "time" not in quantities or len(quantities) < 2:
+        missing = "no column for time" if "time" not in quantities else "time alone is no record"
+        words = f"found: {', '.join(map(str, columns))}; needed: {', '.join(needed.values())}"
+        raise ValueError(f'{where}{missing}; {words}: save it, too, or name its column, for instance --map "HEADER=time_s"')
+    factors = {k: (*COLUMNS[header.name], header.scale) for k, header in enumerate(columns) if header.name}
+    return {quantity: (k, factor * scale) for k, (quantity, factor, scale) in factors.items()}
 
 
 def _plain(text: str) -> str:
@@ -131,7 +144,7 @@ def over_time(headers: Sequence[str], mapping: Mapping[str, str] | None = None) 
 
 def unscaled(name: str) -> tuple[str, float | None]:
     """Name and factor of ``NAME*FACTOR`` or ``NAME/FACTOR``; None without one."""
-    if not (match := _SCALED.fullmatch(name)) or not _is_number(match["size"]) or not float(match["size"]):
+    if not (match := _SCALED.fullmatch(name)) or not is_number(match["size"]) or not float(match["size"]):
         return name, None
     size = float(match["size"])
     return match["name"], size if match["sign"] == "*" else 1.0 / size
@@ -144,7 +157,7 @@ def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Hea
     renamed = {
         text: name
         for text, (name, _) in meant.items()
-        if any(_across(name) for name, _ in meant.values()) and name != IGNORE
+        if any(name not in COLUMNS and _with_y(name) in COLUMNS for name, _ in meant.values()) and name != IGNORE
     }
     parts = [_parts(renamed.get(_plain(text), _plain(text))) for text in headers]
     axes: dict[str | None, set[str]] = {"force ": set(), None: set()}
@@ -165,11 +178,6 @@ def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Hea
     return columns
 
 
-def _across(name: str) -> bool:
-    """Whether a name is x, or force along x, with a unit."""
-    return name not in COLUMNS and _with_y(name) in COLUMNS
-
-
 def _with_y(name: str) -> str:
     return re.sub(r"^(force_)?x_", r"\1y_", name)
 
@@ -178,7 +186,7 @@ def _parts(text: str) -> tuple[str, str | None]:
     """Quantity in the terms of ``_WORDS`` and unit of a plain header; "" and None where it has none."""
     match = _WITH_UNIT.match(text)
     name = match["name"] if match else text
-    unit = next((match[group] for group in "abcd" if match[group] is not None), None) if match else None
+    unit = next((match[group] for group in "abcde" if match[group] is not None), None) if match else None
     words = re.split(r"[\s_.:-]+", name)
     if unit is None and len(words) > 1:
         for count in (2, 1):  # rad_s has two words
@@ -189,6 +197,8 @@ def _parts(text: str) -> tuple[str, str | None]:
         unit = "rpm"
     if unit is None and len(words) > 1 and words[-1] not in set("xyz") and _WORDS.get(words[-2], words[-2]) in {*UNITS, "x"}:
         words, unit = words[:-1], words[-1]
+    if unit is not None and _spelt(unit) in UNITS["time"]:  # in any language
+        return "time", _spelt(unit)
     quantity = " ".join(word for word in words if word and word not in _FILLING)
     if not quantity and _SENSOR.intersection(words):
         quantity = "y"  # one displacement has no axis of its own
@@ -248,32 +258,35 @@ def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: s
             raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
 
 
-def _message(columns: Sequence[_Header], where: str) -> str:
-    """One message: the columns, the meaning of each, the map that mends it."""
+def _message(columns: Sequence[_Header], where: str, needed: Mapping[str, str]) -> str:
+    """One message: the columns, the meaning of each, which of the needed ones is missing, the map that mends it."""
     faulty = [header for header in columns if header.fault]
     present = {COLUMNS[header.name][0] for header in columns if header.name} | {header.guess for header in faulty}
-    missing = [name for name in ("time", "y", "z", "key") if name not in present]
+    absent = [word for name, word in needed.items() if not present & {name, *_INSTEAD.get(word, ())}]
+    missing = [name for name, word in needed.items() if word in absent]
     pairs = []
     for header in faulty:
         unit = _parts(_plain(header.text))[1]
         if header.guess and unit is not None:
             continue  # its unit is the fault, which no name mends
-        name = header.guess or next((name for name in missing if _fits(name, unit)), IGNORE)
+        likely = [name for name in missing if unit is None or unit in UNITS.get(name, _VOLTS)]
+        likely += [name for name in missing if unit in _VOLTS and needed is FORCED and name != "time"]
+        name = next(iter([header.guess] * bool(header.guess) + likely), IGNORE)
         if name in missing:
             missing.remove(name)
         units = UNITS.get(name, {})
-        pairs.append((header.text, f"{name}_{unit if unit in units else _USUAL[name]}" if units else name))
+        meant = f"{name}_{unit if unit in units else _USUAL[name]}" if units else name
+        pairs.append((header.text, f"{meant}*FACTOR" if units and unit in _VOLTS else meant))
     first = f"{len(faulty)} columns are not known"
     if len(faulty) == 1:
         (text,) = (header.text for header in faulty)
         first = f"unknown column '{_shortened(text)}'{nearest(_plain(text), COLUMNS) if len(text) < 30 else ''}"
+    first += f"; missing: {', '.join(absent)}" * bool(absent)
+    if needed is FORCED and len(columns) < len(needed):
+        first += f"; {len(columns)} columns cannot be all of them: save all channels in one file"
     mend = f"State the quantity, for instance {_options(pairs, where)}; " if pairs else ""
+    mend += f"FACTOR is the sensor's per V, {_SENSITIVITY}; " if "*FACTOR" in mend else ""
     return f"{where}{first}. Found: {', '.join(map(str, columns))}. {mend}names: {_names()} ({_EXAMPLE})"
-
-
-def _fits(name: str, unit: str | None) -> bool:
-    """Whether an unknown column may be a quantity, by its unit."""
-    return name == "key" if unit in _VOLTS else unit is None or unit in UNITS.get(name, {})
 
 
 def _names() -> str:
@@ -290,11 +303,3 @@ def _options(pairs: Sequence[tuple[str, str]], where: str) -> str:
 
 def _shortened(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

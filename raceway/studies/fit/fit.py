@@ -12,7 +12,7 @@ from raceway.framework.doors import door
 from raceway.framework.registry import registry_with
 from raceway.out.progress import ShowProgress, telling
 from raceway.scene.inputs import SceneSource, as_scene
-from raceway.studies.fit.column_headers import over_time
+from raceway.studies.fit.column_headers import FORCED, ORBIT, over_time
 from raceway.studies.fit.fitted import Fitted
 from raceway.studies.fit.identify import Identified, identify
 from raceway.studies.fit.linear import fit_record
@@ -73,20 +73,20 @@ def fit(
     (True, 2)
     """
     names = [part for word in free for part in word.split(",")]
-    registry = registry_with(plugins)
+    registry, linear = registry_with(plugins), scene is None and not any("." in name for name in names)
     with telling(progress) as report:
         report("reading", 0, 2)
         record: Signals | FrequencyResponse | None = None
         if isinstance(data, str | Path) and is_response(data):
             record = response_of(data, columns)
-        elif over_time(headers_of(data, "data"), columns):
-            record = signals_of(data, columns)
+        elif linear or over_time(headers_of(data, "data"), columns):
+            record = signals_of(data, columns, FORCED if linear else ORBIT)
         signals = record if isinstance(record, Signals) else None
-        forced = isinstance(record, FrequencyResponse) or (
-            signals is not None and any(name.startswith("force") for name in signals.columns)
+        forced = record is not signals or signals is not None and any(name.startswith("force") for name in signals.columns)
+        _refuse_foreign(
+            signals, forced or linear, scene is not None, mass is not None, slow_roll is not None or run_out is not None
         )
-        _refuse_foreign(signals, forced, scene is not None, mass is not None, slow_roll is not None or run_out is not None)
-        if record is not None and forced:
+        if record is not None and (forced or linear):
             search = partial(fit_record, record, names, mass)
         elif scene is None:
             raise SceneError.at("scene", None, "is missing: give --scene, the model to fit")

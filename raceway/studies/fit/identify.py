@@ -409,21 +409,6 @@ def _largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
     return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
 
 
-def _turned(shaft: Rotor, state: State, response: complex, angle: float) -> list[State]:
-    """States when the response with its run-out [m] turns by an angle [rad] either way."""
-    moved = [state.sensor + response * (exp(1j * turn) - 1.0) for turn in (-angle, angle)]
-    return [with_tilt_of(shaft, state, sensor) for sensor in moved]
-
-
-def _tilted(shaft: Rotor, state: State, part: float) -> list[State]:
-    """States when the tilt stiffness that is assumed is off by a part of itself either way.
-
-    The tilt stiffness is that of the scene's bearing, and no sensor sees it.  How far the scene misses the K of the signals is
-    all that is known of how far it misses the tilt stiffness, which goes with the axial stiffness and follows the contact angle more.
-    """
-    return [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / (1.0 + part), 1.0 + part)]
-
-
 def _sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[dict[str, float | str]]:
     """Relative change of K by one change of what is taken as known.
 
@@ -469,13 +454,20 @@ def identify_recording(
     with_run_out = component.forward * exp(-1j * radians(rig.unbalance_angle_deg))
     deflection = tested.answer(state.speed, state.force, state.moment)[0]
     scene_stiffness = float((state.force / deflection).real + state.mass * state.speed**2)
-    missed = abs(scene_stiffness / state.stiffness - 1.0)
+    # The tilt stiffness is the scene's, no sensor sees it: how far the scene misses K is all that is known of how far it misses that,
+    # which goes with the axial stiffness and follows the contact angle more.
+    stiffer = 1.0 + _TILT * abs(scene_stiffness / state.stiffness - 1.0)
+    turned = (-component.angle_error, component.angle_error)
     parts = {
         "spread": COVERAGE * _standard_errors(shaft, state, component.error),
         "slow roll": COVERAGE * _standard_errors(shaft, state, response.run_out.error),
-        "marks": _largest_change(state, _turned(shaft, state, with_run_out, component.angle_error)),
+        "marks": _largest_change(
+            state, [with_tilt_of(shaft, state, state.sensor + with_run_out * (exp(1j * turn) - 1.0)) for turn in turned]
+        ),
         "window": _largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
-        "tilt": _largest_change(state, _tilted(shaft, state, _TILT * missed)),
+        "tilt": _largest_change(
+            state, [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / stiffer, stiffer)]
+        ),
     }
     changes = _sensitivities(changed_rotors(rig, component.speed), shaft, state)
     return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)

@@ -4,6 +4,7 @@ Notes
 -----
 F(w) = (K + j w C - w^2 m) X(w) + T(w) at the frequencies of a discrete Fourier transform of the full record.  T(w) is a real polynomial
 in j w: the transient of the state at the beginning and the end of the record, which need not begin at rest nor hold full periods.
+A measured velocity or acceleration stands for X times a power of j w; their values at both ends add as many negative powers to T.
 With noise of both channels, residuals e = Z X + T - F have the variance s^2 = |Z|^2 sx^2 + sf^2; the sum of |e|^2 / s^2 is least,
 s with Z, which removes the bias by noise in X.  sx^2 and sf^2, sums of white noise and powers of 1 / w, are determined by the residuals
 themselves.  Tones in them (hum) are fitted beside T, with amplitudes that may grow or fall: a tone in X is Z at its frequency times the same,
@@ -109,7 +110,10 @@ _EVEN = 1e-3
 #: Part of a record's force above which the residual of the model is reported.
 _RESIDUAL = 0.1
 _UNITS = {"K": "N/m", "C": "N s/m", "mass": "kg"}
-_ONE, _TWO = (("y", "force"), ("y", "force_y"), ("z", "force_z")), (("y", "force_y"), ("z", "force_z"))
+_TWO = (("y", "force_y"), ("z", "force_z"))
+#: Derivatives of the displacement that stand for it, by order.
+_ORDERS = {"velocity": 1, "acceleration": 2}
+_ONE = (("y", "force"), *_TWO, *((name, "force") for name in _ORDERS))
 
 
 @attrs.frozen(eq=False)
@@ -118,6 +122,7 @@ class _Spectra:
 
     A frequency response has a force of 1, and no samples over time.
     ``indices`` (n,) of the frequencies in the full transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N].
+    ``order`` of the measured derivative of the displacement.
     """
 
     omega: np.ndarray
@@ -127,6 +132,7 @@ class _Spectra:
     indices: np.ndarray
     time: np.ndarray
     signal: np.ndarray
+    order: int = 0
 
 
 def _spectra_of(signals: Signals) -> _Spectra:
@@ -135,10 +141,17 @@ def _spectra_of(signals: Signals) -> _Spectra:
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
     pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
     if not pairs or columns.keys() >= {"force", "y", "z"}:
+        forced = any(name.startswith("force") for name in columns)
+        missing = (
+            ""
+            if forced and columns.keys() & {"y", "z", *_ORDERS}
+            else f", missing is {'displacement' if forced else 'force'}"
+        )
         raise SceneError.at(
             source, None,
             "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "
-            f"It was read ({signals}); --map \"HEADER=ignore\" leaves a column out",
+            f"It was read ({signals}){missing}; --map \"HEADER=ignore\" leaves a column out, --map \"HEADER=force_n\" names one. The signals of "
+            "a rig, without a force, need --scene",
         )  # fmt: skip
     steps = np.diff(columns["time"])
     if np.ptp(steps) > 2.0 * _EVEN * steps.mean():
@@ -154,8 +167,10 @@ def _spectra_of(signals: Signals) -> _Spectra:
     power = np.cumsum((np.abs(of_force) ** 2).sum(axis=1))
     low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
-    axes, time = tuple(name for name, _ in pairs), interval * np.arange(count)
-    return _Spectra(omega[band], of_force[band], of_displacement[band], axes, np.flatnonzero(band), time, force)
+    order, time = _ORDERS.get(pairs[0][0], 0), interval * np.arange(count)
+    axes = ("y",) if order else tuple(name for name, _ in pairs)
+    moved = of_displacement[band] / (1j * omega[band, None]) ** order
+    return _Spectra(omega[band], of_force[band], moved, axes, np.flatnonzero(band), time, force, order)
 
 
 def _spectra_of_response(response: FrequencyResponse) -> _Spectra:
@@ -225,7 +240,8 @@ class _Linear:
         grown = (time / time[-1:])[:, None]
         waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)] if len(time) else []
         hum = [_spectrum(wave)[self.spectra.indices] for wave in waves]
-        self._parts = np.hstack([x[:, None] ** np.arange(_LEAKAGE if len(time) else 0), *hum])
+        powers_of_x = x[:, None] ** np.arange(-self.spectra.order, _LEAKAGE if len(time) else 0)
+        self._parts = np.hstack([powers_of_x / np.abs(powers_of_x[:1]).clip(1.0), *hum])
         powers = {"K": np.ones_like(omega) + 0j, "C": 1j * omega, "mass": -(omega**2) + 0j}
         self.slopes = np.zeros((len(omega), len(axes), len(axes), len(self.free)), complex)
         for k, number in enumerate(self.free):
@@ -236,8 +252,9 @@ class _Linear:
 
     @property
     def colours(self) -> np.ndarray:
-        """Spectra of noise (n, k), 1 at the lowest frequency."""
-        return (self.spectra.omega[0] / self.spectra.omega[:, None]) ** np.arange(_COLOURS)
+        """Spectra of noise of displacement and force (2, n, k), 1 at the lowest frequency."""
+        powers = np.arange(_COLOURS) + 2 * self.spectra.order * np.array([[1], [0]])
+        return np.asarray((self.spectra.omega[0] / self.spectra.omega[:, None]) ** powers[:, None])
 
     @property
     def nuisance(self) -> list[Free]:
@@ -279,7 +296,7 @@ class _Linear:
         d = len(self.spectra.axes)
         basis = self.slopes * self.excited[:, None, None, None]
         slopes = np.einsum("nabp,nb->nap", basis, self.spectra.displacement)
-        widths = 2.0 * np.einsum("nab,nabp,nb->nap", z.conj(), basis, self.colours @ self.noise[0]).real
+        widths = 2.0 * np.einsum("nab,nabp,nb->nap", z.conj(), basis, self.colours[0] @ self.noise[0]).real
         columns = slopes / np.sqrt(s2)[..., None] - 0.5 * (e / s2**1.5)[..., None] * widths
         parts = np.einsum("nl,na,ab->nabl", self._parts, 1.0 / np.sqrt(s2), np.eye(d)).reshape(len(e), d, -1)
         return _real_and_imaginary(np.sqrt(2.0) * np.concatenate([columns, parts], axis=2))
@@ -297,7 +314,8 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
         hum := _tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega)
     ):
         tones = (*problem.tones, hum)
-        if len(tones) > TONES or _share_of_force(spectra, tones) > _TONAL:
+        near = (np.abs(spectra.omega[:, None] - np.array(tones)) < 1.5 * (spectra.omega[1] - spectra.omega[0])).any(axis=1)
+        if len(tones) > TONES or (np.abs(spectra.force[near]) ** 2).sum() > _TONAL * (np.abs(spectra.force) ** 2).sum():
             answer, problem = without_tones  # a model that misses the force itself does so at the force's frequencies
             break
         answer, problem = _iterated(spectra, free, mass, tones)
@@ -306,13 +324,6 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
         hz = omega / 2.0 / np.pi
         problem.remarks.append(f"residual concentrated at {hz:.4g} Hz: a tone there (hum?) is fitted beside the model")
     return attrs.evolve(_without_nuisance(answer, len(free), problem), free=tuple(free)), problem, residuals
-
-
-def _share_of_force(spectra: _Spectra, tones: Sequence[float]) -> float:
-    """Part of the force's power at the frequencies of tones."""
-    omega = spectra.omega
-    near = (np.abs(omega[:, None] - np.array(tones)) < 1.5 * (omega[1] - omega[0])).any(axis=1)
-    return float((np.abs(spectra.force[near]) ** 2).sum() / (np.abs(spectra.force) ** 2).sum())
 
 
 def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, _Linear]:
@@ -334,7 +345,7 @@ def _variances(problem: _Linear, at: np.ndarray) -> np.ndarray:
     z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.unweighted(at)) ** 2
     n, d = e2.shape
     both = np.stack([z2, np.broadcast_to(np.eye(d), (n, d, d))])
-    regressors = np.einsum("cnab,nk->nackb", both, problem.colours).reshape(n, d, -1)
+    regressors = np.einsum("cnab,cnk->nackb", both, problem.colours).reshape(n, d, -1)
     shares = regressors.mean(axis=(0, 1))
     variances = np.full(shares.size, float(e2.mean())) / shares / shares.size
     for _ in range(_STEPS):

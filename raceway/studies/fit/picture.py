@@ -28,37 +28,35 @@ def draw(content: ReadTables) -> Figure:
     figure = new_figure(1.0 + 2.9 * columns, 5.2)
     panels = figure.subplots(2, columns, squeeze=False, height_ratios=(3, 1.4))
     for k, quantity in enumerate(series):
-        _curve(panels[0][k], quantity)
-        _residuals(panels[1][k], quantity)
+        _draw_quantity(panels[0][k], panels[1][k], quantity)
     _region(panels[0][-1], content)
-    _numbers(panels[1][-1], content)
+    panels[1][-1].set_axis_off()
+    lines = []
+    for number in content["free"][:4]:
+        half = f"± {number['error']:.2g}" if number["determined"] else "not determined"
+        lines.append(f"{number['key']}\n  {number['value']:.6g} {half} {number['unit']}".rstrip())
+    panels[1][-1].text(0.0, 0.9, "\n".join(lines), va="top", transform=panels[1][-1].transAxes, fontsize=8)
     figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
 
 
-def _curve(panel: Axes, quantity: ReadTables) -> None:
+def _draw_quantity(panel: Axes, below: Axes, quantity: ReadTables) -> None:
+    """Data and fit, and residuals below them."""
     factor, unit = read_in(1.0, quantity["unit"])
-    x, fitted, band, measured = (np.array(quantity[name]) for name in ("x", "fitted", "band", "measured"))
-    order, error, few = np.argsort(x), factor * np.array(quantity["error"]), len(x) <= _DENSE
+    x, fitted, band, measured, error = (np.array(quantity[name]) for name in ("x", "fitted", "band", "measured", "error"))
+    order, few = np.argsort(x), len(x) <= _DENSE
     low, high = factor * (fitted - band)[order], factor * (fitted + band)[order]
     panel.fill_between(x[order], low, high, color=_BLUE, alpha=0.22, linewidth=0)
     panel.plot(x[order], factor * fitted[order], color=_BLUE, label="fit, with its 95 %")
-    fmt, size, bars = ("o", 4, 1.96 * error) if few else (".", 1, None)
+    fmt, size, bars = ("o", 4, 1.96 * factor * error) if few else (".", 1, None)
     panel.errorbar(x, factor * measured, bars, fmt=fmt, ms=size, color=_BLACK, elinewidth=0.8, label="data")
     panel.set_ylabel(_with_unit(quantity["name"], unit))
     panel.legend(frameon=False, fontsize=8)
-
-
-def _residuals(panel: Axes, quantity: ReadTables) -> None:
-    x, measured, fitted, error = (np.array(quantity[name]) for name in ("x", "measured", "fitted", "error"))
-    panel.axhline(0.0, color=_GREY, linewidth=0.8)
-    for sign in (-_MARKED, _MARKED):
-        panel.axhline(sign, color=_GREY, linewidth=0.8, linestyle=":")
-    few = len(x) <= _DENSE
-    residuals = (measured - fitted) / np.where(error > 0.0, error, 1.0)
-    panel.plot(x, residuals, "o" if few else ".", ms=4 if few else 1, color=_BLACK)
-    panel.set_xlabel(_with_unit(quantity["over"], quantity["over_unit"]))
-    panel.set_ylabel("residual over\nstandard error")
+    for level, style in ((0.0, "-"), (-_MARKED, ":"), (_MARKED, ":")):
+        below.axhline(level, color=_GREY, linewidth=0.8, linestyle=style)
+    below.plot(x, (measured - fitted) / np.where(error > 0.0, error, 1.0), fmt, ms=size, color=_BLACK)
+    below.set_xlabel(_with_unit(quantity["over"], quantity["over_unit"]))
+    below.set_ylabel("residual over\nstandard error")
 
 
 def _region(panel: Axes, content: ReadTables) -> None:
@@ -87,15 +85,6 @@ def _region(panel: Axes, content: ReadTables) -> None:
         panel.plot([free[0]["value"]], [free[1]["value"]], "o", ms=4, color=_RED)
         panel.set_ylabel(_with_unit(free[1]["key"], free[1]["unit"]), fontsize=9)
     panel.set_xlabel(_with_unit(free[0]["key"], free[0]["unit"]), fontsize=9)
-
-
-def _numbers(panel: Axes, content: ReadTables) -> None:
-    panel.set_axis_off()
-    lines = []
-    for number in content["free"][:4]:
-        half = f"± {number['error']:.2g}" if number["determined"] else "not determined"
-        lines.append(f"{number['key']}\n  {number['value']:.6g} {half} {number['unit']}".rstrip())
-    panel.text(0.0, 0.9, "\n".join(lines), va="top", transform=panel.transAxes, fontsize=8)
 
 
 def _with_unit(name: str, unit: str) -> str:

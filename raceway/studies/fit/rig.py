@@ -243,7 +243,12 @@ def fit_rig(
     """Free keys of a scene from the signals of its rig."""
     rig = rig_of(scene)
     free = free_keys(scene, names)
-    _refuse_across(free)
+    for key in free:  # that a rig which whirls in circles does not have
+        if key.name.partition(".")[0] in ("excitation", "rotor") and key.name != "rotor.damping":
+            message = "is defined by the rig: unbalance and shaft by its table [rig], the speed by the record"
+            raise SceneError.at(key.name, None, message)
+        if key.name.startswith(("load.radial", "load.moment")):
+            raise SceneError.at(key.name, None, "circular whirl of the rig is assumed: radial loads cannot be free")
     if not any(key.name == "load.axial" for key in free):
         refuse_no_load(scene)
     with faults_at(signals.source):
@@ -272,14 +277,3 @@ def fit_rig(
     )  # fmt: skip
     title, notes = f"{scene.title}, {component.speed * 30.0 / np.pi:.1f} r/min", tuple(problem.notes())
     return Fitted(title, signals.source, "rig", True, answer, (series,), tuple(derived), notes)
-
-
-def _refuse_across(free: Sequence[Free]) -> None:
-    """``SceneError`` for keys that a rig which whirls in circles does not have."""
-    for key in free:
-        if key.name.partition(".")[0] in ("excitation", "rotor") and key.name != "rotor.damping":
-            message = "is defined by the rig: unbalance and shaft by its table [rig], the speed by the record"
-            raise SceneError.at(key.name, None, message)
-        if key.name.startswith(("load.radial", "load.moment")):
-            message = "circular whirl of the rig is assumed: radial loads cannot be free"
-            raise SceneError.at(key.name, None, message)

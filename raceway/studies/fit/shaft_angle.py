@@ -163,22 +163,16 @@ def _by_speed(recording: Recording) -> Rotation:
         k = int(np.argmin(speed))
         raise RacewayError(f"`speed` is {speed[k] * 30 / pi:g} r/min at {time[k]:.6g} s: it must be greater than 0")
     turn = 2.0 * pi / float(np.median(speed)) * _SMOOTH_TURNS
-    width = max(int(turn / np.median(np.diff(time))), 1)
-    smooth = _running_mean(speed, width)
+    half, index = np.array([[0], [1]]) + max(int(turn / np.median(np.diff(time))), 1) // 2, np.arange(len(speed))
+    total = np.concatenate([[0.0], np.cumsum(speed)])
+    first, last = np.maximum(index - half[0], 0), np.minimum(index + half[1], len(speed))
+    smooth = (total[last] - total[first]) / (last - first)  # mean over the turns, over fewer samples at the ends
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (smooth[1:] + smooth[:-1]) * np.diff(time))])
     turns = int(angle[-1] / (2.0 * pi) + 1e-6)
     if turns < 2:
         raise RacewayError(f"{angle[-1] / (2 * pi):.2f} turns in the record; at least two are needed")
     inside = angle < 2.0 * pi * turns
     return Rotation(recording.part(inside), angle[inside], smooth[inside], turns, False)
-
-
-def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Mean over ``width`` samples, over fewer at the ends."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
-    first = np.maximum(np.arange(len(values)) - width // 2, 0)
-    last = np.minimum(np.arange(len(values)) + width // 2 + 1, len(values))
-    return (total[last] - total[first]) / (last - first)
 
 
 @attrs.frozen(eq=False)

@@ -17,9 +17,10 @@ import numpy as np
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.storage.files import write_whole
+from raceway.storage.headings import is_number
 from raceway.storage.labview import read_tdms
-from raceway.storage.number_table import NumberTable, read_heading, read_numbers
-from raceway.studies.fit.column_headers import IGNORE, columns_of
+from raceway.storage.number_table import NONE, NumberTable, read_heading, read_numbers
+from raceway.studies.fit.column_headers import IGNORE, ORBIT, columns_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -97,6 +98,8 @@ def table_of(
         with _reading(Path(data)):
             return read_numbers(Path(data), judge), str(data)
     arrays = _arrays(data, name)
+    texts = [header for header, values in arrays.items() if _is_text(values)]
+    arrays = {header: values for header, values in arrays.items() if header not in texts}
     try:
         judge(list(arrays))
         if not arrays:
@@ -110,7 +113,14 @@ def table_of(
     except ValueError as why:
         raise SceneError.at(name, None, str(why)) from None
     values = np.column_stack(list(columns.values()))
-    return NumberTable(list(columns), values, np.arange(len(values)), word), name
+    notes = tuple(f"the text of '{header}' is left out" for header in texts)
+    return NumberTable(list(columns), values, np.arange(len(values)), word, notes), name
+
+
+def _is_text(values: ArrayLike) -> bool:
+    """Whether a column of words has none that is a number."""
+    words = np.asarray(values).ravel()
+    return len(words) > 0 and all(isinstance(word, str) and not is_number(word) for word in words)
 
 
 def _arrays(data: Any, name: str) -> dict[str, ArrayLike]:
@@ -132,8 +142,8 @@ def _numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
         raise ValueError(f"column '{header}' contains a value that is not a number") from None
     if values.ndim != 1:
         raise ValueError(f"column '{header}' has the shape {values.shape}: one number per {word} is needed, (n,)")
-    if not np.isfinite(values).all():
-        row = int(np.argmin(np.isfinite(values)))
+    if not (there := np.abs(values) < NONE).all():
+        row = int(np.argmin(there))
         raise ValueError(f"column '{header}': {word} {row} is missing (no finite number): cut the data there")
     return values
 
@@ -145,64 +155,68 @@ class Signals:
     Attributes
     ----------
     source : its file, or "signals"
-    columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N]
-    where : prefix of messages about its column headers
+    columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N], velocity [m/s],
+        acceleration [m/s2]
+    where : prefix of messages about its column headers;  notes : what was left out or assumed
     """
 
     source: str
     columns: dict[str, np.ndarray]
     where: str = ""
+    notes: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """Samples, duration and columns, in words."""
         time = self.columns["time"]
-        signals = [f"{name}{_amplitude(name, values)}" for name, values in self.columns.items() if name != "time"]
+        signals = []
+        for name, half in {
+            name: 0.5 * float(np.ptp(values)) for name, values in self.columns.items() if name != "time"
+        }.items():
+            moved = f" (+- {1e6 * half:.4g} µm)" if name in ("y", "z") else ""
+            signals.append(name + (f" (+- {half:.4g} N)" if name.startswith("force") else moved))
         return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(signals) or 'nothing but time'}"
 
 
-def _amplitude(name: str, values: np.ndarray) -> str:
-    """Half the range of a displacement or force."""
-    half = 0.5 * float(np.ptp(values))
-    if name in ("y", "z"):
-        return f" (+- {1e6 * half:.4g} µm)"
-    return f" (+- {half:.4g} N)" if name.startswith("force") else ""
-
-
-def signals_of(data: Data, columns: Mapping[str, str] | None = None) -> Signals:
+def signals_of(
+    data: Data, columns: Mapping[str, str] | None = None, needed: Mapping[str, str] = ORBIT, where: str = ""
+) -> Signals:
     """The record in data of any form that ``table_of`` takes.
 
     Parameters
     ----------
     columns : header -> name in ``column_headers.COLUMNS``, for headers that are not understood; "ignore" leaves a column out
+    needed : quantities that the record must have, and their words;  where : prefix of messages about arrays from a file
 
     Raises
     ------
     SceneError
         The fault, with line and column.
     """
-    where, path = "", data if isinstance(data, str | Path) else ""
+    path, notes = data if isinstance(data, str | Path) else "", ""
     data = _in_memory(data)
     if isinstance(data, str | Path):
         with _reading(Path(data)):
-            where = f"line {read_heading(Path(data)).line}: "
+            heading = read_heading(Path(data))
+        where, notes = f"line {heading.line}: ", "".join(f"; {note}" for note in heading.notes)
 
     def recognised(headers: list[str]) -> dict[str, tuple[int, float]]:
-        """``columns_of`` with a time and something beside it."""
-        indices = columns_of(headers, columns, where)
-        if "time" not in indices or len(indices) < 2:
-            missing = "no column for time" if "time" not in indices else "time alone is no record"
-            raise ValueError(f"{where}{missing}; needed: time, y and z, for instance time_s,y_um,z_um,key")
-        return indices
+        try:
+            return columns_of(headers, columns, where, needed)
+        except ValueError as why:
+            raise ValueError(f"{why}{notes}") from None
 
     table, source = table_of(data, str(path) or "signals", "sample", recognised)
     if len(table.values) < _LEAST:
         raise SceneError.at(source, None, f"{len(table.values)} samples; at least {_LEAST} are needed")
     quantities = {name: table.values[:, k] * factor for name, (k, factor) in recognised(table.header).items()}
     try:
+        for name, values in quantities.items():
+            for row in table.lines[~(np.abs(values) < NONE)][:1]:
+                raise ValueError(f"{table.word} {row}: {name} is no number that a sensor gives")
         table.refuse_uneven(quantities["time"])
     except ValueError as why:
         raise SceneError.at(source, None, str(why)) from None
-    return Signals(source, quantities, where)
+    return Signals(source, quantities, where, table.notes)
 
 
 @attrs.frozen(eq=False)

@@ -224,7 +224,10 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     for kind, words, disturbance, rolled in disturbances:
         causes.append((kind, words, _disturbed(rig, tested, state, attrs.evolve(quiet, **disturbance), rolled)))
     words = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
-    causes.append(("window", words, invert(free, tested, _highest_line(clean) * state.sensor / abs(state.sensor))))
+    highest = (
+        2.0 * float(np.abs(np.fft.rfft(clean.y - clean.y.mean())).max()) / len(clean.y)
+    )  # its phase means nothing over a broken turn
+    causes.append(("window", words, invert(free, tested, highest * state.sensor / abs(state.sensor))))
     thin, sensor = rotor(rig, state.speed, shaft(rig, shear=False)), state.sensor
     models = {
         "bearing without tilt stiffness": with_moment(free, sensor, 0.0, state),
@@ -242,13 +245,6 @@ def _disturbed(rig: Rig, tested: Bearing, state: State, signals: Signals, rolled
     slow = slow_roll_record(rig, tested, signals, seed + 1, white_noise(answer, signals)) if rolled else None
     recording = record(rig, answer, signals, seed)
     return identify_recording(recording, rig, tested, None if slow is None else slow_roll(slow)).state
-
-
-def _highest_line(recording: Recording) -> float:
-    """Amplitude of y [m] by a Fourier transform of all samples, whole turns or not; its phase means nothing over a broken turn."""
-    y = recording.y - recording.y.mean()
-    components = 2.0 * np.fft.rfft(y) / len(y)
-    return abs(complex(components[int(np.argmax(np.abs(components)))]))
 
 
 def _at_rest(free: Rotor, tested: Bearing, sensor: complex) -> State:
