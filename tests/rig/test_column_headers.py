@@ -7,7 +7,6 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError
-from raceway.storage.number_table import read_numbers
 from raceway.studies.fit.column_headers import columns_of
 from raceway.studies.fit.signals import recording_of, signals_of
 from validation.command_line import EXAMPLES, invoke
@@ -21,10 +20,10 @@ Y, Z, KEY = np.round(15.0 * np.cos(ANGLE), 2), np.round(15.0 * np.sin(ANGLE), 2)
 OURS = "time_s,y_um,z_um,key"
 
 
-def text(head, sign=",", point=".", quoted=False, scale=1.0):
+def text(head, sign=",", point=".", quoted=False):
     """The record under another head."""
     lines = [head]
-    for row in zip(TIME, Y * scale, Z * scale, KEY, strict=True):
+    for row in zip(TIME, Y, Z, KEY, strict=True):
         words = [f"{value:.{digits}f}".replace(".", point) for value, digits in zip(row, (4, 10, 10, 1), strict=True)]
         lines.append(sign.join(f'"{word}"' if quoted else word for word in words))
     return "\n".join(lines) + "\n"
@@ -54,27 +53,6 @@ def test_every_head_gives_the_record_to_the_last_bit(case, tmp_path):
         np.testing.assert_array_equal(getattr(theirs, name), getattr(ours, name))
     # Not by chance of the reader: these are the numbers that were written.
     np.testing.assert_array_equal(ours.y, np.array([float(f"{v:.10f}") for v in Y]) * 1e-6)
-
-
-@pytest.mark.parametrize("unit, scale", [("mm", 1e-3), ("m", 1e-6), ("nm", 1e3)])
-def test_units_of_length_are_read_from_the_head(unit, scale, tmp_path):
-    path = tmp_path / "record.csv"
-    path.write_text(text(f"Time [s],X [{unit}],Y [{unit}],Key", scale=scale))
-    # Ten decimals of a metre are 1e-10 m.
-    np.testing.assert_allclose(recording_of(signals_of(path)).y, 1e-6 * Y, atol=1e-10)
-
-
-def test_a_file_in_windows_letters_is_read(tmp_path):
-    path = tmp_path / "record.csv"
-    path.write_bytes(text("Time (s);X [µm];Y [µm];Key", ";", ",").encode("cp1252"))
-    np.testing.assert_allclose(recording_of(signals_of(path)).z, 1e-6 * Z, rtol=1e-12)
-
-
-def test_commas_and_points_in_one_file_are_no_decimal_sign(tmp_path):
-    path = tmp_path / "record.csv"
-    path.write_text("time_s;y_um\n" + "".join(f"{k},5;1.5\n" for k in range(40)))
-    with pytest.raises(ValueError, match="line 2: commas and points in the file's numbers"):
-        read_numbers(path, lambda heads: None)
 
 
 def test_a_map_names_columns_on_the_command_line_and_in_python(tmp_path):
@@ -126,26 +104,13 @@ def test_a_map_without_a_name_is_refused(tmp_path):
     assert found.exit_code == 2 and '"X [µm]=y_um"' in found.stderr
 
 
-def test_a_shaker_s_record_is_read_and_told_what_is_missing(tmp_path):
-    path = tmp_path / "shaker.csv"
-    rows = zip(TIME, 20.0 * np.cos(ANGLE), 1e-3 * Y, strict=True)
-    path.write_text("Time (s),Force [N],Displacement [mm]\n" + "".join(f"{t:.4f},{f:.4f},{x:.6f}\n" for t, f, x in rows))
-    columns = signals_of(path).columns
-    np.testing.assert_allclose(columns["force"], 20.0 * np.cos(ANGLE), atol=1e-4)
-    np.testing.assert_allclose(columns["y"], 1e-6 * Y, atol=1e-9)
-    found = invoke("identify", path, "--scene", SCENE, "--out", tmp_path / "out")
-    assert found.exit_code == 2 and not (tmp_path / "out").exists()
-    for words in ("400 samples over 0.0399 s of force (+- 20 N), y (+- 15 µm)", "raceway fit FILE.csv"):
-        assert words in found.stderr
-
-
-def test_one_axis_is_read_and_told_what_is_missing(tmp_path):
-    path = tmp_path / "one.csv"
-    path.write_text("time_s,y_um\n" + "".join(f"{t:.4f},{y}\n" for t, y in zip(TIME, Y, strict=True)))
-    with pytest.raises(SceneError) as told:
-        rw.identify(path, SCENE)
-    for words in (str(path), "no column for z", "400 samples over 0.0399 s of y (+- 15 µm)", "record y and z together"):
-        assert words in str(told.value)
+def test_a_shaker_s_record_is_read_and_told_what_is_missing():
+    record = signals_of({"Time (s)": TIME, "Force [N]": 20.0 * np.cos(ANGLE), "Displacement [mm]": 1e-3 * Y})
+    np.testing.assert_allclose(record.columns["y"], 1e-6 * Y, atol=1e-12)
+    with pytest.raises(
+        SceneError, match=r"400 samples over 0.0399 s of force \(\+- 20 N\), y \(\+- 15 µm\).*raceway fit FILE.csv"
+    ):
+        recording_of(record)
 
 
 def forms():

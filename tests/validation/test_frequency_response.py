@@ -10,7 +10,6 @@ from raceway import SceneError
 from raceway.studies.fit.linear import fit_record
 from raceway.studies.fit.response import FrequencyResponse, response_of
 from tests.validation.instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write
-from validation.command_line import invoke
 
 pyuff = pytest.importorskip("pyuff")
 
@@ -79,37 +78,23 @@ def test_a_written_frequency_response_is_read_bit_for_bit(tmp_path):
     response = response_of(record.to_uff(tmp_path / "record.uff"))
     for name in ("hz", "receptance"):
         np.testing.assert_array_equal(getattr(response, name), getattr(record.response, name))
-    again = rw.fit(tmp_path / "record.uff", None, "K,C,mass")
+    again = rw.fit(tmp_path / "record.uff", None, "K,C,mass", columns={"1": "receptance"})
     np.testing.assert_array_equal(response_of(again.to_uff(tmp_path / "again.uff")).receptance, response.receptance)
     assert abs(again["K"] - STIFFNESS) < again.half_width("K")
 
 
-def test_the_command_fits_a_universal_file(tmp_path):
-    path = file(tmp_path / "frf.uff", function(RECEPTANCE, 0))
-    answer = invoke("fit", path, "--free", "K,C,mass", "--out", tmp_path / "out", "--no-pictures")
-    assert answer.exit_code == 2 and '--map "1=FORM", one of receptance, mobility, accelerance' in " ".join(
-        answer.stderr.split()
-    )
-    answer = invoke("fit", path, "--free", "K,C,mass", "--map", "1=receptance", "--out", tmp_path / "out", "--no-pictures")
-    assert answer.exit_code == 0, answer.output
-
-
 def history(values, kind, unit="NONE", **more):
     """A time history, as test laboratories save it."""
-    over = {
-        "x": record()[0],
-        "abscissa_spec_data_type": 17,
-        "abscissa_axis_units_lab": "s",
-        "abscissa_spacing": int(kind != 11),
-    }
-    return function(values, kind, (unit, "NONE"), **({"func_type": 1, "binary": 0} | over | more))
+    clock = {"x": record()[0], "abscissa_spec_data_type": 17, "abscissa_axis_units_lab": "s"}
+    clock |= {"func_type": 1, "binary": 0, "abscissa_spacing": int(kind != 11)}
+    return function(values, kind, (unit, "NONE"), **(clock | more))
 
 
 #: Response to the record's force: data type, order of the derivative, unit, direction and the factor that both make.
 RESPONSES = {
     "displacement": (8, 0, "um", 3, 1e6),
-    "velocity": (11, 1, "m/s", 3, 1.0),
-    "acceleration": (12, 2, "g", -3, -1.0 / 9.80665),
+    "velocity": (11, 1, "m/s", 3, 1),
+    "acceleration": (12, 2, "g", -3, -0.1019716),
 }
 
 
@@ -123,12 +108,9 @@ def test_k_of_time_histories_lies_within_its_interval(response, tmp_path):
     moved = np.fft.irfft(twice * (1j * omega) ** order / (STIFFNESS + 1j * omega * DAMPING - MASS * omega**2))[len(force) :]
     for trial in range(20):
         noisy = (values + 1e-3 * values.std() * random.standard_normal(len(values)) for values in (force, size * moved))
-        sets = [
-            history(next(noisy), 13, "N"),
-            history(moved, kind, rsp_node=8),
-            history(next(noisy), kind, unit, rsp_dir=direction),
-        ]
-        fitted = rw.fit(file(tmp_path / f"record{trial}.uff", *sets), None, "K,C,mass")
+        driven = history(next(noisy), 13, "N")
+        beside = [history(moved, kind, rsp_node=8), history(next(noisy), kind, unit, rsp_dir=direction)]
+        fitted = rw.fit(file(tmp_path / f"record{trial}.uff", driven, *beside), None, "K,C,mass")
         inside += [abs(fitted[name] - truth) < fitted.half_width(name) < 0.01 * truth for name, truth in TRUTH.items()]
     assert f"function 3 is read as {response} in {unit}" in " ".join(fitted.warnings)
     assert sum(inside) >= 51  # of 60 with the probability 0.95; less are 1 in 1000
@@ -141,6 +123,7 @@ REFUSED = {
     "two drive points": ([function(RECEPTANCE, 8), function(RECEPTANCE, 8, id1="other")], ["1: drive point", "2: other", '--map "NUMBER=ignore"']),
     "no frequency": ([function(RECEPTANCE, 8, abscissa_spec_data_type=17)], ["is not over frequency"]),
     "frequencies that do not grow": ([function(RECEPTANCE, 8, x=HZ[::-1].copy())], ["frequencies must grow"]),
+    "no form": ([function(RECEPTANCE, 0)], ['--map "1=FORM", one of receptance, mobility, accelerance']),
     "spectra": ([function(np.abs(RECEPTANCE), 12, func_type=2)] * 2, ["holds 2 x auto spectrum of acceleration", "time histories"]),
     "two responses": ([history(OMEGA, 13, x=HZ), *[history(OMEGA, 8, x=HZ, rsp_node=k) for k in (8, 9)]], ["y is duplicated", '--map "3=ignore"', "response 9:3"]),
     "a history of what": ([history(OMEGA, 13, x=HZ), history(OMEGA, 0, x=HZ)], ["missing: displacement", '--map "2=y_um"', "an unknown quantity"]),
