@@ -224,6 +224,7 @@ class _CondensedBearing(Bearing):
         angle = float(np.nanmean(equilibrium.angle_inner))
         inner, outer = self.compliances.at(angle)
         mesh_error, how = self.mesh_error(model, equilibrium)
+        half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
         return {
             "bodies": "condensed: elastic rings and balls, contacts as resultants calibrated to Hertz",
             "rigid_rings": rigid_table,
@@ -240,7 +241,7 @@ class _CondensedBearing(Bearing):
             "mesh": {
                 "elements_inner": self.compliances.inner.elements,
                 "elements_outer": self.compliances.outer.elements,
-                "nodes_per_semi_axis": self._nodes_per_semi_axis(model, equilibrium),
+                "nodes_per_semi_axis": half / self.compliances.inner.surface,
                 "change_from_coarser": mesh_error,
                 "how": how,
             },
@@ -274,11 +275,6 @@ class _CondensedBearing(Bearing):
         half = float((basis.inner if inner else basis.outer).semi_axes(_typical_load(basis))[0])
         bulk, fine = _element_sizes(model.problem, shape, half)
         return ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
-
-    def _nodes_per_semi_axis(self, model: Model, equilibrium: Equilibrium) -> float:
-        """Elements of the inner groove's surface along the semi-major axis of the most loaded contact."""
-        half = float(model.inner.semi_axes(np.max(equilibrium.contact_force[: model.system.ball_count]))[0])
-        return half / self.compliances.inner.surface
 
 
 def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import attrs
 import numpy as np
 
@@ -102,6 +100,7 @@ def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) ->
 def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
     b, rotor, contact = problem.bearing, problem.rotor, problem.contact
     inertia = [rotor.mass] * 3 + [rotor.transverse_inertia] * 2  # the ring's own is in its mesh
+    pairs = contact_pairs(problem, basis)
     outer = 0.0 if problem.excitation is None else problem.excitation.amplitude_n
     # A radial load is carried by a few balls: 5 F / Z (Stribeck).
     most = basis.ball_load + 5.0 * (float(np.hypot(*problem.load.radial)) + outer) / b.ball_count
@@ -112,7 +111,7 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
         balls=(b.balls.young, b.balls.poisson, b.balls.density),
         reference_load=0.25 * most if most > 4.0 * basis.ball_load else basis.ball_load,
         law=plugin_kernel(contact.law, "contact law", LAW, "LAW"),
-        params=_params(problem, basis),
+        params=lambda pair, area: law_params(contact.law, at_points(pairs, pair, area), "surface point"),
         state_size=contact.law.state_size,
         mass=np.diag(inertia),
         damping=rigid.damping,
@@ -138,9 +137,3 @@ def _stick(problem: Problem, basis: Basis) -> float | None:
         return None
     along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     return stiffness / (np.pi * along * across)
-
-
-def _params(problem: Problem, basis: Basis) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Parameters (n, k) of the law for points of the pairs (n,), inner races first, with their areas (n,) [m2]."""
-    law, pairs = problem.contact.law, contact_pairs(problem, basis)
-    return lambda pair, area: law_params(law, at_points(pairs, pair, area), "surface point")

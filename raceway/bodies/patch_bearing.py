@@ -170,15 +170,11 @@ class _NodalBearing(Bearing):
         error, how = self._change_from_coarser(model, equilibrium)
         if model.problem.excitation is None or not {"record", "speeds"} & set(model.problem.identifier.method.needs):
             return error, how
-        ripple = self._ripple(model, equilibrium)
+        radial = np.diag(self.pressed(model, equilibrium)[0].stiffness)[1:3]
+        ripple = float(np.abs(radial / np.diag(equilibrium.stiffness_rows_held)[1:3] - 1.0).max())
         if error is not None and error >= ripple:
             return error, Estimate.FEWER_POINTS_NOT_RIPPLE(ripple=ripple)
         return ripple, Estimate.RIPPLE(change="" if error is None else f"; {how} is {error:.2g}")
-
-    def _ripple(self, model: Model, equilibrium: Equilibrium) -> float:
-        """Largest relative difference of a radial tangent at the equilibrium from the mean over all places of the points."""
-        now, _ = self.pressed(model, equilibrium)
-        return float(np.abs(np.diag(now.stiffness)[1:3] / np.diag(equilibrium.stiffness_rows_held)[1:3] - 1.0).max())
 
     def _change_from_coarser(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         if self.coarser is None:
@@ -249,7 +245,9 @@ def build(problem: Problem, plan: ScenePlan) -> _NodalBearing:
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
     reach = _first_reach(problem, basis, rigid, guess)
-    nodes, load = _layout(problem, reach)
+    nodes, load = float(nodes_of(problem)), getattr(problem.mesh, "ball_load", None)
+    # Of two digits: states near each other then share their compliances.
+    load = float(f"{reach.mean_load:.1e}" if load is None else load)
     system, spacing = _system(problem, basis, rigid, reach, nodes, load)
     beside = guess
     if problem.bearing.preloaded or problem.supports.axial == "displacement":
@@ -308,18 +306,6 @@ def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarra
     free = basis.geometry.contact_angle
     inner, outer = ((np.concatenate(a), np.concatenate(f)) for a, f in zip(angles, loads, strict=True))
     return reach_of(inner, outer, (basis.inner, basis.outer), 0.5 * basis.geometry.ball_diameter, free, _ROOM)
-
-
-def _layout(problem: Problem, reach: Reach) -> tuple[float, float]:
-    """Points per semi-axis, and the load [N] at which they count: the mesh's, or the mean of the balls that carry.
-
-    Notes
-    -----
-    The mean is rounded to two digits: states near each other then share their compliances.
-    """
-    nodes = float(nodes_of(problem))
-    load = getattr(problem.mesh, "ball_load", None)
-    return nodes, float(load) if load is not None else float(f"{reach.mean_load:.1e}")
 
 
 def _maker(problem: Problem, spacing: Spacing) -> Callable[[Reach], tuple[Patch, Patch]]:

@@ -121,7 +121,8 @@ def report(error: Exception, as_json: bool) -> int:
         head += f"{len(items)} mistakes\n  "
     lines = [f"{_where(item)}{item['message']}" for item in items] + list(getattr(error, "__notes__", ()))
     if isinstance(error, click.UsageError):
-        lines.append(_help_hint(error))
+        command = "raceway" if error.ctx is None else error.ctx.command_path
+        lines.append(f"try `{command} --help`, which has an example")
     click.echo(head + "\n  ".join(lines), err=True)
     return code
 
@@ -153,11 +154,6 @@ def _where(item: Tables) -> str:
         return f"`{item['path']}`: "
     text = repr(item["value"])
     return f"`{item['path']}` = {text if len(text) <= 60 else text[:57] + '...'}: "
-
-
-def _help_hint(error: click.UsageError) -> str:
-    path = error.ctx.command_path if error.ctx is not None else "raceway"
-    return f"try `{path} --help`, which has an example"
 
 
 def _os_message(error: OSError) -> str:

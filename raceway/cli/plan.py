@@ -39,12 +39,14 @@ class _Planned(Answer):
         yield Words(self.title, "bold")
         plan = self.plan.to_dict()
         step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
-        memory = plan["predicted_bytes"]
+        memory, wall_time = plan["predicted_bytes"], ("not known", "unknown before the mesh is read")
+        if not plan["predicted_at_least"]:
+            wall_time = duration(plan["predicted_wall_s"]), "with compiled kernels in the cache"
         size = [
             ("Size and cost, predicted", "", ""),
             ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
             *([("memory", f"{memory / 2**20:.3g} MiB", "at the peak")] if memory else []),
-            _wall_time(plan),
+            ("wall time", *wall_time),
             ("time step", step, f"{plan['predicted_steps']} steps"),
             *([_derived(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
             _derived(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
@@ -69,12 +71,6 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
 def _derived(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
     """A derived quantity, in so many ``units`` for one of its own, and what decides it."""
     return (words, number(units * plan["derived"][name]["value"], unit, 5), plan["derived"][name]["why"])
-
-
-def _wall_time(plan: ReadTables) -> Row:
-    if plan["predicted_at_least"]:
-        return ("wall time", "not known", "unknown before the mesh is read")
-    return ("wall time", duration(plan["predicted_wall_s"]), "with compiled kernels in the cache")
 
 
 def _mesh_rows(mesh: ReadTables) -> list[Row]:

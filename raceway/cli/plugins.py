@@ -109,7 +109,8 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
 
     folder = write(kind, name, out, default_registry())
     files = sorted(str(path) for path in folder.rglob("*") if path.is_file())
-    show({"folder": str(folder), "files": files}, as_json, None, lambda: _new_plugin_screen(folder, files))
+    steps = Text(f"next: pip install -e {folder} && python -m pytest {folder}", no_wrap=True, overflow="ignore")
+    show({"folder": str(folder), "files": files}, as_json, None, lambda: Group(*written([str(folder), *files]), steps))
     return 0
 
 
@@ -169,8 +170,3 @@ def _conformity_screen(report: Conformity) -> RenderableType:
     verdict = "conforms" if report.conforms else "does not conform"
     title = f"{report.kind.replace('_', ' ')} '{report.name}' {verdict}: {good} of {len(report.rows)} checks"
     return Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2)))
-
-
-def _new_plugin_screen(folder: Path, files: Sequence[str]) -> RenderableType:
-    steps = f"pip install -e {folder} && python -m pytest {folder}"
-    return Group(*written([str(folder), *files]), Text(f"next: {steps}", no_wrap=True, overflow="ignore"))

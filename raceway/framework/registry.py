@@ -71,12 +71,14 @@ class Registry:
         self.manager = pluggy.PluginManager("raceway")
         self.manager.add_hookspecs(hookspecs)
         if os.environ.get("RACEWAY_TRACE"):
-            self.manager.trace.root.setwriter(_trace)
+            self.manager.trace.root.setwriter(lambda text: os.write(2, text.encode()))
             self.manager.enable_tracing()
         self.entries: dict[tuple[str, str], list[Entry]] = {}
         self.faults: list[Fault] = []
+        from raceway import __version__
+
         for module in _BUILT_IN:
-            self._register(import_module(module), module, "raceway", _version())
+            self._register(import_module(module), module, "raceway", __version__)
         if third_party:
             points, missing = chosen_entry_points()
             self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
@@ -317,16 +319,6 @@ def _shown(thing: object) -> str:
         return repr(thing)
     except Exception:  # its own __repr__
         return f"an object of type {type(thing).__name__}"
-
-
-def _version() -> str:
-    from raceway import __version__
-
-    return __version__
-
-
-def _trace(text: str) -> None:
-    os.write(2, text.encode())
 
 
 @cache

@@ -196,7 +196,9 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
     limits = [motion.critical_time_step for motion in run.motions if motion.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
     bound = first.whole.schedule.dt * steps / (_MOST_OF_LIMIT * min(limits)) if explicit else 0.0
-    count = second_steps or _other_steps(steps, bound)
+    # Half as many, or as few as the stable limit leaves; half as many more where that tells nothing.
+    fewer = max(steps // 2, _LEAST_STEPS, ceil(bound))
+    count = second_steps or (fewer if steps >= _LEAST_RATIO * fewer else ceil(1.5 * steps))
     turns = model.plan.turns if count < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, count, model.system.ball_count):
         return Part(None, Estimate.SECOND_RUN_TOO_LARGE(steps=count)), None
@@ -215,7 +217,10 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         change = fine.value - coarse.value
         closer = max(ceil(_CLOSER * steps), ceil(bound))
         further = second_steps is None and _LEAST_RATIO * count <= closer <= steps / _LEAST_RATIO
-        if further and _hidden(coarse, change, ratio, run.value - fine.value):
+        # Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one: that hides what
+        # they change, where it would be the largest error.
+        hidden = coarse.halves is not None and coarse.halves > abs(change) > ratio * abs(run.value - fine.value)
+        if further and hidden:
             return _time_step(run, closer)
     else:
         change = run.value - run.identify([motion.record for motion in again])
@@ -228,32 +233,6 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
 
 def _over(model: Model, turns: int) -> Model:
     return model if turns == model.plan.turns else attrs.evolve(model, plan=attrs.evolve(model.plan, turns=turns))
-
-
-def _other_steps(steps: int, least: float = 0.0) -> int:
-    """Steps a turn of the second run: half, or as few as the stable limit leaves; half as many more where that tells nothing.
-
-    Parameters
-    ----------
-    least : steps per turn that the stable limit asks for; 0 for an implicit method
-    """
-    fewer = max(steps // 2, _LEAST_STEPS, ceil(least))
-    return fewer if steps >= _LEAST_RATIO * fewer else ceil(1.5 * steps)
-
-
-def _hidden(clean: Clean, change: complex, powers: float, leakage: complex) -> bool:
-    """Whether the free vibration of a second run hides what its steps change, and that would be the largest error.
-
-    Parameters
-    ----------
-    clean : of the second run;  change : of Z from it to the first [N/m], ``powers`` times the error of the first
-    leakage : in Z of the first [N/m]
-
-    Notes
-    -----
-    Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one.
-    """
-    return clean.halves is not None and clean.halves > abs(change) > powers * abs(leakage)
 
 
 def _sampling(run: Identified) -> Part:

@@ -124,7 +124,8 @@ def simulate(
     critical = _critical_step(model, equilibrium, start.orbit) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
-    ramp = min(_ramp_turns(model), float(turns)) if start.kind == "ramp" else 0.0
+    ramp_length = ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
+    ramp = min(ramp_length, float(turns)) if start.kind == "ramp" else 0.0
     stride = _stride(steps_per_turn, turns, method.inertial)
     schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
@@ -244,10 +245,6 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
     if start.orbit is not None:
         return model.bearing.on_orbit(system, start.orbit, dt)
     return model.bearing.at_rest(system, q, ball, start.kind == "ramp")
-
-
-def _ramp_turns(model: Model) -> float:
-    return ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
 
 
 def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:

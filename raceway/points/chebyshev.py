@@ -111,7 +111,11 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
         stalled[k] = trial.tails[k] > 0.5 * best.tails[k]
         if trial.tails[k] < best.tails[k]:
             counts, best = more, trial
-    columns = _control(best.axes, counts)
+    from scipy.stats import qmc
+
+    extremes = _grid(best.axes, [np.cos(np.pi * np.arange(n + 1) / n) for n in counts])
+    inside = qmc.Sobol(len(best.axes), rng=np.random.default_rng(0)).random_base2(_SOBOL).T
+    columns = [np.concatenate([e, a.at(2.0 * u - 1.0)]) for e, a, u in zip(extremes, best.axes, inside, strict=True)]
     values, size = function(columns)
     for k in range(len(axes)):
         left = np.cumsum(best.share(k)[::-1])[::-1]
@@ -134,14 +138,6 @@ def _interpolated(function: Quantities, axes: Sequence[Interval], counts: Sequen
         weights[0] *= 0.5
         terms = np.moveaxis(np.tensordot(weights, terms, (1, k)), 0, k)
     return Series(tuple(axes), terms, size.min(axis=1))
-
-
-def _control(axes: Sequence[Interval], counts: Sequence[int]) -> list[np.ndarray]:
-    from scipy.stats import qmc
-
-    extremes = _grid(axes, [np.cos(np.pi * np.arange(n + 1) / n) for n in counts])
-    inside = qmc.Sobol(len(axes), rng=np.random.default_rng(0)).random_base2(_SOBOL)
-    return [np.concatenate([e, a.at(2.0 * u - 1.0)]) for e, a, u in zip(extremes, axes, inside.T, strict=True)]
 
 
 def _grid(axes: Sequence[Interval], places: Sequence[np.ndarray]) -> list[np.ndarray]:

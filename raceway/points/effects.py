@@ -388,7 +388,12 @@ def in_few_words(comparison: Findings) -> list[str]:
     """Effects on the first quantity, the largest first, doubts and its interactions: for a screen; ``explain`` has the rest."""
     notes = [*_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
     if not comparison.factorials:
-        return [_why_no_effects(comparison), *notes]
+        why = (
+            "too many of the runs at the ends of the axes cannot be used"
+            if comparison.varied
+            else "every axis has one value"
+        )
+        return [f"No effects: {why}.", *notes]
     first = next(iter(comparison.factorials))
     ranking, *further = _main_effects(comparison, first)
     return [ranking, *further, *notes, *_interactions(comparison, first)]
@@ -466,7 +471,8 @@ def _inertia(comparison: Findings) -> list[str]:
 
 
 def _what_was_run(comparison: Findings) -> str:
-    axes = [f"{axis.key} ({', '.join(shown(v) for v in _few(axis))})" for axis in comparison.axes]
+    few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
+    axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
     text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_listed(axes)}."
     if not comparison.factorials:
         return text
@@ -477,10 +483,6 @@ def _what_was_run(comparison: Findings) -> str:
     text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
     unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
     return text + (f" {unknown} runs without an estimated error are taken as exact." if unknown else "")
-
-
-def _few(axis: Axis) -> Sequence[object]:
-    return axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1])
 
 
 def _doubts(comparison: Findings) -> list[str]:
@@ -498,12 +500,6 @@ def _doubts(comparison: Findings) -> list[str]:
     if comparison.held and words:
         words.append(f"Some are at the ends of the axes, so the effects hold for {_settings(comparison.held)} only.")
     return words
-
-
-def _why_no_effects(comparison: Findings) -> str:
-    if not comparison.varied:
-        return "No effects: every axis has one value."
-    return "No effects: too many of the runs at the ends of the axes cannot be used."
 
 
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:

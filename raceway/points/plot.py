@@ -533,13 +533,16 @@ def layout(
     _refuse_strangers(selection, x, y)
     numeric = [key for key, values in axes.items() if _numeric(values)]
     kind = kind or _kind(axes, numeric)
-    x = x or _best(axes, [key for key in numeric or axes if key != y], kind)
+    if not x and not (others := [key for key in numeric or axes if key != y]):
+        raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
+    x = x or min(others, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
     other_axes = [key for key in axes if key != x]
     if kind != "curves":
         y = y or next(iter(sorted((key for key in other_axes if key in numeric), key=lambda key: -len(axes[key]))), None)
         _refuse_flat(kind, x, y, numeric)
     else:
-        y = y or _colour_axis(axes, other_axes)
+        apart = [key for key in other_axes if len(axes[key]) <= _MOST_COLOURS]  # can be told apart by their colours
+        y = y or max(apart or other_axes, key=lambda key: len(axes[key]), default=None)
     over = [key for key in other_axes if key != y]
     panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
     _refuse_rest(axes, [key for key in over if key != panels], kind)
@@ -602,18 +605,6 @@ def names(dataset: Dataset) -> list[str]:
 def _kind(axes: Tables, numeric: list[str]) -> str:
     both = len(axes) == 2 and len(numeric) == 2
     return "map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves"
-
-
-def _best(axes: Tables, keys: list[str], kind: str) -> str:
-    if not keys:
-        raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
-    return min(keys, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
-
-
-def _colour_axis(axes: Tables, keys: list[str]) -> str | None:
-    """The axis with most values that still can be told apart; panels take the other one."""
-    fitting = [key for key in keys if len(axes[key]) <= _MOST_COLOURS]
-    return max(fitting or keys, key=lambda key: len(axes[key]), default=None)
 
 
 def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> None:

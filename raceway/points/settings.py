@@ -85,11 +85,6 @@ class Design:
     notes: tuple[str, ...] = ()
 
 
-def _is_numerical(key: str) -> bool:
-    """Whether a key changes how a model is solved (True) or the model itself."""
-    return key.partition(".")[0] in _NUMERICAL
-
-
 def make_design(tables: ReadTables, vary: Vary, limit_s: float, registry: Registry) -> Design:
     """The settings of a study.
 
@@ -132,7 +127,7 @@ def setting_at(
 ) -> Setting:
     """One setting, checked and planned."""
     changed = tables_at(tables, values, registry, notes)
-    model = {key: value for key, value in values.items() if not _is_numerical(key)}
+    model = {key: value for key, value in values.items() if key.partition(".")[0] not in _NUMERICAL}
     try:
         scene = scene_from_dict(changed, registry)
         plan = make_plan(scene)
@@ -320,7 +315,9 @@ def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Re
             return Reference({}, {}, "the equilibrium could not be found")
         bound = max(row["own_error"] or 0.0, _FLOOR)
         return Reference(row["quantities"], _all(row["quantities"], bound), "nothing is integrated: solved to a residual")
-    steps, turns = _finest(group)
+    scenes = [s.scene for s in group if s.scene is not None]
+    finest = [s.integrator.steps_per_turn for s in scenes if isinstance(s.integrator.steps_per_turn, int)]
+    steps, turns = max(finest, default=360), max(s.integrator.turns for s in scenes)
     if not scene.integrator.method.inertial:
         return _equilibria(first, steps, runner, extra)
     # Where every turn is alike, a longer run shows the same; elsewhere the window belongs to the question.
@@ -342,13 +339,6 @@ def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Re
         return attrs.evolve(direct, how=how)
     bounds = {name: max(direct.bounds[name], abs(apart[name])) for name in direct.values}
     return Reference(direct.values, bounds, f"{direct.how}, bound by its distance from {by_time.how}")
-
-
-def _finest(group: list[Setting]) -> tuple[int, int]:
-    """Most steps per turn and most turns of the rows."""
-    scenes = [s.scene for s in group if s.scene is not None]
-    steps = [s.integrator.steps_per_turn for s in scenes if isinstance(s.integrator.steps_per_turn, int)]
-    return max(steps, default=360), max(s.integrator.turns for s in scenes)
 
 
 def _all(values: Values, relative: float) -> Values:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import difflib
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,12 +87,6 @@ def _installed(registry: Registry) -> dict[str, tuple[str, str]]:
     return distributions
 
 
-def _like(name: str, installed: Iterable[str]) -> str:
-    """A hint only for what is nearly the same: many distributions begin with the same word."""
-    close = difflib.get_close_matches(name, list(installed), n=1, cutoff=0.85)
-    return f" (did you mean '{close[0]}'?)" if close else ""
-
-
 def _unmet(
     name: str, specifier: str, versions: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
 ) -> str:
@@ -113,7 +107,10 @@ def _unmet(
                 variable == "RACEWAY_PLUGINS" and words and key not in words
             ):
                 return f"is not loaded: the environment variable {variable} leaves it out"
-        return f"is required by this scene and not installed{_like(key, installed)}. Install it: {command}"
+        # A hint only for what is nearly the same: many distributions begin with the same word.
+        close = difflib.get_close_matches(key, list(installed), n=1, cutoff=0.85)
+        like = f" (did you mean '{close[0]}'?)" if close else ""
+        return f"is required by this scene and not installed{like}. Install it: {command}"
     distribution, version = installed[key]
     try:
         met = not specifier or versions.contains(Version(version), prereleases=True)
@@ -338,7 +335,8 @@ def _plugin_table(
         options = {key: value for key, value in options.items() if key in keys or key not in elsewhere}
     for key in [k for k in options if k not in keys]:
         rule = f"unknown key{nearest(key, keys)}; known for kind '{word}': {', '.join(k for k in keys if k != 'kind')}"
-        if plugin is AutoIntegrator and (holders := _kinds_with(key, kind, registry)):
+        holders = [e.name for e in registry.all() if e.kind == kind and key in attrs.fields_dict(e.plugin)]
+        if plugin is AutoIntegrator and holders:
             rule = f"belongs to a method, which kind 'auto' chooses: say kind = {' or '.join(map(repr, holders))} with it"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
     method = structure(options, plugin, name, mistakes)
@@ -358,11 +356,6 @@ def options_class(kind: str, word: str, registry: Registry) -> type:
         No plug-in has this name.
     """
     return AutoIntegrator if (kind, word) == ("integrator", AutoIntegrator.name) else registry.find(kind, word).plugin
-
-
-def _kinds_with(key: str, kind: str, registry: Registry) -> list[str]:
-    """Names of the plug-ins that have an option."""
-    return [e.name for e in registry.all() if e.kind == kind and key in attrs.fields_dict(e.plugin)]
 
 
 def rig_of(scene: Scene) -> Rig:

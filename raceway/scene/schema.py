@@ -78,7 +78,7 @@ def _plugin_table(name: str, kind: str, default: str | None, registry: Registry)
     for word, plugin in usable.items():
         branch = _table(plugin)
         core = _table(TABLES[name])["properties"] if name in TABLES else {}
-        words = {"const": word, "description": _first_line(plugin)}
+        words = {"const": word, "description": (plugin.__doc__ or "").strip().partition("\n")[0]}
         branch["properties"] = {**core, **branch["properties"], "kind": words}
         if word != default:
             branch["required"].insert(0, "kind")
@@ -140,8 +140,3 @@ def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
         return [{}]
     form = {"type": _TYPES[kind], **(limits if kind in (float, int) else {})}
     return [form, {"type": "string", "pattern": PATTERN}] if measured and kind is float else [form]
-
-
-def _first_line(plugin: type) -> str:
-    text = (plugin.__doc__ or "").strip()
-    return text.splitlines()[0] if text else ""

@@ -101,7 +101,8 @@ def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
 
 def state_data(bearing: Bearing, state: State) -> Tables:
     """Balls by their loads, forces, contact ellipses by their pressures and labels, for ``view.js``."""
-    top, peak = _scales(state)
+    # Largest load on an inner race [N], and largest pressure [MPa].
+    top, peak = max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)
     centres, tips = bearing.centres(state), bearing.tips(state, top)
     shapes: Tables = {}
     parts = [
@@ -132,11 +133,6 @@ def state_data(bearing: Bearing, state: State) -> Tables:
         "shapes": shapes, "parts": parts, "balls": balls, "labels": labels, "reach": reach, "radius": 0.5 * bearing.diameter,
         "bars": [_bar("ball load, inner race", "N", LOADS, top), _bar("contact pressure", "MPa", PRESSURES, peak)],
     }  # fmt: skip
-
-
-def _scales(state: State) -> tuple[float, float]:
-    """Largest load on an inner race [N], and largest pressure [MPa]."""
-    return max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)
 
 
 def _part(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> Tables:
