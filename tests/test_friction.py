@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.core.thermal import jet_oil_fraction
+from raceway.core.rolling_friction import measured_factors
 from raceway.errors import RacewayError
 from raceway.plugins.friction import PARTS, Friction
 from raceway.testing import run
@@ -26,7 +26,7 @@ def friction(**tables):
 
 
 def test_parts_rows_and_places_sum_up():
-    table, _ = friction(quantities={"friction": {"seal_torque": 0.02, "cage_torque": 0.01}})
+    table, _ = friction(quantities={"friction": {"seal_torque": 0.02, "cage_torque": 0.01, "measured_band": 1.0}})
     speed = 6000.0 * np.pi / 30.0
     assert set(table["parts"]) == set(PARTS) and min(table["parts"].values()) > 0.0
     assert sum(table["parts"].values()) == pytest.approx(table["torque_nm"], rel=1e-12)
@@ -74,26 +74,27 @@ def test_ellipses_of_a_law_of_its_own_are_those_of_its_runs():
     assert float(computed(1000.0)["torque_nm"]) == pytest.approx(run(own).quantities["torque_nm"], rel=1e-12)
 
 
-def test_heat_of_a_measured_bearing():
-    """NASA TP-2275, read off a figure by others to 5 %; the oil is assumed, an ester of 26 and 5.1 mm2/s at its inlet's temperature."""
-    bearing = {
-        "ball_count": 16, "ball_diameter": 7.14e-3, "pitch_diameter": 46.5e-3, "contact_angle_deg": 24.0, "width": 14e-3,
-        "conformity_inner": 0.535, "conformity_outer": 0.535,
-    }  # fmt: skip
-    oil = {"viscosity_40": 26e-6, "viscosity_100": 5.1e-6, "temperature_c": 121.0, "density": 930.0}
-    measured, ratios = {28e3: 350.0, 48e3: 700.0, 64e3: 1100.0, 72e3: 1400.0}, []
-    for rpm, heat in measured.items():
-        fraction = jet_oil_fraction(760e-6 / 60.0, rpm * np.pi / 30.0, 46.5e-3)
-        tables = {
-            "load": {"axial": 667.0},
-            "kinematics": {"spin_speed_rpm": rpm},
-            "lubricant": {**oil, "oil_fraction": fraction},
-        }
-        table, _ = friction(bearing=bearing, **tables)
-        ratios.append(table["power_w"] / heat)
-        # The slowest is missed, also by its band: docs/friction.md says so.
-        assert (table["band"]["low"] < heat / (rpm * np.pi / 30.0) < table["band"]["high"]) == (rpm > 28e3)
-    assert ratios == pytest.approx([0.723, 1.147, 1.299, 1.303], abs=0.006)
+def test_measured_bearings_widen_the_band_of_what_is_computed():
+    """Not of seals, which are given; of rows the widest: each factor of the band is over the torque without seals."""
+    table, _ = friction(quantities={"friction": {"seal_torque": 0.02}})
+    low, high = measured_factors(46e-3, 6000.0 * np.pi / 30.0)
+    computed = table["torque_nm"] - 0.02
+    assert table["band"]["high"] == pytest.approx(0.02 + high * computed, rel=1e-12) and low < 1.0 < 2.0 < high
+    assert table["band"]["low"] == pytest.approx(0.02 + low * computed, rel=1e-12)
+    given, _ = friction(quantities={"friction": {"measured_band": 4.0}})
+    assert given["band"]["high"] == pytest.approx(4.0 * given["torque_nm"], rel=1e-12)
+
+
+def test_gyroscopic_moments_are_those_of_the_balls_material():
+    """In proportion to its density, under the same loads."""
+    ratios = [
+        friction(
+            bearing={"preset": "B7206C", "balls": {"density": density}},
+            kinematics={"spin_speed_rpm": 6000.0, "ball_inertia": False},
+        )[0]["gyroscopic_over_traction"]
+        for density in (3200.0, 7800.0)
+    ]
+    assert ratios[0] / ratios[1] == pytest.approx(3200.0 / 7800.0, rel=1e-9)
 
 
 def test_values_of_the_screen_are_short():

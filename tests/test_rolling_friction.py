@@ -8,7 +8,7 @@ from scipy.special import ellipe
 
 from raceway.core.contact.losses import _mean_slip
 from raceway.core.elementary import exponential, logarithm
-from raceway.core.rolling_friction import _spin_shape, losses
+from raceway.core.rolling_friction import MEASURED, _spin_shape, losses
 from validation.rolling_friction import (
     INLET_MOMENT,
     OIL,
@@ -24,6 +24,7 @@ from validation.rolling_friction import (
     hysteresis_loss,
     inlet_moment,
     rolling_without_oil,
+    spin_down,
     torques,
     traction_coefficient,
 )
@@ -32,12 +33,12 @@ from validation.rolling_friction import (
 def test_rolling_resistance_has_the_printed_moment():
     """``RollingResistance0`` of D-BRAIN's tests; it states pi and lengths to other digits than 1.3e-5."""
     oil = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30)
-    moment = hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.5 * D * (1.0 - D / PITCH)
+    moment = hydrodynamic_force(brain(), oil, np.full((1, 2, 1), SPEED))[0, 0, 0] * 0.25 * D * (1.0 - D / PITCH)
     assert moment == pytest.approx(INLET_MOMENT, rel=2e-5)
 
 
 def shear_of_the_inlet(minor, along, viscous, alpha):
-    """2 F_R per width [N/m] of a strip with Grubin's inlet: integral of (h - h_c) dp, with q = (1 - exp(-alpha p)) / alpha."""
+    """Loss over speed per width [N/m] of a strip with Grubin's inlet: integral of (h - h_c) dp, with q = (1 - exp(-alpha p)) / alpha."""
     t = 1.0 + np.geomspace(1e-7, 60.0, 4000)
     gap = minor**2 / (2.0 * along) * (t * np.sqrt(t * t - 1.0) - np.log(t + np.sqrt(t * t - 1.0)))
 
@@ -53,16 +54,28 @@ def shear_of_the_inlet(minor, along, viscous, alpha):
 
 @pytest.mark.parametrize("load", [50.0, 200.0, 500.0])
 @pytest.mark.parametrize("speed", [2.0, 10.0])
-def test_rolling_resistance_is_the_shear_of_both_surfaces_in_the_inlet(load, speed):
-    """An independent quadrature; strips without side flow and a film that the fit does not have differ by up to 30 %."""
+def test_rolling_loss_is_that_of_its_source_and_half_of_it_arises_in_the_inlet(load, speed):
+    """Biboulet, Houpert, eq. 27 and 38: 64 b^3 p^5 / (E'^3 eta) 13.7 / (k M^(7/3)); an independent quadrature of Grubin's inlet, without the
+    outlet and what flows beside the ellipse, has 0.4 to 0.65 of it."""
     ball = contacts((load, load))
     oil = attrs.evolve(OIL, temperature_viscosity=1e-30)
     force = hydrodynamic_force(ball, oil, np.full((1, 2, 1), speed))[0, 0, 0]
-    a, b = ball.semi_major[0, 0, 0], ball.semi_minor[0, 0, 0]
+    a, b, e, along = ball.semi_major[0, 0, 0], ball.semi_minor[0, 0, 0], ball.modulus, ball.along[0, 0, 0]
     peak, places = 1.5 * load / (np.pi * a * b), np.linspace(-0.995, 0.995, 21)
-    radius = b * ball.modulus / (4.0 * peak)
+    slow = 0.01 * speed  # where 6.6 / M of the way to isoviscous contacts is short
+    m = (b * e / (np.pi * peak * along)) ** 0.25 * (b / a) * load / (e * along**2) * (e * along / (0.06 * slow)) ** 0.75
+    power = 64.0 * b**3 * peak**5 / (e**3 * 0.03) * 13.7 / ((b / a) * m ** (7.0 / 3.0))
+    assert slow * hydrodynamic_force(ball, oil, np.full((1, 2, 1), slow))[0, 0, 0] == pytest.approx(power, rel=0.05)
+    radius = b * e / (4.0 * peak)
     strips = [shear_of_the_inlet(b * np.sqrt(1 - y * y), radius, 0.03 * speed, 2e-8) for y in places]
-    assert np.trapezoid(strips, a * places) == pytest.approx(force, rel=0.3)
+    assert 0.4 < np.trapezoid(strips, a * places) / force < 0.65
+
+
+def test_torque_of_a_spin_down_is_measured_so():
+    """Of three balls in a thrust bearing, mixed films at the slowest: within the factors that the band knows of it."""
+    known = MEASURED[0]
+    ratios = [measured / computed for _, measured, computed in spin_down()]
+    assert known.least == pytest.approx(min(ratios), abs=0.01) and known.largest == pytest.approx(max(ratios), abs=0.01)
 
 
 def test_heat_of_the_inlet_takes_a_part_of_the_rolling_resistance():

@@ -87,7 +87,7 @@ def hydrodynamic_force(contacts: LoadedContacts, oil: Lubrication, entraining: n
     starved = 1.8 * u**0.75 / r**0.25
     regime = r**0.25 * (b / a) * q / (e * along**2) / u**0.75
     rigid = 0.77 * (b / a) ** 0.12 * u ** (2.0 / 3.0) / np.cbrt(r)
-    force = 2.0 * a * e * along * ((rigid - starved) / (1.0 + regime / 6.6) + starved)
+    force = 4.0 * a * e * along * ((rigid - starved) / (1.0 + regime / 6.6) + starved)
     return np.asarray(force / (1.0 + 0.29 * _loading(oil, entraining) ** 0.78))
 
 
@@ -187,10 +187,10 @@ INLET_MOMENT = 0.7780845243544707e-3
 
 
 def inlet_moment() -> float:
-    """The same, from the torque on the shaft: moment over radius is the oil's shear."""
+    """The same, from the torque on the shaft: moment over radius is the oil's shear on one surface, half of the loss over the speed."""
     oil, turns = attrs.evolve(OIL, viscosity=43.691e-3, temperature_viscosity=1e-30), 10_000.0 * np.pi / 30.0
     force = losses(brain().compiled(), oil, np.array([turns])).rolling[0, 0, 0] * turns / SPEED
-    return float(force * 0.5 * D * (1.0 - D / PITCH))
+    return float(0.5 * force * 0.5 * D * (1.0 - D / PITCH))
 
 
 def hysteresis_loss(load: float) -> float:
@@ -216,3 +216,25 @@ def drag_over_sphere() -> float:
     cage = 0.5 * (1.0 - 9.525e-3 / 46e-3 * np.cos(0.26))  # over the shaft's
     force = losses(contacts().compiled(), OIL, np.array([500.0 / cage])).drag[0, 0] / (23e-3 * cage)
     return float(force / (0.5 * 9.888 * 0.44 * 0.25 * np.pi * 9.525e-3**2 * 11.5**2))
+
+
+#: Torque of three balls in a 51205 by spin-down, Balan et al. (2015), tables 1 and 2: K n of K w^n [N m] from r/min down, by ball's
+#: diameter [m] and load of each ball [N].
+SPIN_DOWN = {
+    (6.35e-3, 0.125): {60: (4.208e-5, 0.652), 90: (3.839e-5, 0.647), 120: (3.943e-5, 0.620), 150: (3.779e-5, 0.654),
+                       180: (3.457e-5, 0.622), 210: (3.354e-5, 0.649)},
+    (3e-3, 0.633): {60: (4.001e-5, 0.116), 90: (3.287e-5, 0.277), 120: (2.864e-5, 0.318), 150: (2.796e-5, 0.366),
+                    180: (3.210e-5, 0.344), 210: (3.213e-5, 0.339)},
+}  # fmt: skip
+
+
+def spin_down() -> list[tuple[float, float, float]]:
+    """Speed [rad/s], measured torque and that of the inlets' shear [N m]; pitch circle of 36 mm, grooves of 4.16 mm, 0.05 Pa s."""
+    out = []
+    for (diameter, load), runs in SPIN_DOWN.items():
+        one = contacts((load, load), (0.5 * np.pi, 0.5 * np.pi), diameter, 36e-3, 4.16e-3 / diameter).compiled()
+        for rpm, (factor, power) in runs.items():
+            speed = rpm * np.pi / 30.0
+            lost = losses(one, attrs.evolve(OIL, viscosity=0.05), np.array([speed]))
+            out.append((speed, factor * speed**power, 3.0 * float(lost.rolling.sum())))
+    return out

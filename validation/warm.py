@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
+from raceway.core import rolling_friction
+from raceway.pipeline.warm import band_of_heat
 
 _LINKS = ("inner_balls", "outer_balls", "inner_oil", "balls_oil", "outer_oil", "inner_shaft", "outer_housing")
 #: Of conductances that are all given [W/K]: nothing but friction depends on the state.
@@ -127,34 +129,55 @@ MEASURED = (
     (64e3, 1100.0, 458.0, 435.0),
     (72e3, 1400.0, 468.0, 443.0),
 )
+#: Bearings of that report by bore: ball and pitch diameter, bore, outer diameter, width [m], balls, angle [deg], axial load [N].
+_SIZES = {
+    35: (7.14e-3, 46.5e-3, 0.035, 0.062, 0.014, 16, 24.0, 667.0),
+    120: (20.64e-3, 0.160, 0.120, 0.200, 0.038, 15, 25.0, 22_240.0),
+    167: (22.23e-3, 0.196, 0.167, 0.225, 0.036, 23, 20.0, 22_240.0),
+}
+_KEYS = ("ball_diameter", "pitch_diameter", "bore", "outer_diameter", "width", "ball_count", "contact_angle_deg")
+#: Bore, r/min, flow [cm3/min] and heat [W] of its runs.
+HEATS = (
+    *((35, rpm, 760.0, watt) for rpm, watt, *_ in MEASURED),
+    *((120, rpm, flow, watt) for flow in (2280.0, 8700.0) for rpm, watt in ((5e3, 2500.0), (8e3, 4800.0), (12e3, 8800.0))),
+    *((167, rpm, 10_600.0, watt) for rpm, watt in ((6e3, 5e3), (8.4e3, 9e3), (12e3, 18e3), (15e3, 25e3))),
+)
 
 
-def turbopump(rpm: float, ambient_c: float = 394.0 - 273.15) -> dict[str, dict[str, Any]]:
-    """The 35 mm bearing of these measurements, every coefficient at its default; its surroundings as warm as the oil that fills them."""
-    size = {"ball_diameter": 7.14e-3, "pitch_diameter": 46.5e-3, "bore": 0.035, "outer_diameter": 0.062, "width": 0.014}
+def jet_bearing(bore: int, rpm: float, flow: float, ambient_c: float = 394.0 - 273.15) -> dict[str, dict[str, Any]]:
+    """A bearing of these measurements, every coefficient at its default; its surroundings as warm as the oil that fills them."""
+    *sizes, load = _SIZES[bore]
     return {
-        "bearing": {
-            **size,
-            "ball_count": 16,
-            "contact_angle_deg": 24.0,
-            "conformity_inner": 0.535,
-            "conformity_outer": 0.535,
-        },
-        "load": {"axial": 667.0},
+        "bearing": dict(zip(_KEYS, sizes, strict=True)) | {"conformity_inner": 0.535, "conformity_outer": 0.535},
+        "load": {"axial": load},
         "kinematics": {"spin_speed_rpm": rpm},
         "lubricant": {"viscosity_40": 27.6e-6, "viscosity_100": 5.1e-6, "density": 930.0},
-        "heat": {"oil_inlet_c": 394.0 - 273.15, "oil_flow": "760 cm3/min", "ambient_c": ambient_c},
+        "heat": {"oil_inlet_c": 394.0 - 273.15, "oil_flow": f"{flow} cm3/min", "ambient_c": ambient_c},
     }
 
 
-def heat_and_band(rpm: float) -> tuple[float, tuple[float, float]]:
-    """Of that bearing the heat of friction, and its band [W]."""
-    heat = rw.run(turbopump(rpm)).to_dict()["heat"]
-    low, high = (factor * heat["heat_w"] for factor in heat["band"]["friction"])
-    return heat["heat_w"], (low, high)
+def turbopump(rpm: float, ambient_c: float = 394.0 - 273.15) -> dict[str, dict[str, Any]]:
+    """The 35 mm bearing."""
+    return jet_bearing(35, rpm, 760.0, ambient_c)
+
+
+def heat_by_factors(bore: int, rpm: float, flow: float) -> tuple[float, float]:
+    """Heat [W] of a bearing with the least and the largest factor of friction that ``MEASURED`` of the core has for it."""
+    scene = jet_bearing(bore, rpm, flow)
+    scene["heat"]["conductance_band"] = 0.0
+    known = next(one for one in rolling_friction.MEASURED if one.name.startswith(f"{bore} mm"))
+    low, high = band_of_heat(rw.Scene.from_dict(scene), (known.least, known.largest))["heat_w"]
+    return low, high
+
+
+def heat_and_band(bore: int, rpm: float, flow: float) -> tuple[float, float, float]:
+    """Heat of friction of one of these bearings, and the ends of its band [W], the upper one infinite where nothing is steady there."""
+    heat = rw.run(jet_bearing(bore, rpm, flow)).to_dict()["heat"]
+    low, high = heat["band"]["heat_w"]
+    return heat["heat_w"], low, np.inf if high is None else high
 
 
 def rings_and_band(rpm: float) -> tuple[dict[str, float], tuple[float, float]]:
-    """Of that bearing the temperatures [K], and the band of the inner ring's less the outer one's."""
+    """Of the 35 mm bearing the temperatures [K], and the band of the inner ring's less the outer one's."""
     heat = rw.run(turbopump(rpm)).to_dict()["heat"]
     return heat["temperatures_k"], tuple(heat["band"]["inner_less_outer_k"])

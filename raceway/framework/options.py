@@ -234,8 +234,11 @@ def word_or(rule: Rule, *choices: str) -> Rule:
         if isinstance(value, str):
             if value not in choices:
                 raise ValueError(f"must be {listed} or a number {number}{nearest(value, choices)}")
-        else:
+            return
+        try:
             rule(instance, attribute, value)
+        except ValueError as fault:
+            raise ValueError(f"{fault}, or {listed}") from None
 
     return worded(check, f"{listed} or a number {number}", {"words": list(choices), **getattr(rule, "facts", {})})
 

@@ -2,8 +2,9 @@
 
 Notes
 -----
-The terms are those of ``raceway.core.rolling_friction``; seals and cage are given.  The band adds the terms' own bands, which are relative and
-independent of each other: torque +- sqrt(sum (band part)^2).  Palmgren's rule of thumb stands beside it (``palmgren_torque``).
+The terms are those of ``raceway.core.rolling_friction``; seals and cage are given.  Each end of the band is the farther one of two: the terms'
+own bands, relative and independent of each other, torque +- sqrt(sum (band part)^2), and what bearings measured near this size and speed leave
+possible (``measured_factors``).  Palmgren's rule of thumb stands beside it (``palmgren_torque``).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.framework.duties import is_foundation
-from raceway.framework.options import at_least, between, option
+from raceway.framework.options import at_least, between, option, word_or
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -71,6 +72,11 @@ class Friction:
     elastic_band: float = option(0.5, help="of the hysteresis, relative", rule=between(0.0, 1.0))
     traction_band: float = option(0.3, help="of the traction coefficient, relative", rule=between(0.0, 1.0))
     drag_band: float = option(0.7, help="of oil fraction and drag coefficient, relative", rule=between(0.0, 1.0))
+    measured_band: float | str = option(
+        "auto",
+        help="f: measured torques lie within 1/f to f times the computed one; 'auto': by bearings measured near this size and speed; 1: not used",
+        rule=word_or(at_least(1.0), "auto"),
+    )
 
     @staticmethod
     def example_scene() -> Tables:
@@ -96,8 +102,23 @@ class Friction:
         bands = (self.rolling_band, self.elastic_band, self.traction_band, self.drag_band, 0.0)
         spread = np.sqrt(np.asarray(sum((band * part) ** 2 for band, part in zip(bands, parts.values(), strict=True))))
         named = {f"torque_{name}_nm": part for name, part in parts.items()}
-        ends = {"torque_low_nm": torque - spread, "torque_high_nm": torque + spread}
+        (least, most), computed = self.measured(points), torque - parts["seals"]
+        low, high = np.maximum(spread, (1.0 - least) * computed), np.maximum(spread, (most - 1.0) * computed)
+        ends = {"torque_low_nm": torque - low, "torque_high_nm": torque + high}
         return {"torque_nm": torque, "power_w": torque * points.speed, **ends, **named}
+
+    def measured(self, points: SolvedPoints) -> tuple[Number, Number]:
+        """Factors (n,) of the computed friction within which measured bearings lie; of rows the widest."""
+        import numpy as np
+
+        from raceway.core.rolling_friction import measured_factors
+
+        if not isinstance(self.measured_band, str):
+            return 1.0 / self.measured_band, self.measured_band
+        lows, highs = zip(
+            *(measured_factors(b.pitch_diameter, points.speed) for b in points.problem.bearing.of_rows), strict=True
+        )
+        return np.minimum.reduce(lows), np.maximum.reduce(highs)
 
     def losses(self, points: SolvedPoints) -> Losses:
         """Of every contact and ball."""
@@ -124,7 +145,6 @@ class Friction:
             rows.append({"torque_nm": total, "power_w": total * speed, "parts": parts})
         inner, outer = (float(heat) for heat in lost.contact_power[0].sum(axis=1))
         places = {"inner": inner, "outer": outer, "mixture": float(lost.drag_power[0]), "seals": float(lost.seal_power[0])}
-        middle = palmgren_torque(points)
         return {
             "torque_nm": numbers["torque_nm"],
             "power_w": numbers["power_w"],
@@ -132,7 +152,7 @@ class Friction:
             "band": {"low": numbers["torque_low_nm"], "high": numbers["torque_high_nm"]},
             "rows": rows,
             "heat_w": places,
-            "palmgren_nm": {"oil_and_air": middle(0.5), "oil_bath": middle(1.0), "oil_jet": middle(2.0)},
+            "palmgren_nm": palmgren_torque(points),
             "viscosity_pa_s": float(oil.dynamic_viscosity),
             "spin": "outer race control" if points.problem.kinematics.gyroscopic == "outer_race" else "least dissipation",
             "gyroscopic_over_traction": float(lost.gyroscopic.max()),
@@ -242,8 +262,8 @@ def ball_contacts(points: SolvedPoints) -> BallContacts:
     )
 
 
-def palmgren_torque(points: SolvedPoints) -> Palmgren:
-    """Palmgren's rule of thumb at one point.
+def palmgren_torque(points: SolvedPoints) -> dict[str, float]:
+    """Palmgren's rule of thumb at one point [N m], by supply of oil.
 
     Notes
     -----
@@ -269,15 +289,5 @@ def palmgren_torque(points: SolvedPoints) -> Palmgren:
         angle = max(b.contact_angle, float(np.nanmean(np.abs(points.contact_angle[0, 1, balls]))) if kind == 0 else 0.0, 0.1)
         churned += 1e-7 * _BATH[kind] * max(nu * rpm, 2000.0) ** (2.0 / 3.0) * pitch**3 if rpm > 0.0 else 0.0
         carried += _LOAD_FACTORS[kind] * max(radial, 0.9 * float(axial) / np.tan(angle) - 0.1 * radial) * pitch
-    return Palmgren(1e-3 * churned, 1e-3 * carried)
-
-
-@attrs.frozen
-class Palmgren:
-    """Its two parts [N m]; called with a factor of the first, it gives their sum."""
-
-    viscous: float
-    load: float
-
-    def __call__(self, supply: float) -> float:
-        return supply * self.viscous + self.load
+    supplies = {"oil_and_air": 0.5, "oil_bath": 1.0, "oil_jet": 2.0}
+    return {name: 1e-3 * (supply * churned + carried) for name, supply in supplies.items()}

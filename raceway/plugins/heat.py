@@ -151,13 +151,15 @@ def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
     return f"{ends[0] - less:.4g} to {ends[1] - less:.4g} {unit}"
 
 
-def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: Number = 1.0, inner: Number = 1.0) -> Network:
+def thermal_network(
+    points: SolvedPoints, traction: Number = 1.0, conductance: Number = 1.0, inner_oil: Number = 1.0
+) -> Network:
     """The network of n points, temperatures in degrees Celsius.
 
     Parameters
     ----------
     traction, conductance : factors of the heat of friction and of conductances by correlations, numbers or columns (n,)
-    inner : of the conductance by correlation from the inner rings to the oil, instead of ``conductance``
+    inner_oil : of the conductance by correlation from the inner rings to the oil, instead of ``conductance``
     """
     import numpy as np
 
@@ -165,14 +167,6 @@ def thermal_network(points: SolvedPoints, traction: Number = 1.0, conductance: N
 
     heat = points.problem.heat
     assert heat is not None, "rules refuse scenes without it"
-    heats = _heats(points) * np.reshape(traction, (-1, 1))
-    return Network(_conductances(points, conductance, inner), heats, heat.oil_inlet_c, heat.ambient_c)
-
-
-def _heats(points: SolvedPoints) -> np.ndarray:
-    """(n, 6) heat that arises in the nodes [W]."""
-    import numpy as np
-
     lost = points.problem.quantities.friction.losses(points)
     inner, outer = lost.contact_power.sum(axis=2).T
     heats = np.zeros((len(points.load), len(_NODES)))
@@ -180,7 +174,8 @@ def _heats(points: SolvedPoints) -> np.ndarray:
     heats[:, 1] = 0.5 * (inner + outer)
     heats[:, 2] = 0.5 * (outer + lost.seal_power)
     heats[:, 5] = lost.drag_power
-    return heats
+    heats *= np.reshape(traction, (-1, 1))
+    return Network(_conductances(points, conductance, inner_oil), heats, heat.oil_inlet_c, heat.ambient_c)
 
 
 def _conductances(points: SolvedPoints, factor: Number, inner: Number) -> dict[str, Number]:

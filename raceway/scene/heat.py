@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import attrs
 
-from raceway.framework.options import at_least, between, option, positive, word_or
+from raceway.framework.options import between, inside, option, word_or
+
+#: Conductance [W/K] beyond which it is 'infinite': differences of temperatures, known to 1e-13 K, no longer give the heat to 1e-8 W.
+_INFINITE = 1e5
 
 
 def _conductance(between_words: str) -> float | str:
-    return option(
-        "auto", unit="W/K", help=f"conductance between {between_words}", rule=word_or(positive(), "auto", "infinite")
-    )
+    rule = word_or(inside(1e-12, _INFINITE), "auto", "infinite")
+    return option("auto", unit="W/K", help=f"conductance between {between_words}", rule=rule)
 
 
 def _to_ambient(node: str) -> float | str:
@@ -18,7 +20,7 @@ def _to_ambient(node: str) -> float | str:
         "auto",
         unit="W/K",
         help=f"conductance between {node} and ambient; 'auto': by ISO 15312",
-        rule=word_or(positive(), "auto"),
+        rule=word_or(inside(1e-12, _INFINITE), "auto"),
     )
 
 
@@ -35,10 +37,10 @@ class Heat:
     oil_flow: float | str = option(
         unit="m3/s",
         help="flow through all rows; 'infinite': constant oil temperature",
-        rule=word_or(positive(), "infinite"),
+        rule=word_or(inside(1e-18, 1.0), "infinite"),
     )
     ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-273.15, 1e3))
-    oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=positive())
+    oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=between(1.0, 1e5))
     inner_wetting: float | str = option(
         "auto",
         help="wetted share of the inner rings, a factor of inner_oil 'auto'; 'auto': 1 - Z D / (pi d_m), the gaps between the balls; "
@@ -55,5 +57,5 @@ class Heat:
     shaft_ambient: float | str = _to_ambient("shaft")
     housing_ambient: float | str = _to_ambient("housing")
     conductance_band: float = option(
-        0.5, help="r: 'auto' conductances are uncertain by factors 1/(1 + r) to 1 + r", rule=at_least(0.0)
+        0.5, help="r: 'auto' conductances are uncertain by factors 1/(1 + r) to 1 + r", rule=between(0.0, 100.0)
     )

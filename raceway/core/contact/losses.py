@@ -32,7 +32,7 @@ class Contacts(NamedTuple):
     curvature : slip at the ellipse's end by curvature over the rate of rolling, a^2 / (2 R) Q^(2/3)
     pressure : mean pressure, Q^(1/3) / (pi a b);  strain : 1 / h of the film, Q^0.067 (eta u)^-0.67 R_x^-0.464 alpha^-0.53
     slope : r^(-1/4) U^(3/4), (eta u)^0.75 R_x^-0.5;  rigid : 0.77 r^(-1/3) (b/a)^0.12 U^(2/3), (eta u)^(2/3) R_x^(-1/3)
-    regime : (b/a) W / 6.6, Q R_x^-2;  front : 2 a E' R_x, Q^(1/3) R_x;  hysteresis : moment, Q^1.33
+    regime : (b/a) W / 6.6, Q R_x^-2;  front : 4 a E' R_x, Q^(1/3) R_x;  hysteresis : moment, Q^1.33
     """
 
     load: np.ndarray
@@ -188,10 +188,10 @@ def _contact_losses(at, film, speed, balls):
     Of load Q, semi-axes a across and b along the running direction, k = a/b, entraining speed u, mean pressure p = Q / (pi a b),
     W = Q / (E' R_x^2), U = 2 eta u / (E' R_x), thermal loading L = eta beta u^2 / k_oil of the inlet:
 
-    inlet       2 F_R = 2 a E' R_x ((0.77 r^(-1/3) k^-0.12 U^(2/3) - f) / (1 + M / 6.6) + f) / (1 + 0.29 L^0.78), f = 1.8 r^(-1/4) U^(3/4),
-                r = 2 b E' / (3 pi p R_x), M = r^(1/4) W / k U^(-3/4): shear of the oil on both surfaces of a full film, from the
-                isoviscous-rigid to the elastohydrodynamic regime.  That in Grubin's inlet, summed over strips of the ellipse, is
-                0.75 to 1.25 times the isothermal force where contacts are elastohydrodynamic.
+    inlet       F_R = 2 a E' R_x ((0.77 r^(-1/3) k^-0.12 U^(2/3) - f) / (1 + M / 6.6) + f) / (1 + 0.29 L^0.78), f = 1.8 r^(-1/4) U^(3/4),
+                r = 2 b E' / (3 pi p R_x), M = r^(1/4) W / k U^(-3/4): shear of the oil on each of the surfaces of a full film, half the
+                integral of h dp, from the isoviscous-rigid to the elastohydrodynamic regime.  The loss is 2 u F_R, as its authors integrate
+                it (their equation 38); Grubin's inlet alone, summed over strips of the ellipse, makes 0.4 to 0.65 of it.
     hysteresis  M = 7.48e-7 (D/2)^0.33 Q^1.33 (1 - 3.519e-3 (k - 1)^0.8063) (E'_steel / E')^(1/3) in m and N; by the last factor contacts of
                 the same load are smaller.  Of a ball on a plane it is 3/16 c a Q with a loss c of 2.3 % of the elastic work.
     traction    Eyring: tau = tau_E asinh(eta(p) slip / (h tau_E)), eta(p) = eta exp(alpha p) (Barus), in the central film h of Hamrock and
@@ -199,9 +199,8 @@ def _contact_losses(at, film, speed, balls):
 
     References
     ----------
-    Inlet: Biboulet, Houpert, Proc. IMechE J 224 (2010) 777, as coded with a number in the open program D-BRAIN (Tribology.cpp), where the
-    exponent -1/3 is written as an integer division and the number is that of the exact one; Aihara, J. Tribol. 109 (1987) 471 for the
-    heat of the inlet, as coded there.  Hysteresis: Houpert, Tribol. Trans. 45 (2002) 345, as coded in open programs of ball screws (MER;
+    Inlet: Biboulet, Houpert, Proc. IMechE J 224 (2010) 777, equation 32, F_R as a moment over R_x as in the open program D-BRAIN; Aihara,
+    J. Tribol. 109 (1987) 471 for the heat of the inlet, as coded there.  Hysteresis: Houpert, Tribol. Trans. 45 (2002) 345, as coded in open programs of ball screws (MER;
     one prints 3.519e-36, a misprint).  Traction: Johnson, Tevaarwerk, Proc. R. Soc. A 356 (1977) 215 (Eyring); Jacod, Venner, Lugt,
     J. Tribol. 123 (2001) 248.
     """
