@@ -177,6 +177,18 @@ def heat_and_band(bore: int, rpm: float, flow: float) -> tuple[float, float, flo
     return heat["heat_w"], low, np.inf if high is None else high
 
 
+def outside_the_others() -> list[str]:
+    """Bearings of ``MEASURED`` of the core outside the band of friction that the others would give them."""
+    out = []
+    for one in rolling_friction.MEASURED:
+        others = tuple(known for known in rolling_friction.MEASURED if known is not one)
+        low, high = rolling_friction.measured_factors(
+            one.pitch_diameter, one.fastest * np.pi / 3e4 / one.pitch_diameter, others
+        )
+        out += [] if low < one.least <= one.largest < high else [one.name]
+    return out
+
+
 def rings_and_band(rpm: float) -> tuple[dict[str, float], tuple[float, float]]:
     """Of the 35 mm bearing the temperatures [K], and the band of the inner ring's less the outer one's."""
     heat = rw.run(turbopump(rpm)).to_dict()["heat"]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from itertools import product
-from math import pi
 
 from benchmarks.checks import Row, below, near
 from raceway.core.contact.losses import _mean_slip
 from raceway.core.life import life_factor
-from raceway.core.rolling_friction import MEASURED, measured_factors
+from raceway.core.rolling_friction import measured_factors
 from raceway.studies.catalogue.infer import _sizes_of
 from raceway.studies.catalogue.inferred import infer_printed
 from raceway.studies.catalogue.printed import printed_by
@@ -16,6 +15,7 @@ from raceway.studies.catalogue.rating_conventions import CONFORMITY
 from validation import lives, rolling_friction, warm
 
 COMMAND = "python -m benchmarks.checks quantities"
+_PAGE = "docs/measurements.md"
 TEST = "python -m pytest tests/test_life.py tests/test_infer.py tests/test_rolling_friction.py tests/test_warm.py"
 _PUBLISHED = {"radial": 0, "radial, 10 um of clearance": 2, "radial and axial, 10 um": 4}
 #: Viscosity ratios and e_C C_u / P.
@@ -64,58 +64,18 @@ def _heat() -> list[Row]:
     for rpm, _, inner, outer in warm.MEASURED:
         level, (less, most) = warm.rings_and_band(rpm)
         words = f"35 mm bearing, {rpm:g} r/min: inner less outer ring, measured {inner - outer:g} [K]"
-        limit = f"band of {less:.1f} to {most:.1f} holds the measurement"
-        out.append(
-            Row(
-                words,
-                round(level["inner"] - level["outer"], 1),
-                limit,
-                less < inner - outer < most,
-                COMMAND,
-                "docs/measurements.md",
-            )
-        )
-    return out + _measured()
-
-
-def _measured() -> list[Row]:
-    """Whether the band of friction holds all torques and heats of docs/measurements.md, and each bearing that of the others."""
-    out, outside, worst = [], list[str](), 0.0
+        apart, ok = round(level["inner"] - level["outer"], 1), less < inner - outer < most
+        out.append(Row(words, apart, f"inside {less:.1f} to {most:.1f}: the measurement", ok, COMMAND, _PAGE))
+    outside = list[str]()
     for bore, rpm, flow, watt in warm.HEATS:
         heat, low, high = warm.heat_and_band(bore, rpm, flow)
-        name, worst = f"{bore} mm bore, {rpm:g} r/min, {flow:g} cm3/min", max(worst, watt / heat, heat / watt)
-        outside += [] if low < watt < high else [name]
-        out.append(
-            Row(
-                f"{name}: heat, measured {watt:g} [W]",
-                round(heat),
-                f"from {low:.0f} to {high:.0f} W",
-                low < watt < high,
-                COMMAND,
-                "docs/measurements.md",
-            )
-        )
+        words, ok = f"{bore} mm bore, {rpm:g} r/min, {flow:g} cm3/min: heat, measured {watt:g} [W]", low < watt < high
+        outside += [] if ok else [words]
+        out.append(Row(words, round(heat), f"inside {low:.0f} to {high:.0f}: the measurement", ok, COMMAND, _PAGE))
     for speed, measured, computed in rolling_friction.spin_down():
         low, high = measured_factors(0.036, speed)
-        worst = max(worst, measured / computed)
-        outside += [] if low < measured / computed < high else [f"51205, {30.0 * speed / pi:.0f} r/min"]
-    words = f"friction band: measured torque or heat of every bearing in docs/measurements.md inside it: {'some' if outside else 'all'}, without refit"
-    out.append(
-        below(
-            words,
-            len(outside),
-            0,
-            COMMAND,
-            f"{len(warm.HEATS) + 12} runs of {len(MEASURED)} bearings, up to {worst:.2f} apart {outside}",
-        )
-    )
-    others = {
-        one.name: measured_factors(
-            one.pitch_diameter,
-            one.fastest * pi / 3e4 / one.pitch_diameter,
-            tuple(known for known in MEASURED if known is not one),
-        )
-        for one in MEASURED
-    }
-    left = [one.name for one in MEASURED if not others[one.name][0] < one.least <= one.largest < others[one.name][1]]
-    return [*out, below("bearings outside the band that the others give them", len(left), 0, COMMAND, str(left))]
+        outside += [] if low < measured / computed < high else [f"51205 at {speed:.3g} rad/s"]
+    words = f"friction band: measured torque or heat of every bearing in {_PAGE} inside it: {'not ' * bool(outside)}all, without refit"
+    out.append(below(words, len(outside), 0, COMMAND, str(outside)))
+    left = warm.outside_the_others()
+    return [*out, below("measured bearings outside the band that the others give them", len(left), 0, COMMAND, str(left))]

@@ -191,7 +191,7 @@ def _contact_losses(at, film, speed, balls):
     inlet       F_R = 2 a E' R_x ((0.77 r^(-1/3) k^-0.12 U^(2/3) - f) / (1 + M / 6.6) + f) / (1 + 0.29 L^0.78), f = 1.8 r^(-1/4) U^(3/4),
                 r = 2 b E' / (3 pi p R_x), M = r^(1/4) W / k U^(-3/4): shear of the oil on each of the surfaces of a full film, half the
                 integral of h dp, from the isoviscous-rigid to the elastohydrodynamic regime.  The loss is 2 u F_R, as its authors integrate
-                it (their equation 38); Grubin's inlet alone, summed over strips of the ellipse, makes 0.4 to 0.65 of it.
+                it (their equation 38).
     hysteresis  M = 7.48e-7 (D/2)^0.33 Q^1.33 (1 - 3.519e-3 (k - 1)^0.8063) (E'_steel / E')^(1/3) in m and N; by the last factor contacts of
                 the same load are smaller.  Of a ball on a plane it is 3/16 c a Q with a loss c of 2.3 % of the elastic work.
     traction    Eyring: tau = tau_E asinh(eta(p) slip / (h tau_E)), eta(p) = eta exp(alpha p) (Barus), in the central film h of Hamrock and
