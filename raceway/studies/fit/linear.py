@@ -67,10 +67,10 @@ def _uneven(power: np.ndarray) -> tuple[int, float] | None:
     """Index amid the block of power (n, d) over variance that is farthest from the mean, and its factor; None for white residuals."""
     from scipy.stats import chi2
 
-    blocks = np.array_split(power, _BLOCKS)
+    blocks = np.array_split(power, min(_BLOCKS, len(power)))
     factors = np.array([block.mean() for block in blocks]) / power.mean()
     deviations = np.array([block.size for block in blocks]) * (factors - 1.0) ** 2
-    if chi2.sf(deviations.sum(), _BLOCKS - 1) > _UNLIKELY:
+    if chi2.sf(deviations.sum(), max(len(blocks) - 1, 1)) > _UNLIKELY:
         return None
     worst = int(np.argmax(deviations))
     return sum(len(block) for block in blocks[:worst]) + len(blocks[worst]) // 2, float(factors[worst])
