@@ -17,12 +17,12 @@ from validation.warm import (
     heat_at_rest,
     heat_by_factors,
     isothermal_difference,
+    jet_bearing,
     outside_the_others,
     rings_and_band,
     runaway_by_hand,
     runaway_pair,
     runaway_speed,
-    turbopump,
     warm_pair,
 )
 
@@ -328,7 +328,9 @@ def test_rings_of_the_measured_bearing_are_within_20_kelvin_and_differ_within_th
 
 
 def test_rings_of_the_measured_bearing_in_cold_surroundings():
-    f = rw.function(turbopump(72e3, 20.0), ["kinematics.spin_speed_rpm"], ["temperature_inner_k", "temperature_outer_k"])
+    f = rw.function(
+        jet_bearing(35, 72e3, 760.0, 20.0), ["kinematics.spin_speed_rpm"], ["temperature_inner_k", "temperature_outer_k"]
+    )
     level = f([rpm for rpm, *_ in MEASURED])
     differences = level["temperature_inner_k"] - level["temperature_outer_k"]
     assert differences[0] > 0.0 and (np.diff(differences) > 0.0).all()

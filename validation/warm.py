@@ -156,11 +156,6 @@ def jet_bearing(bore: int, rpm: float, flow: float, ambient_c: float = 394.0 - 2
     }
 
 
-def turbopump(rpm: float, ambient_c: float = 394.0 - 273.15) -> dict[str, dict[str, Any]]:
-    """The 35 mm bearing."""
-    return jet_bearing(35, rpm, 760.0, ambient_c)
-
-
 def heat_by_factors(bore: int, rpm: float, flow: float) -> tuple[float, float]:
     """Heat [W] of a bearing with the least and the largest factor of friction that ``MEASURED`` of the core has for it."""
     scene = jet_bearing(bore, rpm, flow)
@@ -191,5 +186,5 @@ def outside_the_others() -> list[str]:
 
 def rings_and_band(rpm: float) -> tuple[dict[str, float], tuple[float, float]]:
     """Of the 35 mm bearing the temperatures [K], and the band of the inner ring's less the outer one's."""
-    heat = rw.run(turbopump(rpm)).to_dict()["heat"]
+    heat = rw.run(jet_bearing(35, rpm, 760.0)).to_dict()["heat"]
     return heat["temperatures_k"], tuple(heat["band"]["inner_less_outer_k"])

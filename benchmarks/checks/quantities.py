@@ -61,11 +61,6 @@ def _heat() -> list[Row]:
         by_hand = warm.runaway_by_hand(preload)
         words = f"thermal runaway of a rigid pair under {preload:g} N, by hand [r/min]"
         out.append(near(words, round(warm.runaway_speed(preload)), round(by_hand), 0.02, COMMAND))
-    for rpm, _, inner, outer in warm.MEASURED:
-        level, (less, most) = warm.rings_and_band(rpm)
-        words = f"35 mm bearing, {rpm:g} r/min: inner less outer ring, measured {inner - outer:g} [K]"
-        apart, ok = round(level["inner"] - level["outer"], 1), less < inner - outer < most
-        out.append(Row(words, apart, f"inside {less:.1f} to {most:.1f}: the measurement", ok, COMMAND, _PAGE))
     outside = list[str]()
     for bore, rpm, flow, watt in warm.HEATS:
         heat, low, high = warm.heat_and_band(bore, rpm, flow)

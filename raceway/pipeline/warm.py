@@ -204,32 +204,22 @@ def _at_row(scene: Scene, columns: Mapping[str, np.ndarray], row: int | np.intp)
     return attrs.evolve(resolve(with_columns(scene, numbers)), scene=scene)
 
 
-def speed_limit(scene: Scene) -> tuple[float, float]:
-    """Least speed [r/min], up to that of a scene with [heat], at which it has no steady temperatures, and the highest just below it [C].
-
-    0 and nan of a scene at rest: the temperatures of oil and surroundings alone are what it cannot have.
-    """
-    if not resolve(scene).spin_speed:
-        return 0.0, np.nan
-    key = "kinematics.spin_speed_rpm" if scene.kinematics.spin_speed_rpm is not None else "excitation.speed_rpm"
-    low, high, hottest = 0.0, resolve(scene).spin_speed * 30.0 / np.pi, np.nan
-    for _ in range(_ROUNDS):
-        speeds = np.linspace(low, high, _SPEEDS + 1)[1:]
-        warmth = warm(scene, {key: speeds}, make_plan(scene))
-        first = int(np.argmax(warmth.runaway))
-        if first:
-            low, hottest = speeds[first - 1], warmth.temperatures[first - 1].max()
-        high = speeds[first]
-    return float(high), float(hottest)
-
-
 def _runaway_words(scene: Scene) -> str:
-    speed, hottest = speed_limit(scene)
+    """With the least speed [r/min], up to the scene's, at which it has no steady temperatures, and the highest [C] just below it."""
+    key = "kinematics.spin_speed_rpm" if scene.kinematics.spin_speed_rpm is not None else "excitation.speed_rpm"
+    low, speed, hottest = 0.0, resolve(scene).spin_speed * 30.0 / np.pi, np.nan
     if not speed:
         return (
             f"at the temperatures that oil and surroundings give it at rest the bearing is closed, or beyond {_HOTTEST:g} °C, at which steel softens "
             "and oil burns. Use other heat.oil_inlet_c, heat.ambient_c, a looser fit, or less preload"
         )
+    for _ in range(_ROUNDS):
+        speeds = np.linspace(low, speed, _SPEEDS + 1)[1:]
+        warmth = warm(scene, {key: speeds}, make_plan(scene))
+        first = int(np.argmax(warmth.runaway))
+        if first:
+            low, hottest = speeds[first - 1], warmth.temperatures[first - 1].max()
+        speed = speeds[first]
     if np.isnan(hottest):
         words = f"{RUNAWAY}. "
     elif hottest > _AT_LIMIT * _HOTTEST:
