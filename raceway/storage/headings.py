@@ -34,6 +34,7 @@ _CLOCK = re.compile(
     r"(?:(?:sampl\w*?|abtast)[ _]?(?P<rate>rate|frequen\w*)|(?:sampl\w*|abtast)[ _]?(?:interval\w*|period)|delta_x|increment)\W+"
     r"(?P<size>\d+[.,]?\d*(?:e[-+]?\d+)?|[.,]\d+(?:e[-+]?\d+)?)\s?(?P<unit>[mnuµkg])?(?:hz|sa?/s|s)?(?![a-z])"
 )
+_Rank: TypeAlias = tuple[bool, bool, float, int]
 _PARTS = {None: 1.0, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9, "k": 1e3, "g": 1e9}
 
 
@@ -57,11 +58,6 @@ class Heading:
     interval: float | None = None
     absent: bool = False
     clock: int | None = None
-
-    @property
-    def width(self) -> int:
-        """Columns of numbers in a row of the file."""
-        return len(self.header) - self.absent
 
     def picked(self, rows: list[str]) -> list[str]:
         """Rows of text without the fields that hold no numbers, tabs between the others; one with more fields than all as it is."""
@@ -135,9 +131,6 @@ def heading_of(path: Path, encoding: str) -> Heading:
         text.replace(",", ";") if sign == "," else text,
         [float(words[fields[0]].replace(",", ".")) for words in rows],
     )
-
-
-_Rank: TypeAlias = tuple[bool, bool, float, int]
 
 
 def _runs(lines: Sequence[str], filled: Sequence[int], sign: str) -> list[tuple[_Rank, int, tuple[int, ...]]]:

@@ -85,7 +85,8 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
                 path, "rb"
             ) as ends:  # at least as many as Python's text files have: each line ends in one or two of these signs
                 most = 1 + sum(part.count(b"\n") + part.count(b"\r") for part in iter(lambda: ends.read(_PART), b""))
-            values, lines = np.empty((most, heading.width)), np.empty(most, dtype=np.int64)
+            width = len(heading.header) - heading.absent
+            values, lines = np.empty((most, width)), np.empty(most, dtype=np.int64)
             count, marks = 0, ""
             for rows, numbers in _parts(stream, heading.last):
                 rows = heading.picked(rows)
@@ -93,7 +94,7 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
                     rows, marks = _with_points(rows, numbers, marks)
                 end = count + len(rows)
                 sign = heading.sign if heading.fields is None else "\t"
-                values[count:end], lines[count:end] = _values(rows, numbers, heading.width, sign), numbers
+                values[count:end], lines[count:end] = _values(rows, numbers, width, sign), numbers
                 count = end
     except (UnicodeDecodeError, csv.Error):
         raise ValueError(_NO_TABLE) from None

@@ -142,7 +142,12 @@ def fit_texts(
     run_out : amplitude [µm] of the run-out and its angle from the mark [deg]
     columns : quantity of a column: "Ch 1=K [N/µm]", "X [um]=y_um", "CH1=force_n*100" (100 N per V), or =ignore
     """
-    free, meanings, vector = tuple(free), _meanings(columns), _vector(run_out)
+    free, vector, meanings = tuple(free), _vector(run_out), {}
+    for text in columns:  # a header may have an equals sign, a name has none
+        header, sign, name = (part.strip() for part in text.rpartition("="))
+        if not (sign and header and name):
+            raise SceneError.at("--map", text, 'must have the form "HEADER=NAME", for instance "X [µm]=y_um"')
+        meanings[header] = name
     if free:
         return fit(
             data,
@@ -161,17 +166,6 @@ def fit_texts(
     if mass is not None:
         raise SceneError.at("--mass", mass, "belongs to --free and a record of force and displacement")
     return identify(data, scene, slow_roll=slow_roll, run_out=vector, columns=meanings, plugins=plugins, progress=progress)
-
-
-def _meanings(texts: Iterable[str]) -> dict[str, str]:
-    """Column header -> name from ``HEADER=NAME``; a header may have an equals sign, a name has none."""
-    columns = {}
-    for text in texts:
-        header, sign, name = (part.strip() for part in text.rpartition("="))
-        if not (sign and header and name):
-            raise SceneError.at("--map", text, 'must have the form "HEADER=NAME", for instance "X [µm]=y_um"')
-        columns[header] = name
-    return columns
 
 
 def _vector(text: str | None) -> tuple[float, float] | None:

@@ -409,20 +409,6 @@ def _largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
     return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
 
 
-def _sensitivities(rotors: dict[str, Rotor], shaft: Rotor, state: State) -> list[dict[str, float | str]]:
-    """Relative change of K by one change of what is taken as known.
-
-    rotors : of changed rigs, by their change
-    """
-    states = {change: with_tilt_of(changed, state, state.sensor) for change, changed in rotors.items()}
-    states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
-    more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
-    states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)
-    states["sensor's scale +1 %"] = with_tilt_of(shaft, state, 1.01 * state.sensor)
-    base = with_tilt_of(shaft, state, state.sensor).stiffness
-    return [{"change": change, "stiffness": changed.stiffness / base - 1.0} for change, changed in states.items()]
-
-
 def identify_recording(
     recording: Recording, rig: Rig, tested: Bearing, run_out: RunOut | Synchronous | None = None
 ) -> Identified:
@@ -469,5 +455,13 @@ def identify_recording(
             state, [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / stiffer, stiffer)]
         ),
     }
-    changes = _sensitivities(changed_rotors(rig, component.speed), shaft, state)
+    states = {
+        word: with_tilt_of(changed, state, state.sensor) for word, changed in changed_rotors(rig, component.speed).items()
+    }
+    states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
+    more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
+    states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)
+    states["sensor's scale +1 %"] = with_tilt_of(shaft, state, 1.01 * state.sensor)
+    base = with_tilt_of(shaft, state, state.sensor).stiffness
+    changes: list[dict[str, float | str]] = [{"change": k, "stiffness": v.stiffness / base - 1.0} for k, v in states.items()]
     return Identified(rotation, component, response.run_out, state, scene_stiffness, parts, changes)

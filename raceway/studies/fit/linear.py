@@ -142,15 +142,11 @@ def _spectra_of(signals: Signals) -> _Spectra:
     pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
     if not pairs or columns.keys() >= {"force", "y", "z"}:
         forced = any(name.startswith("force") for name in columns)
-        missing = (
-            ""
-            if forced and columns.keys() & {"y", "z", *_ORDERS}
-            else f", missing is {'displacement' if forced else 'force'}"
-        )
+        missing = "displacement along its axis" if forced else "force"
         raise SceneError.at(
             source, None,
             "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "
-            f"It was read ({signals}){missing}; --map \"HEADER=ignore\" leaves a column out, --map \"HEADER=force_n\" names one. The signals of "
+            f"It was read ({signals}), missing is {missing}; --map \"HEADER=ignore\" leaves a column out, --map \"HEADER=force_n\" names one. The signals of "
             "a rig, without a force, need --scene",
         )  # fmt: skip
     steps = np.diff(columns["time"])
@@ -171,12 +167,6 @@ def _spectra_of(signals: Signals) -> _Spectra:
     axes = ("y",) if order else tuple(name for name, _ in pairs)
     moved = of_displacement[band] / (1j * omega[band, None]) ** order
     return _Spectra(omega[band], of_force[band], moved, axes, np.flatnonzero(band), time, force, order)
-
-
-def _spectra_of_response(response: FrequencyResponse) -> _Spectra:
-    hz, empty = response.hz, np.empty(0)
-    receptance, force = response.receptance[:, None], np.ones((len(hz), 1), complex)
-    return _Spectra(2.0 * np.pi * hz, force, receptance, ("y",), np.arange(len(hz)), empty, empty)
 
 
 def _free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
@@ -403,7 +393,11 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
     """
     if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")
-    spectra = _spectra_of(record) if isinstance(record, Signals) else _spectra_of_response(record)
+    if isinstance(record, Signals):
+        spectra = _spectra_of(record)
+    else:
+        omega, receptance, empty = 2.0 * np.pi * record.hz, record.receptance[:, None], np.empty(0)
+        spectra = _Spectra(omega, np.ones_like(receptance), receptance, ("y",), np.arange(len(omega)), empty, empty)
     free = _free_parts(names, spectra, mass)
     refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), record.source)
     answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)

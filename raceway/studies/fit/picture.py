@@ -100,15 +100,9 @@ def figures(answer: Identified) -> dict[str, Figure]:
         matplotlib is missing.
     """
     drawn = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
-    _draw_signals(answer, *drawn["signals"].subplots(2, 1, height_ratios=(3, 2)))
-    draw_spectrum(answer, drawn["spectrum"].subplots())
-    draw_orbits(answer, drawn["orbits"].subplots())
-    drawn["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return drawn
-
-
-def _draw_signals(answer: Identified, first: Axes, means: Axes) -> None:
-    """The first turns, and the full record as its means over turns."""
+    first, means = drawn["signals"].subplots(
+        2, 1, height_ratios=(3, 2)
+    )  # the first turns; the full record as its means over turns
     rotation, record = answer.rotation, answer.rotation.recording
     shown = rotation.angle < 2.0 * np.pi * _TURNS_SHOWN
     turns, time = rotation.angle[shown] / (2.0 * np.pi), rotation.means(record.time)
@@ -118,6 +112,10 @@ def _draw_signals(answer: Identified, first: Axes, means: Axes) -> None:
     _finish(first, "turns", "gap [µm]")
     _finish(means, "time [s]", "mean of a turn [µm]")
     first.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
+    draw_spectrum(answer, drawn["spectrum"].subplots())
+    draw_orbits(answer, drawn["orbits"].subplots())
+    drawn["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return drawn
 
 
 def draw_spectrum(answer: Identified, axes: Axes) -> None:

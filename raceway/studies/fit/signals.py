@@ -98,7 +98,8 @@ def table_of(
         with _reading(Path(data)):
             return read_numbers(Path(data), judge), str(data)
     arrays = _arrays(data, name)
-    texts = [header for header, values in arrays.items() if _is_text(values)]
+    words = {header: np.asarray(values).ravel() for header, values in arrays.items()}
+    texts = [header for header, v in words.items() if len(v) and all(isinstance(w, str) and not is_number(w) for w in v)]
     arrays = {header: values for header, values in arrays.items() if header not in texts}
     try:
         judge(list(arrays))
@@ -115,12 +116,6 @@ def table_of(
     values = np.column_stack(list(columns.values()))
     notes = tuple(f"the text of '{header}' is left out" for header in texts)
     return NumberTable(list(columns), values, np.arange(len(values)), word, notes), name
-
-
-def _is_text(values: ArrayLike) -> bool:
-    """Whether a column of words has none that is a number."""
-    words = np.asarray(values).ravel()
-    return len(words) > 0 and all(isinstance(word, str) and not is_number(word) for word in words)
 
 
 def _arrays(data: Any, name: str) -> dict[str, ArrayLike]:

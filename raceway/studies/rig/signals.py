@@ -92,7 +92,11 @@ def record(rig: Rig, answer: _Response, signals: Signals, seed: int, noise: floa
         noise = white_noise(answer, signals)
     white = noise * (random.standard_normal(len(time)) + 1j * random.standard_normal(len(time)))
     plane = motion + track + wandering + white
-    key = _mark(angle) + _VOLTS * signals.mark_noise * random.standard_normal(len(time))
+    flank = _MARK / 3.0
+    turned = (angle + 0.5 * flank) % (2.0 * pi)
+    up, down = (np.clip((turned - late * flank) / flank, 0.0, 1.0) for late in (0.0, 2.0))
+    mark = 0.5 * _VOLTS * (np.cos(pi * down) - np.cos(pi * up))  # rises through the middle at whole turns
+    key = mark + _VOLTS * signals.mark_noise * random.standard_normal(len(time))
     return Recording(time, plane.real, plane.imag, key, speed)
 
 
@@ -108,15 +112,6 @@ def slow_roll_record(rig: Rig, tested: Bearing, signals: Signals, seed: int, noi
     load = np.linalg.solve(tested.compliance - free.ring[:, 1:], free.ring[:, 0] * free.unbalance_force)
     slow = attrs.evolve(signals, speed_drift=0.0, duration=max(signals.duration, 11.5 * 2.0 * pi / speed))
     return record(rig, _Response((speed,), (free.at_sensor(*load),)), slow, seed, noise)
-
-
-def _mark(angle: np.ndarray) -> np.ndarray:
-    """Voltage of the once-per-turn probe (n,), 0 to ``_VOLTS``: it rises through the middle at whole turns."""
-    flank = _MARK / 3.0
-    x = (angle + 0.5 * flank) % (2.0 * pi)
-    up = np.clip(x / flank, 0.0, 1.0)
-    down = np.clip((x - 2.0 * flank) / flank, 0.0, 1.0)
-    return 0.5 * _VOLTS * (np.cos(pi * down) - np.cos(pi * up))
 
 
 _LOW_PASS_ORDERS = 5.0
@@ -222,7 +217,12 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
         ("window", f"speed drifts by {100 * _SPEED_DRIFT:g} %", {"speed_drift": _SPEED_DRIFT}, False),
     ]
     for kind, words, disturbance, rolled in disturbances:
-        causes.append((kind, words, _disturbed(rig, tested, state, attrs.evolve(quiet, **disturbance), rolled)))
+        disturbed = attrs.evolve(quiet, **disturbance)
+        answer = response(rig, tested, state, disturbed)
+        noise = white_noise(answer, disturbed)
+        run_out_of = slow_roll(slow_roll_record(rig, tested, disturbed, signals.seed + 1, noise)) if rolled else None
+        recording = record(rig, answer, disturbed, signals.seed)
+        causes.append((kind, words, identify_recording(recording, rig, tested, run_out_of).state))
     words = "Fourier transform of all samples, not of whole turns; amplitude of the highest line"
     highest = (
         2.0 * float(np.abs(np.fft.rfft(clean.y - clean.y.mean())).max()) / len(clean.y)
@@ -237,14 +237,6 @@ def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     }
     causes += [("model", words, inverted) for words, inverted in models.items()]
     return [Cause(kind, words, identified.stiffness / state.stiffness - 1.0) for kind, words, identified in causes]
-
-
-def _disturbed(rig: Rig, tested: Bearing, state: State, signals: Signals, rolled: bool) -> State:
-    """The state that is identified from signals, less the run-out of a slow roll where one is ``rolled``."""
-    answer, seed = response(rig, tested, state, signals), rig.signals.seed
-    slow = slow_roll_record(rig, tested, signals, seed + 1, white_noise(answer, signals)) if rolled else None
-    recording = record(rig, answer, signals, seed)
-    return identify_recording(recording, rig, tested, None if slow is None else slow_roll(slow)).state
 
 
 def _at_rest(free: Rotor, tested: Bearing, sensor: complex) -> State:

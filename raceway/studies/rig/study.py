@@ -281,9 +281,20 @@ def rig(
         No point at which shaft and bearing find a common motion.
     """
     inputs, registry = rig_of(scene), registry_with(plugins)
-    items = _items(scene, inputs, registry)
+    grid = enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm)
+    items = [
+        Item(
+            row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]),
+            f"{point[1]:.0f} r/min, {point[0]:.0f} N",
+            (k, point),
+        )
+        for k, point in grid
+    ]
     if plan:
-        return _workload(scene, len(items), stored_rows(kept, [item.key for item in items]), registry)
+        count, stored = len(items), stored_rows(kept, [item.key for item in items])
+        seconds, _ = run_times(_RUNS * (count - stored), lambda _: scene.to_dict(), registry, planned=1)
+        seconds, why = seconds + _SIGNALS_S * count, f"about {_RUNS} of each point"
+        return Workload(scene.title, count, seconds, runs=count - stored, stored=stored, why_runs=why)
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
     supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
     critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
@@ -311,26 +322,6 @@ def rig(
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
     solved = [points[k] for k in sorted(points)]
     return _RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
-
-
-def _items(scene: Scene, inputs: Rig, registry: Registry) -> list[Item]:
-    """Numbered pairs of axial load [N] and speed [r/min]."""
-    grid = enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm)
-    return [
-        Item(
-            row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]),
-            f"{point[1]:.0f} r/min, {point[0]:.0f} N",
-            (k, point),
-        )
-        for k, point in grid
-    ]
-
-
-def _workload(scene: Scene, points: int, stored: int, registry: Registry) -> Workload:
-    left = points - stored
-    seconds, _ = run_times(_RUNS * left, lambda _: scene.to_dict(), registry, planned=1)
-    why = f"about {_RUNS} of each point"
-    return Workload(scene.title, points, seconds + _SIGNALS_S * points, runs=left, stored=stored, why_runs=why)
 
 
 def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
