@@ -34,8 +34,6 @@ FILES = {
     "Time (s),X [um],Y [um]": text("Time (s),X [um],Y [um],Keyphasor (V)"),
     "micro sign": text("Time (s),X [µm],Y [μm],Key [V]"),
     "semicolons and decimal commas": text("Time (s);X [um];Y [um];Trigger", ";", ","),
-    "semicolons and points": text("Time (s);X [um];Y [um];Trigger", ";"),
-    "tabs and decimal commas": text("time_s\ty_um\tz_um\tkey", "\t", ","),
     "quotes": text('"Time (s)","X [um]","Y [um]","Key (V)"', quoted=True),
     "quotes, semicolons and decimal commas": text('"Time (s)";"X [um]";"Y [um]";"Key (V)"', ";", ",", quoted=True),
     "gaps by words": text("t / s,Gap Y / um,Gap Z / um,Key"),
