@@ -118,9 +118,9 @@ def test_the_parts_in_which_a_file_is_read_change_nothing(part, tmp_path, monkey
     path.write_text("a,b\n1,2\n\n3\n")
     with pytest.raises(ValueError, match="line 4: 2 numbers are needed, found '3'"):
         read_numbers(path, lambda header: None)
-    for first, last in (".,", ",."):  # the decimal sign is that of all parts
-        path.write_text("t;a\n" + f"1;2{first}5\n" * 40 + f"1;2{last}5\n")
-        with pytest.raises(ValueError, match="line 42: commas and points"):
+    for first, last in (".,", ",."):  # the decimal sign is that of all parts: of 3, 11 or all 34 rows
+        path.write_text("t;a\n" + f"1;2{first}5\n" * 33 + f"1;2{last}5\n")
+        with pytest.raises(ValueError, match="line 35: commas and points"):
             read_numbers(path, lambda header: None)
 
 
