@@ -39,7 +39,7 @@ class Heat:
         help="flow through all rows; 'infinite': constant oil temperature",
         rule=word_or(inside(1e-18, 1.0), "infinite"),
     )
-    ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-273.15, 1e3))
+    ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-150.0, 1e3))
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=between(1.0, 1e5))
     inner_wetting: float | str = option(
         "auto",
