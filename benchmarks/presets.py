@@ -12,9 +12,9 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.scene.clearance import clearance_range
-from raceway.studies.catalogue.deep_groove import GROOVES, STIFFNESS_ERROR
+from raceway.studies.catalogue.deep_groove import GROOVES
 from raceway.studies.catalogue.infer import _sizes_of
-from raceway.studies.catalogue.inferred import STIFFNESS_90, Inferred, infer_printed
+from raceway.studies.catalogue.inferred import Inferred, infer_printed
 from raceway.studies.catalogue.printed import printed_by
 from raceway.studies.catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
@@ -32,14 +32,17 @@ _DEEP_PRINT = "NSK, Rolling bearings, CAT. No. E1102e, tables of single-row deep
 class _Kind:
     """What the file of a series says beside numbers.
 
-    title, uncertainty : of the series;  columns : source, whether it is inferred, and the column of its relative scatter
+    title, maker : of the series;  uncertainty : parts in raceway/data/uncertainty.toml;  columns : source, whether it is inferred, and the column of its relative scatter
     constants : value, source and scatter of what all bearings of the series have
+    errors : what is printed and compared
     """
 
     title: str
-    uncertainty: tuple[object, ...]
+    uncertainty: tuple[str, ...]
     columns: dict[str, tuple[str, bool, str | None]]
     constants: dict[str, tuple[object, str, float | None]]
+    maker: str = "NSK"
+    errors: tuple[str, ...] = ("dynamic_rating_error", "static_rating_error")
 
 
 def _columns(printed: str, angle: str, how: str, pitch: str) -> dict[str, tuple[str, bool, str | None]]:
@@ -63,20 +66,6 @@ def _steel(young: float, why: str) -> dict[str, tuple[float, str, float | None]]
 
 
 _FITTED = "meets the printed axial stiffnesses of 384 pairs of series 70 with a median error of 0.8 %; scatter: of the sizes, fitted one by one"
-#: 90 % of stiffnesses, axial and radial, lie within this, and what was compared (tests/evidence/test_catalogue.py).
-_UNCERTAINTY = ("stiffness_error", "radial_stiffness_error", "stiffness_basis")
-_KNOWN = (
-    STIFFNESS_90["tables"], 0.08,
-    "axial stiffnesses printed for pairs of series 70, from grooves that those of 7206 give, and the reverse; radial: the printed "
-    "factors of 15 and 30 deg, which are rounded",
-)  # fmt: skip
-_UNCERTAIN = {
-    "79": (
-        0.2, 0.2,
-        "no stiffness of this series is printed: what one groove for all sizes leaves of a series of another maker, if it is taken "
-        "from his other series",
-    )
-}  # fmt: skip
 _GROOVES = (
     "largest groove radius that the ratings of ISO 76 and ISO/TS 16281 allow, a default: makers print none; scatter: 0.515 to 0.525 inner, "
     "0.52 to 0.535 outer"
@@ -86,7 +75,7 @@ _GROOVES = (
 def _angular(series: str) -> _Kind:
     return _Kind(
         f"angular-contact ball bearing of series {series}",
-        _UNCERTAIN.get(series, _KNOWN),
+        ("angular_79" if series == "79" else "angular", f"makers_{series}"),
         _columns(
             _ANGULAR_PRINT,
             "suffix C 15, A5 25, A 30 deg; " + _ANGULAR_PRINT,
@@ -96,6 +85,44 @@ def _angular(series: str) -> _Kind:
         dict.fromkeys(("conformity_inner", "conformity_outer"), (CONFORMITY, _FITTED, 0.0015))
         | _steel(YOUNG, "assumed by the fit of the conformity"),
     )
+
+
+def _ntn() -> _Kind:
+    """Series 70 of NTN's own designations: balls are NSK's, grooves and angle those that give the printed stiffnesses."""
+    maker = "NTN-SNR, ULTAGE high-precision angular contact ball bearings 70xxU, 79xxU"
+    columns = _columns(maker, "", "", "")
+    balls = "inferred: NSK's of the same dimensions, NTN prints none; where it has one more ball, a narrower groove stands for it"
+    fitted = f"gives axial and radial stiffness of the pair that NTN prints: {maker}"
+    columns = {key: columns[key] for key in ("bore", "outer_diameter", "width")}
+    columns["contact_angle_deg"] = f"{fitted}; nominal: suffix UC 15, UAD 25 deg", True, "angle_scatter"
+    columns |= {key: (balls, True, f"{key}_scatter") for key in ("ball_count", "ball_diameter", "pitch_diameter")}
+    columns |= {key: (fitted, True, f"{key}_scatter") for key in ("conformity_inner", "conformity_outer")}
+    return _Kind(
+        "angular-contact ball bearing of NTN's series 70U",
+        ("angular_pair",),
+        columns,
+        _steel(YOUNG, "assumed by the fit of the conformity"),
+        "NTN",
+        ("pair_stiffness_error", "radial_stiffness_error"),
+    )
+
+
+def _ntn_rows(sizes: list[Inferred]) -> list[tuple[str, str]]:
+    ratings = {
+        (x.printed.bore, x.printed.outer_diameter): x.printed.ratings for x in sizes if x.printed.names[0].startswith("70")
+    }
+    rows = []
+    for one in printed_by("ntn"):
+        found = infer_printed(attrs.evolve(one, ratings=ratings[one.bore, one.outer_diameter]), maker="NSK")
+        angle = found.contact_angles[one.pairs[0].contact_angle_deg]
+        numbers = [angle, *found.numbers.values()]
+        scatters = [angle.scatter, 1.0 / found.ball_count.value, *(x.scatter for x in numbers[2:])]
+        errors = [
+            next(x.error for x in found.checks if x.quantity == word) for word in ("pair stiffness", "radial stiffness")
+        ]
+        values = [one.bore, one.outer_diameter, one.width, *(x.value for x in numbers)]
+        rows.append((one.names[0], _cells(values, [*scatters, *errors])))
+    return rows
 
 
 def _deep_groove(series: str) -> _Kind:
@@ -109,18 +136,11 @@ def _deep_groove(series: str) -> _Kind:
     clearance = "ISO 5753-1, class CN (normal), middle of the range, a default: a suffix C2, C3 or C4 says another; scatter: the range"
     return _Kind(
         f"deep-groove ball bearing of series {series}",
-        (
-            STIFFNESS_ERROR,
-            0.09,
-            "no stiffness is printed: computed for 6002, 6206 and 6316 with grooves and clearances within their scatter",
-        ),
+        ("deep_groove", "deep_groove_clearance", "makers_deep_groove"),
         {**columns, "radial_clearance": (clearance, True, "clearance_scatter")},
         {"conformity_inner": (GROOVES[0], _GROOVES, 0.01), "conformity_outer": (GROOVES[1], _GROOVES, 0.01)}
         | _steel(207e9, "the steel of ISO/TS 16281"),
     )
-
-
-_ERRORS = ("dynamic_rating_error", "static_rating_error")
 
 
 #: Rollers over the pitch circle in bearings with cages, and its spread; of shorter ones the effective length is a whole number of mm.
@@ -190,13 +210,12 @@ def _roller_kind(series: str) -> _Kind:
         ),
     }
     title = f"cylindrical roller bearing of series {series}"
-    basis = "no stiffness is printed: computed for NU206 and NU1010 with the profile of ISO/TS 16281, none and twice it, at 3 to 20 % of C0"
     needed = "a key of ball bearings, not used"
     constants = {"conformity_inner": (0.52, needed, None), "conformity_outer": (0.52, needed, None)}
     scene = {"bodies.kind": "cylindrical_rollers", "contact.kind": "line", "supports.axial": "displacement"}
     return _Kind(
         title,
-        (0.35, 0.35, basis),
+        ("rollers", "rollers_clearance", "makers_rollers"),
         columns,
         constants | {key: (word, "of cylindrical rollers", None) for key, word in scene.items()},
     )
@@ -218,14 +237,15 @@ def _roller_texts() -> dict[str, str]:
 
 def text(kind: _Kind, bearings: list[tuple[str, str]]) -> str:
     """The TOML file of a series, with the rows of its bearings by designation."""
-    order = [*kind.columns, *(scatter for *_, scatter in kind.columns.values() if scatter), *_ERRORS]
+    order = [*kind.columns, *(scatter for *_, scatter in kind.columns.values() if scatter), *kind.errors]
     lines = [
         "# Written by `python -m benchmarks.presets`; do not edit by hand.  Lengths in m; scatters and errors are relative.",
         f'title = "{kind.title}"',
-        *(f"{key} = {_toml(value)}" for key, value in zip(_UNCERTAINTY, kind.uncertainty, strict=True)),
+        f'maker = "{kind.maker}"',
+        f"uncertainty = {_list(kind.uncertainty)}",
         f"order = {_list(order)}",
-        "# Computed over printed, less 1: of the printed ratings at the bearing's own contact angle.",
-        f"printed = {_list(_ERRORS)}",
+        "# Computed over printed, less 1: at the bearing's own contact angle.",
+        f"printed = {_list(kind.errors)}",
     ]
     for key, (source, inferred, scatter) in kind.columns.items():
         lines += ["", f"[columns.{_quoted(key)}]", f'source = "{source}"']
@@ -293,6 +313,7 @@ def every() -> dict[str, str]:
     deep = [x for x in deep if max(abs(check.error) for check in x.checks) <= _LARGEST]
     return {
         **{series: of(_angular(series), sizes, series) for series in SERIES},
+        "70_NTN": text(_ntn(), _ntn_rows(sizes)),
         **{series: of(_deep_groove(series), deep, written) for series, written in DEEP_GROOVE.items()},
         **_roller_texts(),
     }

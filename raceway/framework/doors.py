@@ -104,6 +104,12 @@ _PATH = _reader("the path of a file or folder, text or pathlib.Path", lambda v: 
 _TEXT = _reader("text", _is(str))
 _TEXTS = _several(_TEXT)
 _FINITE = _number("a finite number", math.isfinite)
+
+
+def _pair(angle: Any, preload: Any, axial: Any, radial: Any = None) -> tuple[Any, ...]:
+    return (float(angle), preload, axial, *(() if radial is None else (radial,)))
+
+
 _READERS: dict[str, Reader] = {
     name: reader
     for names, reader in {
@@ -129,7 +135,10 @@ _READERS: dict[str, Reader] = {
             "a mapping of angles to (C, C0)",
             lambda v: {float(angle): (c, c0, *f) for angle, (c, c0, *f) in v.items()},
         ),
-        "pairs": ("triples (angle, preload, stiffness)", lambda v: [(float(angle), load, k) for angle, load, k in v]),
+        "pairs": (
+            "(angle, preload, axial stiffness), or with the radial stiffness as a fourth number",
+            lambda v: [_pair(*one) for one in v],
+        ),
         "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),
         "row": _reader("a finished row of `judged`", lambda v: v["physics"] and float(v["error"]) >= 0.0),
         "progress": _reader("True, or a function of (what, done, total)", _tells),

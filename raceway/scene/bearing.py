@@ -138,6 +138,9 @@ class Bearing:
         rule=optional(length()),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
+    maker: str | None = option(
+        None, help="whose bearing the preset is: NSK, NTN; default: that of its name, with the spread between makers"
+    )
     rings: Material = attrs.field(factory=Material, metadata={"help": "material of both rings"})
     balls: Material = attrs.field(factory=Material, metadata={"help": "material of the balls"})
 

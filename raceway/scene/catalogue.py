@@ -5,7 +5,9 @@ One TOML file a preset, in ``raceway/data/bearings``, holds ``title`` and one ta
 
 One TOML file a series, in ``raceway/data/series``, holds the same for many bearings: [columns.KEY] with ``source``, ``inferred`` and the name of the
 column of its relative scatter, [constants.KEY] for what all have, and in [bearings] a row of numbers a designation.  Series are
-written by ``python -m benchmarks.presets`` from what makers print.
+written by ``python -m benchmarks.presets`` from what makers print.  ``70.toml`` and ``70_NTN.toml`` are one series of two makers.
+
+``maker`` says whose bearings they are, ``uncertainty`` what is not known of their stiffness: parts of ``raceway/data/uncertainty.toml``.
 """
 
 from __future__ import annotations
@@ -17,7 +19,6 @@ from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
-from typing import Any
 
 import attrs
 
@@ -25,21 +26,21 @@ from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
 from raceway.scene.clearance import clearance_range
-from raceway.scene.designation import Designation, read_designation
+from raceway.scene.designation import Designation, read_designation, unlisted
 from raceway.scene.sets import RATINGS
 from raceway.storage.tables import ReadTables, Tables
 
-#: Uncertainty of presets with a file of their own and inferred balls: the conformity that the pairs of series 70 give meets what NSK
-#: prints for pairs of 7206 within 3.6 %; 8 % covers what it leaves of the radial stiffnesses of series 70 (``raceway/data/series/70.toml``).
-_INFERRED: dict[str, Any] = {
-    "stiffness_error": 0.036,
-    "radial_stiffness_error": 0.08,
-    "stiffness_basis": "as the maker of 7206C prints it; one series from the other's grooves",
-}
-#: Relative scatter of the conformity of these: of the sizes of series 70, fitted one by one, (f - 0.5) scatters by 5 % (``studies.infer``).
+#: What a result says of each part of ``raceway/data/uncertainty.toml``.
+_INFERRED, _PART = "inferred geometry", ("part", "axial", "radial", "why", "remedy")
+#: Relative scatter of the conformity of presets with a file of their own: of the sizes of series 70, fitted one by one, (f - 0.5) scatters by 5 % (``studies.infer``).
 _CONFORMITY = 0.002
-#: Names that the message of an unknown preset offers.
-_OFFERED = 5
+#: Names that the message of an unknown preset offers, and the share of common letters from which they are like it.
+_OFFERED, _LIKE = 5, 0.5
+#: Way out where the balls of a bearing are not known.
+_NEEDED = (
+    "Give [bearing] `ball_count`, `ball_diameter`, `pitch_diameter`, `conformity_inner`, `conformity_outer` and `radial_clearance` or "
+    "`contact_angle_deg` instead of `preset`, or infer the balls from printed ratings: `raceway catalogue --infer`"
+)
 
 
 @attrs.frozen
@@ -59,8 +60,8 @@ class Preset:
 
     Attributes
     ----------
-    stiffness_error : relative uncertainty of its axial stiffness that comes from inferred geometry; None: of numbers that a source states
-    radial_stiffness_error, stiffness_basis : the same of the radial stiffness, tilt locked; what both were compared with
+    maker : whose geometry it is, "" where the source says none
+    data : what is not known of the stiffness, as ``geometry.data`` of a result; empty: a source states the numbers
     printed : how well the inferred geometry meets what the maker prints, relative errors by name
     designation, tolerance_class : what the parts of a maker's designation mean, in one line; its class of ISO 492
 
@@ -69,18 +70,33 @@ class Preset:
     >>> import raceway as rw
     >>> found = rw.catalogue("7014C")[0]
     >>> [(fact.key, fact.scatter) for fact in found.facts if fact.key == "pitch_diameter"], found.stiffness_error
-    ([('pitch_diameter', 0.01)], 0.036)
+    ([('pitch_diameter', 0.01)], 0.045)
     """
 
     name: str
     title: str
     facts: tuple[Fact, ...]
-    stiffness_error: float | None = None
-    radial_stiffness_error: float | None = None
-    stiffness_basis: str = ""
+    maker: str = ""
+    data: tuple[Tables, ...] = ()
     printed: dict[str, float] = attrs.field(factory=dict)
     designation: str = ""
     tolerance_class: str = ""
+
+    @property
+    def stiffness_error(self) -> float | None:
+        """Relative uncertainty of its axial stiffness by inferred geometry, 95 %; None: of numbers that a source states."""
+        return max(map(abs, self.data[0]["axial"])) if self.data else None
+
+    @property
+    def radial_stiffness_error(self) -> float | None:
+        """The same of the radial stiffness, tilt locked."""
+        return max(map(abs, self.data[0]["radial"])) if self.data else None
+
+    @property
+    def size(self) -> tuple[object, ...]:
+        """Bore, outer diameter, width [m] and nominal contact angle [deg], a multiple of 5."""
+        table = self.table
+        return *(table.get(key) for key in ("bore", "outer_diameter", "width")), 5 * round(0.2 * table["contact_angle_deg"])
 
     @property
     def table(self) -> Tables:
@@ -125,14 +141,18 @@ def catalogue() -> dict[str, Preset]:
 
 
 @cache
-def _series_files() -> dict[str, Traversable]:
-    """By the beginning of the designations in it."""
-    return {file.name.removesuffix(".toml"): file for file in _tomls(files("raceway").joinpath("data/series"))}
+def _series_files() -> dict[str, list[Traversable]]:
+    """By the beginning of the designations in them."""
+    files_of: dict[str, list[Traversable]] = {}
+    for file in _tomls(files("raceway").joinpath("data/series")):
+        files_of.setdefault(file.name.removesuffix(".toml").partition("_")[0], []).append(file)
+    return files_of
 
 
 @cache
 def _series_presets(stem: str) -> dict[str, Preset]:
-    return {entry.name: entry for entry in _series(tomllib.loads(_series_files()[stem].read_text(encoding="utf-8")))}
+    contents = [tomllib.loads(file.read_text(encoding="utf-8")) for file in _series_files()[stem]]
+    return {entry.name: entry for content in contents for entry in _series(content)}
 
 
 @cache
@@ -141,15 +161,38 @@ def _single_presets() -> dict[str, Preset]:
     return {entry.name: entry for entry in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
 
 
-def preset_of(name: object) -> Preset | None:
+def preset_of(name: object, maker: object = None) -> Preset | None:
     """One preset, by its name in the catalogue or by a maker's designation.
+
+    Parameters
+    ----------
+    maker : whose bearing of these dimensions and this contact angle it is; None: that of the name
 
     Raises
     ------
     SceneError
-        A designation of a kind of bearing that is not computed.
+        A designation of a kind of bearing that is not computed; a maker that is not known, or has no such bearing here.
     """
-    return _entry(name) if isinstance(name, str) else None
+    entry = _entry(name) if isinstance(name, str) else None
+    return entry if maker is None or entry is None or entry.maker == maker else _of_maker(str(name), str(maker))
+
+
+@cache
+def _of_maker(name: str, maker: str) -> Preset:
+    """The bearing of a maker that has the dimensions and the nominal angle of a preset.
+
+    SceneError: of ``preset_of``.
+    """
+    entry, designation, makers = _entry(name), read_designation(name), set[str]()
+    for other in catalogue().values():
+        makers.add(other.maker)
+        if entry is not None and (other.maker, other.size) == (maker, entry.size):
+            return other if designation is None or not entry.designation else _designated(name, other, designation)
+    rule = (
+        f"must be one of {', '.join(sorted(filter(None, makers)))} with a bearing of the size of {name}. Leave it out, which states "
+        "the spread between makers, or infer the bearing from what this one prints: `raceway catalogue --infer`"
+    )
+    raise SceneError.at("bearing.maker", maker, rule)
 
 
 @cache
@@ -165,20 +208,23 @@ def _entry(name: str) -> Preset | None:
 
 def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
     """A bearing of the catalogue with what a designation says of clearance, balls and tolerances."""
-    facts = {fact.key: fact for fact in entry.facts}
+    facts, data = {fact.key: fact for fact in entry.facts}, entry.data
     if designation.clearance and "radial_clearance" in facts:
         kind = "roller" if "bodies.kind" in facts else "ball"
         limits = clearance_range(kind, float(str(facts["bore"].value)), designation.clearance) or (0.0, 0.0)
         source = f"ISO 5753-1, class {designation.clearance}, middle of the range; uncertainty: the range"
         scatter = (limits[1] - limits[0]) / sum(limits)
         facts["radial_clearance"] = Fact("radial_clearance", 0.5 * sum(limits), source, True, scatter)
+        why = f"clearance class {designation.clearance}: {1e6 * limits[0]:g} to {1e6 * limits[1]:g} um"
+        said = {"why": why, "remedy": "`bearing.radial_clearance`"}
+        data = tuple({**part, **part["of_class"], **said} if "of_class" in part else part for part in data)
     if designation.ceramic:
         facts = {key: fact for key, fact in facts.items() if not key.startswith("balls.")}
         facts["balls.material"] = Fact("balls.material", designation.ceramic, f"{name}: ceramic balls", False)
     title = f"{name}: {entry.title.partition(': ')[2] or entry.title}"
     words, tolerance = designation.words, designation.tolerance
     return attrs.evolve(
-        entry, name=name, title=title, facts=tuple(facts.values()), designation=words, tolerance_class=tolerance
+        entry, name=name, title=title, facts=tuple(facts.values()), data=data, designation=words, tolerance_class=tolerance
     )
 
 
@@ -194,9 +240,17 @@ def _tomls(folder: Traversable) -> list[Traversable]:
 
 def _single(file: Traversable) -> Preset:
     content = tomllib.loads(file.read_text(encoding="utf-8"))
-    title, facts = content.pop("title"), tuple(_facts(content, ""))
-    inferred = any(fact.inferred and fact.key == "ball_count" for fact in facts)
-    return Preset(file.name.removesuffix(".toml"), title, facts, **(_INFERRED if inferred else {}))
+    title, maker, data = content.pop("title"), content.pop("maker", ""), _uncertainty(content.pop("uncertainty", ()))
+    return Preset(file.name.removesuffix(".toml"), title, tuple(_facts(content, "")), maker, data)
+
+
+def _uncertainty(names: Iterable[str]) -> tuple[Tables, ...]:
+    return tuple(_table("uncertainty")[name] for name in names)
+
+
+@cache
+def _table(name: str) -> Tables:
+    return tomllib.loads(files("raceway").joinpath(f"data/{name}.toml").read_text(encoding="utf-8"))
 
 
 def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
@@ -222,7 +276,7 @@ def _series(content: ReadTables) -> Iterator[Preset]:
         title = f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm"
         title += f", {row['contact_angle_deg']:g} deg" if row["contact_angle_deg"] else ""
         printed = {key: row[key] for key in content["printed"]}
-        yield Preset(name, title, (*measured, *same), **{key: content[key] for key in _INFERRED}, printed=printed)
+        yield Preset(name, title, (*measured, *same), content["maker"], _uncertainty(content["uncertainty"]), printed)
 
 
 def found_by(pattern: str) -> list[Preset]:
@@ -233,15 +287,15 @@ def found_by(pattern: str) -> list[Preset]:
     return matches or [entry for entry in [preset_of(pattern)] if entry is not None]
 
 
-def preset(name: object) -> Tables:
-    """The [bearing] table of a preset.
+def preset(name: object, maker: object = None) -> Tables:
+    """The [bearing] table of a preset, of ``preset_of``.
 
     Raises
     ------
     SceneError
-        Unknown name, with the nearest five.
+        Unknown name, with the nearest five; unknown maker, with the known ones.
     """
-    entry = preset_of(name)
+    entry = preset_of(name, maker)
     if entry is None:
         raise SceneError.at("bearing.preset", name, no_preset(str(name)))
     return {**entry.table, "preset": name}
@@ -250,9 +304,13 @@ def preset(name: object) -> Tables:
 def no_preset(name: str) -> str:
     """What is said of an unknown designation."""
     by_lower = {word.lower(): word for word in catalogue()}
-    close = difflib.get_close_matches(name.lower(), list(by_lower), n=_OFFERED, cutoff=0.0)
+    if bearing := unlisted(name):
+        return f"is {bearing}, whose balls the catalogue does not have. {_NEEDED}"
+    close = difflib.get_close_matches(name.lower(), list(by_lower), n=_OFFERED, cutoff=_LIKE)
     designation = read_designation(name)
     why = f" ({designation.words})" if designation is not None and not designation.names else ""
+    if not close:
+        return f"no such preset{why}, and none like it (`raceway catalogue` lists all). {_NEEDED}"
     return f"no such preset{why}; the nearest: {', '.join(by_lower[word] for word in close)} (`raceway catalogue` lists all)"
 
 
@@ -271,40 +329,74 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
     """
     rows = tables.get("row")
     rows = rows if isinstance(rows, list | tuple) else []
-    inferred = {
-        k: _inferred(row.get("preset"), row) for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row
-    }
+    of_all = {"maker": tables.get("maker")}
+    presets_of = {k: row for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row}
+    inferred = {k: _inferred(row["preset"], {**of_all, **row}) for k, row in presets_of.items()}
     by_row = {k: geometry for k, geometry in inferred.items() if geometry is not None}
     # Where all rows bring presets, nothing of the table's own is left to speak of.
     common = _inferred(bearing.get("preset"), tables) if not rows or len(inferred) < len(rows) else None
     if common is None and not by_row:
         return None
     presets = [*([] if common is None else [common]), *by_row.values()]
+    data: dict[str, Tables] = {}
+    for part in (part for geometry in presets for part in geometry["data"]):
+        same = data.setdefault(part["part"], dict(part))
+        for key in ("axial", "radial"):
+            same[key] = [min(same[key][0], part[key][0]), max(same[key][1], part[key][1])]
     axial, radial = (max(geometry[key] for geometry in presets) for key in ("stiffness_error", "radial_stiffness_error"))
+    maker, source = (
+        words.pop() if len(words := {geometry[key] for geometry in presets}) == 1 else None
+        for key in ("maker", "inferred_from")
+    )
+    whose = f"{maker}'s geometry inferred" if maker else "geometry inferred" + (f" from {source}'s prints" if source else "")
+    first = f"stiffness uncertain by about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially"
     return {
         **(common or {}),
         **({"rows": [{"row": k, **geometry} for k, geometry in by_row.items()]} if by_row else {}),
+        "maker": maker,
+        "inferred_from": source,
         "stiffness_error": axial,
         "radial_stiffness_error": radial,
-        "words": f"geometry inferred: stiffness uncertain by about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially",
+        "data": list(data.values()),
+        "words": f"{whose}: {'; '.join(first if key == _INFERRED else _words(part) for key, part in data.items())}",
     }
 
 
+def _words(part: ReadTables) -> str:
+    """A part in a line of a screen, and the key that removes it."""
+    axial, radial = (f"{100.0 * low:+.0f} to {100.0 * high:+.0f} %" for low, high in (part["axial"], part["radial"]))
+    both = axial if axial == radial else f"{axial} axially, {radial} radially"
+    return f"{part['why'].partition(':')[0]}: {both} ({part['remedy']})"
+
+
 def _inferred(name: object, tables: ReadTables) -> Tables | None:
-    """preset, inferred and uncertainties of one preset, less the keys that the user gives."""
-    entry = preset_of(name)
-    if entry is None or entry.stiffness_error is None:
+    """preset, maker, inferred and uncertainties of one preset, less the keys that the user gives."""
+    entry = preset_of(name, tables.get("maker"))
+    if entry is None or not entry.data:
         return None
     shown = [fact for fact in entry.facts if "." not in fact.key or fact.key == "bodies.roller_length"]
     facts = [fact for fact in shown if fact.inferred and fact.key not in tables]
     if not facts:
         return None
+    # What is known of a part: all keys of one of its sets.
+    data = [
+        {key: part[key] for key in _PART}
+        for part in entry.data
+        if not any(all(tables.get(key) is not None for key in keys) for keys in part.get("known_by", ()))
+    ]
+    parts = {part["part"]: part for part in data}
+    own = parts.get(_INFERRED, {"axial": [0.0], "radial": [0.0], "why": ""})
     return {
         "preset": entry.name,
         **({"designation": entry.designation} if entry.designation else {}),
+        "maker": entry.maker if entry.maker and "other makers" not in parts else None,
+        "inferred_from": entry.maker or None,
         "inferred": {fact.key: {"value": fact.value, "scatter": fact.scatter, "source": fact.source} for fact in facts},
         "printed": {fact.key: {"value": fact.value, "source": fact.source} for fact in shown if not fact.inferred},
-        **{key: getattr(entry, key) for key in _INFERRED},
+        "stiffness_error": max(map(abs, own["axial"])),
+        "radial_stiffness_error": max(map(abs, own["radial"])),
+        "stiffness_basis": own["why"],
+        "data": data,
     }
 
 
@@ -324,8 +416,7 @@ class _NamedMaterial:
 @cache
 def materials() -> dict[str, _NamedMaterial]:
     """All by name."""
-    text = files("raceway").joinpath("data/materials.toml").read_text(encoding="utf-8")
-    return {name: _NamedMaterial(name, **row) for name, row in tomllib.loads(text).items()}
+    return {name: _NamedMaterial(name, **row) for name, row in _table("materials").items()}
 
 
 def with_material(table: Tables, path: str, preset: Tables) -> Tables:

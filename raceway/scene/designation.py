@@ -14,7 +14,7 @@ from raceway.storage.tables import Tables
 
 #: Letters of the catalogue's angular-contact bearings by contact angle [deg]: without a prefix, and with B.
 _ANGLES = {15: "C", 25: "A5", 30: "A"}, {15: "C", 25: "E"}
-#: Deep-groove series of Japanese makers that have another number at ISO.
+#: Deep-groove series of Japanese makers that have another number at ISO: 6805 is 61805, 685 is 618/5.
 _SERIES = {"68": "618", "69": "619"}
 _NUMBER = re.compile(
     r"(?P<prefix>[A-Z]*)[ -]?(?P<number>6[0123]/\d{2,3}|61[89]/\d+|61[89]\d\d|6[02389]\d\d?|719\d\d|7[029]\d\d)(?=\D|$)(?P<rest>.*)"
@@ -67,9 +67,13 @@ def read_designation(text: str) -> Designation | None:
     if parts and not parts[-1][1] and rest[:1] not in _SEPARATORS:
         return None
     values = {group: _groups()[group]["parts"][part] for part, group in parts if group in _SETTING}
-    names: tuple[str, ...] = (f"NU{number}" if rollers else _iso_name(number),)
+    series = None if rollers or "/" in number else _SERIES.get(number[:2])
+    iso = number if series is None else f"{series}{number[2:]}" if len(number) == 4 else f"{series}/{number[2:]}"
+    names: tuple[str, ...] = (f"NU{number}" if rollers else iso,)
     if kind == "angular":
         names = _angular_names(number, prefix.endswith("B"), values.get("angle"))
+        own = (f"{number}{part}" for part, group in parts if group == "angle")
+        names = (*own, *names) if names else ()  # a maker's own designation goes first
     words = "; ".join(_words(part, group) for part, group in parts)
     words = f"{text}: {words}" if words else ""
     if not names:
@@ -79,9 +83,15 @@ def read_designation(text: str) -> Designation | None:
     return Designation(names, clearance, tolerance, ceramic, words)
 
 
+def unlisted(text: str) -> str:
+    """What a designation is of which the catalogue has no balls; "" for others."""
+    word = text.strip().upper()
+    return next((words for pattern, words in _groups()["unlisted"].items() if re.fullmatch(pattern, word)), "")
+
+
 def _parts(text: str, kind: str) -> list[tuple[str, str]]:
     """(part, name of its group) in their order; what the table does not have with an empty name."""
-    groups = {name: group for name, group in _groups().items() if name != "refused" and kind in group.get("kinds", [kind])}
+    groups = {name: group for name, group in _groups().items() if "parts" in group and kind in group.get("kinds", [kind])}
     known = {part: name for name, group in reversed(groups.items()) for part in group["parts"]}
     parts = list[tuple[str, str]]()
     for chunk in filter(None, re.split(f"[{re.escape(_SEPARATORS)}]+", text)):
@@ -100,14 +110,6 @@ def _words(part: str, group: str) -> str:
     if group not in _SETTING:
         return f"{part}: {words}, ignored"
     return f"{part}: {words.format(_groups()[group]['parts'][part])}"
-
-
-def _iso_name(number: str) -> str:
-    """Number of a deep-groove bearing as ISO writes it: 6805 is 61805, 685 is 618/5."""
-    series = _SERIES.get(number[:2])
-    if series is None or "/" in number:
-        return number
-    return f"{series}{number[2:]}" if len(number) == 4 else f"{series}/{number[2:]}"
 
 
 def _angular_names(number: str, prefix_b: bool, angle: int | None) -> tuple[str, ...]:

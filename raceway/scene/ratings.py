@@ -64,10 +64,10 @@ def _rating(bearing: Bearing, key: str, computed: Number, formula: Callable[[Bal
     value = getattr(bearing, key)
     if value is not None:
         return value, "key"
-    entry = preset_of(bearing.preset)
+    entry = preset_of(bearing.preset, bearing.maker)
     if entry is None or key not in entry.ratings:
         return computed, "geometry"
-    return entry.ratings[key] * (computed / formula(_catalogue_row(entry.name))), "catalogue"
+    return entry.ratings[key] * (computed / formula(_catalogue_row(entry.name, bearing.maker))), "catalogue"
 
 
 def _row(numbers: Mapping[str, Number]) -> BallRow:
@@ -76,8 +76,8 @@ def _row(numbers: Mapping[str, Number]) -> BallRow:
 
 
 @cache
-def _catalogue_row(name: str) -> BallRow:
-    entry = preset_of(name)
+def _catalogue_row(name: str, maker: str | None) -> BallRow:
+    entry = preset_of(name, maker)
     return _row({} if entry is None else entry.table)
 
 

@@ -128,7 +128,7 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     if name is None:
         return _with_materials(table, {}, mistakes)
     try:
-        values = preset(name)
+        values = preset(name, table.get("maker"))
     except SceneError as error:
         mistakes += error.mistakes
         return {**_PLACEHOLDER, **table, "preset": None}
@@ -165,10 +165,11 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
         name = row.get("preset") if isinstance(row, dict) else None
         if name is not None:
             try:
-                values = preset(name)
+                values = preset(name, table.get("maker"))
             except SceneError as error:
                 mistakes += [
-                    Mistake(f"bearing.row[{k}].preset", mistake.value, mistake.message) for mistake in error.mistakes
+                    attrs.evolve(mistake, path=mistake.path.replace("bearing.preset", f"bearing.row[{k}].preset"))
+                    for mistake in error.mistakes
                 ]
                 row = {key: value for key, value in row.items() if key != "preset"}
             else:
@@ -255,11 +256,8 @@ def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Sce
 def _complete_by_preset(tables: Tables) -> None:
     """What a preset says beside [bearing]: bodies, contacts and supports of rollers, where the scene has no other kind; the tolerance
     class of a maker's designation, where the scene has tolerances and fits that it acts through."""
-    entry, tolerances, fits = (
-        preset_of(tables.get("bearing", {}).get("preset")),
-        tables.get("tolerances"),
-        tables.get("mounting", {}),
-    )
+    bearing, tolerances, fits = tables.get("bearing", {}), tables.get("tolerances"), tables.get("mounting", {})
+    entry = preset_of(bearing.get("preset"), bearing.get("maker"))
     for name, table in ({} if entry is None else entry.other_tables).items():
         own = tables.get(name, {})
         if isinstance(own, dict) and own.get("kind", table.get("kind")) == table.get("kind"):

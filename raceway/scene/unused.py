@@ -114,6 +114,7 @@ _RULES: tuple[Rule[Scene], ...] = (
     ),
     Rule("contact.stick_stiffness", lambda s: s.contact.friction == 0.0, "contact.friction is 0"),
     Rule("lubricant.temperature_c", lambda s: s.heat is not None, "[heat] computes it, beginning with heat.oil_inlet_c"),
+    Rule("bearing.maker", lambda s: not any(b.preset for b in s.bearing.of_rows), "the bearing is no `preset`"),
     Rule("bearing.row_distance", lambda s: len(s.bearing.rows) == 1, "the bearing has one row"),
     Rule(
         ("bearing.preload_kind", "bearing.preload_of", "bearing.spring_travel"), lambda s: not s.bearing.preloaded,

@@ -12,7 +12,7 @@ import pytest
 
 import raceway as rw
 from raceway.core.jit import working_process_time
-from raceway.studies.catalogue.inferred import STIFFNESS_90
+from raceway.studies.catalogue.inferred import STIFFNESS_95
 from raceway.studies.catalogue.printed import printed_by
 from raceway.studies.catalogue.rating_conventions import stiffnesses
 from validation.command_line import invoke
@@ -78,7 +78,7 @@ def test_inferred_of_bearings_whose_balls_are_printed(claim):
     quantity = "bearings with printed balls: number right, diameter and pitch within 1 %: least share"
     claim(quantity, share, at_least=0.95, basis="published", source=GMN)
     quantity = "bearings with printed balls: relative error of their axial stiffness, 90 % within"
-    stated = STIFFNESS_90["grooves"]
+    stated = STIFFNESS_95["grooves"]
     claim(
         quantity, found["pair_stiffness_error_90"], at_most=stated, basis="published", source=f"{GMN}; what an answer states"
     )

@@ -144,7 +144,7 @@ def catalogue(pattern: str = "*") -> tuple[Preset, ...]:
     --------
     >>> import raceway as rw
     >>> [preset.name for preset in rw.catalogue("7014*")]
-    ['7014C', '7014A5', '7014A']
+    ['7014C', '7014A5', '7014A', '7014UC', '7014UAD']
     >>> rw.catalogue("7014C")[0].table["ball_count"]
     20
     """

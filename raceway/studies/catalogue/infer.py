@@ -31,7 +31,7 @@ def infer(
     ratings: Mapping[float, Sequence[Quantity]],
     *,
     width: Quantity | None = None,
-    pairs: Iterable[tuple[float, Quantity, Quantity]] = (),
+    pairs: Iterable[Sequence[Quantity]] = (),
     name: str = "",
     maker: str | None = None,
     conformity: float | None = None,
@@ -43,7 +43,8 @@ def infer(
     bore, outer_diameter, width : [m], or text such as "70 mm"
     ratings : by contact angle [deg], basic load ratings (dynamic C, static C0) [N]; all angles of a size that are printed.  0 deg is a
         deep-groove bearing, whose factor f_0 may follow: {0: ("14 kN", "7.85 kN", 13.9)}
-    pairs : (contact angle [deg], preload [N], axial stiffness [N/m]) of pairs back to back or face to face
+    pairs : (contact angle [deg], preload [N], axial stiffness [N/m]) of pairs back to back or face to face; a fourth number is their
+        radial stiffness [N/m], tilt locked, which gives the contact angle as manufactured
     name : designation
     maker : "NSK" and "NMB" rate by the tables of ISO 281 and ISO 76, "GMN" by its own grooves; None: what explains the ratings better
     conformity : of both grooves, where it is known; None: from ``pairs``, else 0.522
@@ -56,7 +57,8 @@ def infer(
     Raises
     ------
     SceneError
-        Ratings that contradict each other, that no whole number of balls explains, or that are no numbers of their unit.
+        Ratings that contradict each other, that no whole number of balls explains, or that are no numbers of their unit;
+        stiffnesses that no groove gives.
 
     Examples
     --------
@@ -77,8 +79,8 @@ def infer(
             for angle, (c, c0, *factor) in ratings.items()
         ),
         pairs=tuple(
-            PairStiffness(angle, _number("preload", "N", load), _number("stiffness", "N/m", stiffness))
-            for angle, load, stiffness in pairs
+            PairStiffness(float(angle), _number("preload", "N", load), *(_number("stiffness", "N/m", k) for k in stiff))
+            for angle, load, *stiff in pairs
         ),
         names=(name,) if name else (),
     )
@@ -210,7 +212,7 @@ def _line(answer: Inferred) -> dict[str, str]:
         "d_m mm": f"{1e3 * answer.pitch_diameter.value:.4g}",
         "f_i": f"{answer.conformity_inner.value:.4f}",
     }
-    for word, quantity in zip(("C %", "C0 %", "pairs %"), QUANTITIES, strict=True):
+    for word, quantity in zip(("C %", "C0 %", "pairs %", "radial %"), QUANTITIES, strict=True):
         error = answer.worst(quantity)
         line[word] = "-" if error is None else f"{100.0 * error:.2f}"
     if internals is not None:
@@ -274,7 +276,7 @@ def infer_texts(
 
     Inverts ISO 281 and ISO 76 for all contact angles of a size together. TABLE is a CSV file with the columns name,
     bore_mm, outer_diameter_mm, width_mm, contact_angle_deg, dynamic_rating_n, static_rating_n, optionally preload_1_n,
-    stiffness_1_n_per_um, preload_2_n ...; static_factor (f_0) of deep-groove bearings; ball_count, ball_diameter_mm,
+    stiffness_1_n_per_um, radial_stiffness_1_n_per_um, preload_2_n ...; static_factor (f_0) of deep-groove bearings; ball_count, ball_diameter_mm,
     pitch_diameter_mm are compared only. Included tables: "nsk", "gmn", "nsk_deep_groove", "nmb_deep_groove".
 
     Parameters
@@ -284,7 +286,7 @@ def infer_texts(
     outer_diameter : with a unit: "110 mm"
     width : with a unit: "20 mm"
     ratings : contact angle [deg], dynamic and static rating: "15:47 kN:43 kN"
-    pairs : axial stiffness of a preloaded pair: "15:145 N:51 N/µm"
+    pairs : axial and, where printed, radial stiffness of a preloaded pair: "15:145 N:51 N/µm" or "15:127 N:60.1 N/µm:335 N/µm"
     maker : rating conventions of NSK, NMB or GMN; None: those that fit better
     conformity : of both grooves, above 0.5 and at most 0.6; None: from --pair, else 0.522
     """
@@ -300,18 +302,21 @@ def infer_texts(
     assert bore is not None and outer_diameter is not None
     by_angle: dict[float, tuple[Quantity, Quantity]] = {}
     for text in ratings:
-        angle, dynamic, static = _three("ratings", text, "15:47 kN:43 kN")
+        angle, (dynamic, static) = _parts("ratings", text, "15:47 kN:43 kN")
         if angle in by_angle:
             raise SceneError.at("ratings", text, f"{angle:g} deg is given twice")
         by_angle[angle] = dynamic, static
-    stiffnesses = [_three("pairs", text, "15:145 N:51 N/µm") for text in pairs]
-    return infer(bore, outer_diameter, by_angle, width=width, pairs=stiffnesses, maker=maker, conformity=conformity)
+    parts = [_parts("pairs", text, "15:145 N:51 N/µm", radial=1) for text in pairs]
+    stiff: list[Sequence[Quantity]] = [(angle, *numbers) for angle, numbers in parts]
+    return infer(bore, outer_diameter, by_angle, width=width, pairs=stiff, maker=maker, conformity=conformity)
 
 
-def _three(name: str, text: str, example: str) -> tuple[float, str, str]:
+def _parts(name: str, text: str, example: str, radial: int = 0) -> tuple[float, list[str]]:
+    """Angle [deg], and two numbers, or up to ``radial`` more."""
+    angle, *numbers = text.split(":")
     try:
-        angle, first, second = text.split(":")
-        return float(angle.removesuffix("deg")), first, second
+        if 2 <= len(numbers) <= 2 + radial:
+            return float(angle.removesuffix("deg")), numbers
     except ValueError:
-        rule = f'must be three parts with colons between, the first an angle in deg: "{example}"'
-        raise SceneError.at(name, text, rule) from None
+        pass
+    raise SceneError.at(name, text, f'must be parts with colons between, the first an angle in deg: "{example}"')

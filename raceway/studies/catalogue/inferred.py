@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import ClassVar
 
 import attrs
 import numpy as np
+from numpy.typing import ArrayLike
 
+from raceway.core.ratings import BallRow
 from raceway.errors import SceneError
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
@@ -17,7 +19,7 @@ from raceway.out.wrapping import Words
 from raceway.scene.clearance import clearance_range
 from raceway.storage.tables import Tables
 from raceway.studies.catalogue.deep_groove import GROOVES, STIFFNESS_ERROR, deep_groove_candidates
-from raceway.studies.catalogue.printed import Printed
+from raceway.studies.catalogue.printed import PairStiffness, Printed
 from raceway.studies.catalogue.rating_conventions import (
     CONFORMITY,
     LIMITS,
@@ -26,12 +28,13 @@ from raceway.studies.catalogue.rating_conventions import (
     Candidate,
     by_grooves,
     by_tables,
+    pair_stiffness,
     size_words,
     stiffnesses,
 )
 
 #: What is printed and checked.
-QUANTITIES = ("dynamic rating", "static rating", "pair stiffness")
+QUANTITIES = ("dynamic rating", "static rating", "pair stiffness", "radial stiffness")
 
 
 @attrs.frozen
@@ -69,7 +72,8 @@ class Inferred(Answer):
     share : of the probability that this ball count has among all that explain the ratings
     other : the next likely ball count and diameter [m] with its share, or None
     checks : printed ratings [N] and stiffnesses of pairs [N/m] against those of these numbers
-    stiffness_error : relative uncertainty of the axial stiffness, 90 %
+    stiffness_error : relative uncertainty of the axial stiffness, 95 %
+    contact_angles : by the nominal one [deg], where radial stiffnesses fix it [deg]
 
     Examples
     --------
@@ -91,6 +95,7 @@ class Inferred(Answer):
     other: Tables | None
     checks: tuple[_Check, ...]
     stiffness_error: float
+    contact_angles: dict[float, _Number]
 
     @property
     def numbers(self) -> dict[str, _Number]:
@@ -113,7 +118,8 @@ class Inferred(Answer):
         table: Tables = {"bore": size.bore, "outer_diameter": size.outer_diameter}
         table |= {} if size.width is None else {"width": size.width}
         table |= {key: number.value for key, number in self.numbers.items()}
-        table["contact_angle_deg"] = contact_angle_deg or size.ratings[0].contact_angle_deg
+        nominal = contact_angle_deg or size.ratings[0].contact_angle_deg
+        table["contact_angle_deg"] = self.contact_angles[nominal].value if nominal in self.contact_angles else nominal
         if size.deep_groove and (limits := clearance_range("ball", size.bore)):
             table["radial_clearance"] = 0.5 * sum(limits)
         return {**table, "rings": dict(steel), "balls": dict(steel)}
@@ -128,6 +134,7 @@ class Inferred(Answer):
             "numbers": {key: attrs.asdict(number) for key, number in self.numbers.items()},
             "checks": [{**attrs.asdict(check), "error": check.error} for check in self.checks],
             "stiffness_error": self.stiffness_error,
+            "contact_angles": {f"{angle:g}": attrs.asdict(number) for angle, number in self.contact_angles.items()},
             "bearing": self.bearing(),
         }
 
@@ -137,6 +144,9 @@ class Inferred(Answer):
             value = number(1e3 * inferred.value, "mm") if key.endswith("diameter") else f"{inferred.value:.5g}"
             scatter = "" if key == "ball_count" else f"+- {100.0 * inferred.scatter:.2g} %; "
             facts.append((key.replace("_", " "), value, scatter + inferred.reason))
+        for angle, found in self.contact_angles.items():
+            why = f"+- {100.0 * found.scatter:.2g} %; {found.reason}"
+            facts.append((f"contact angle {angle:g} deg", f"{found.value:.4g} deg", why))
         return facts
 
     def _shown(self) -> tuple[str, list[Fact]]:
@@ -144,7 +154,7 @@ class Inferred(Answer):
         for quantity in QUANTITIES:
             if (error := self.worst(quantity)) is not None:
                 facts.append((quantity, f"{100.0 * error:.2g} %", "largest error of what is printed"))
-        facts.append(("axial stiffness", f"{100.0 * self.stiffness_error:.2g} %", "known to about this, 90 %"))
+        facts.append(("axial stiffness", f"{100.0 * self.stiffness_error:.2g} %", "known to about this, 95 %"))
         return self.printed.title, facts
 
     def report(self) -> Sequence[Part]:
@@ -155,7 +165,7 @@ class Inferred(Answer):
             rows.append(("next likely", balls, f"{100.0 * self.other['share']:.2g} %"))
         rows.append(("What is printed", "", ""))
         for check in self.checks:
-            stiff = check.quantity == "pair stiffness"
+            stiff = check.quantity.endswith("stiffness")
             value = number(1e-6 * check.printed, "N/µm") if stiff else number(1e-3 * check.printed, "kN")
             rows.append(
                 (f"{check.quantity}, {check.contact_angle_deg:g} deg", value, f"met with {100.0 * check.error:+.2f} %")
@@ -166,8 +176,8 @@ class Inferred(Answer):
 
 #: Practices of rating by maker, in small letters.
 _PRACTICES = {"nsk": "tables", "nmb": "tables", "gmn": "grooves"}
-#: 90 % of the printed axial stiffnesses of pairs lie within this of those of the inferred bearings, by practice (report catalogue).
-STIFFNESS_90 = {"tables": 0.036, "grooves": 0.062}
+#: 95 % of the printed axial stiffnesses of pairs lie within this of those of the inferred bearings, by practice (report catalogue).
+STIFFNESS_95 = {"tables": 0.045, "grooves": 0.08}
 #: Scatter of the pitch diameter: of 103 bearings whose maker prints it, 101 have the mean of bore and outer diameter.
 _PITCH = 0.01
 #: Scatter of the conformity where no stiffness is printed: of the series 70, fitted one by one, (f - 0.5) scatters by 5 %.
@@ -178,8 +188,8 @@ _DEEP_CONFORMITY = 0.01
 _STIFFNESS = 0.008
 #: Share of known bearings like it below which an answer by grooves is called doubtful.
 _ALIKE = 1e-3
-#: Conformities over which printed stiffnesses are matched.
-_TRIED = np.linspace(0.505, 0.56, 56)
+#: Conformities over which printed stiffnesses are matched, and turns [deg] of the contact angle, within which it is manufactured.
+_TRIED, _TURNS = np.linspace(0.505, 0.56, 56), np.linspace(-4.0, 4.0, 33)
 
 
 def infer_printed(size: Printed, maker: str | None = None, conformity: float | None = None) -> Inferred:
@@ -193,8 +203,11 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
     Raises
     ------
     SceneError
-        Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker.
+        Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker; stiffnesses that
+        no groove gives.
     """
+    if not size.ratings:
+        raise SceneError.at(size.title, None, "needs the load ratings at one contact angle or more")
     _refuse_contradiction(size)
     candidates = _candidates(size, maker)
     if not candidates or not candidates[0].explains:
@@ -209,7 +222,10 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         for x, p in shares
         if x.ball_count != best.ball_count
     )
-    inner, outer = _grooves(size, best, conformity)
+    angles = {} if conformity is not None else _contact_angles(size, best)
+    made = {angle: found.value for angle, found in angles.items()}
+    pairs = [attrs.evolve(x, contact_angle_deg=made.get(x.contact_angle_deg, x.contact_angle_deg)) for x in size.pairs]
+    inner, outer = _grooves(attrs.evolve(size, pairs=tuple(pairs)), best, conformity)
     return Inferred(
         printed=size,
         practice=best.practice,
@@ -219,13 +235,19 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
             max(map(abs, best.dynamic_errors)) / 1.8,
             f"usual size, {size_words(best.ball_diameter)}; C alone leaves the uncertainty",
         ),
-        pitch_diameter=_Number(best.pitch_factor * size.mean_diameter, _PITCH, _why_pitch(best.pitch_factor)),
+        pitch_diameter=_Number(
+            best.pitch_factor * size.mean_diameter,
+            _PITCH,
+            ("" if abs(best.pitch_factor - 1.0) < 1e-9 else f"as C and C0 ask for, {best.pitch_factor:.3g} of ")
+            + "the mean of bore and outer diameter",
+        ),
         conformity_inner=inner,
         conformity_outer=outer,
         share=share,
         other=next(next_likely, None),
-        checks=_checks(size, best, inner.value, outer.value),
-        stiffness_error=STIFFNESS_ERROR if size.deep_groove else STIFFNESS_90[best.practice],
+        checks=_checks(size, pairs, best, inner.value, outer.value),
+        stiffness_error=STIFFNESS_ERROR if size.deep_groove else STIFFNESS_95[best.practice],
+        contact_angles=angles,
     )
 
 
@@ -295,11 +317,6 @@ def _why_count(best: Candidate, share: float) -> str:
     return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
 
 
-def _why_pitch(factor: float) -> str:
-    mean = "the mean of bore and outer diameter"
-    return mean if abs(factor - 1.0) < 1e-9 else f"{factor:.3g} of {mean}, which C and C0 ask for"
-
-
 def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[_Number, _Number]:
     if conformity is not None:
         both = _Number(conformity, _CONFORMITY, "given")
@@ -307,7 +324,7 @@ def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[
     if size.deep_groove:
         why = "a default, the largest that ISO 76 rates deep grooves with: makers print none"
         return _Number(GROOVES[0], _DEEP_CONFORMITY, why), _Number(GROOVES[1], _DEEP_CONFORMITY, why)
-    if best.practice == "grooves":
+    if best.practice == "grooves" and all(pair.radial is None for pair in size.pairs):
         why = "gives C0 as Hertz contact at 4200 MPa"
         outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"
         return _Number(best.conformity_inner, _CONFORMITY, why), _Number(best.conformity_outer, _CONFORMITY, outer)
@@ -343,12 +360,48 @@ def _fitted_conformity(size: Printed, best: Candidate) -> tuple[float, float] | 
     return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
 
 
-def _checks(size: Printed, best: Candidate, inner: float, outer: float) -> tuple[_Check, ...]:
+def _row(size: Printed, best: Candidate, angle: ArrayLike, inner: ArrayLike, outer: ArrayLike) -> BallRow:
+    return BallRow(best.ball_count, best.ball_diameter, size.mean_diameter, angle, inner, outer)
+
+
+def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
+    """The angles [deg] at which one groove gives both stiffnesses of a pair, by the nominal ones; mean of the pairs of an angle.
+
+    SceneError: stiffnesses that no angle gives together.
+    """
+    found: dict[float, list[tuple[float, float]]] = {}
+    for pair in size.pairs:
+        tried = pair.contact_angle_deg + _TURNS
+        row = _row(size, best, np.radians(tried)[:, None], _TRIED, _TRIED)
+        axial, radial = pair_stiffness(row, pair.preload, YOUNG, POISSON)
+        grooves = [np.interp(pair.stiffness, k[::-1], _TRIED[::-1], left=np.nan, right=np.nan) for k in axial]
+        beside = np.array([np.interp(f, _TRIED, k) for f, k in zip(grooves, radial, strict=True)])
+        tried, beside = tried[np.isfinite(beside)], beside[np.isfinite(beside)]
+        if pair.radial is None or len(beside) < 2:
+            continue  # no groove gives the axial one, which is refused with the conformity
+        if not beside[-1] <= pair.radial <= beside[0]:
+            rule = (
+                f"contradicts the axial one, {1e-6 * pair.stiffness:.3g} N/µm under {pair.preload:g} N: grooves that give this at "
+                f"{tried[0]:.3g} to {tried[-1]:.3g} deg have {1e-6 * beside[-1]:.3g} to {1e-6 * beside[0]:.3g} N/µm. Is it the radial "
+                "stiffness of the pair, tilt locked?"
+            )
+            raise SceneError.at(f"{size.title}: radial stiffness of a pair", f"{1e-6 * pair.radial:.3g} N/µm", rule)
+        angle = np.interp(pair.radial, beside[::-1], tried[::-1])
+        slope = np.interp(angle, tried, np.abs(np.gradient(np.log(beside), np.log(tried))))
+        found.setdefault(pair.contact_angle_deg, []).append((angle, _STIFFNESS / slope))
+    means = {nominal: np.mean(each, axis=0) for nominal, each in found.items()}
+    why = "gives axial and radial stiffness of a pair"
+    return {nominal: _Number(round(float(mean), 3), float(scatter), why) for nominal, (mean, scatter) in means.items()}
+
+
+def _checks(size: Printed, pairs: list[PairStiffness], best: Candidate, inner: float, outer: float) -> tuple[_Check, ...]:
     checks = []
     for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
-        for word, printed, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
-            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", printed, printed * (1.0 + off)))
-    computed: Iterable[float] = stiffnesses(size, best.ball_count, best.ball_diameter, inner, outer) if size.pairs else []
-    for pair, k in zip(size.pairs, computed, strict=True):
-        checks.append(_Check(pair.contact_angle_deg, "pair stiffness", pair.stiffness, float(k)))
+        for word, rated, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
+            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", rated, rated * (1.0 + off)))
+    for printed, pair in zip(size.pairs, pairs, strict=True):
+        angle, row = printed.contact_angle_deg, _row(size, best, np.radians(pair.contact_angle_deg), inner, outer)
+        axial, radial = pair_stiffness(row, pair.preload, YOUNG, POISSON)
+        checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
+        checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
     return tuple(checks)

@@ -28,7 +28,7 @@ _NEEDED = {
     "static_rating_n": 1.0,
 }
 _OPTIONAL = {"static_factor": 1.0, "ball_count": 1.0, "ball_diameter_mm": 1e-3, "pitch_diameter_mm": 1e-3}
-_PAIR = {"preload": "preload_{}_n", "stiffness": "stiffness_{}_n_per_um"}
+_PAIR = {"preload": "preload_{}_n", "stiffness": "stiffness_{}_n_per_um", "radial": "radial_stiffness_{}_n_per_um"}
 #: Static over dynamic rating of ball bearings, generously: outside, one of the two is no rating.
 _RATIO = 0.15, 3.0
 
@@ -45,11 +45,12 @@ class Rating:
 
 @attrs.frozen
 class PairStiffness:
-    """Axial stiffness [N/m] of a pair back to back or face to face under a preload [N]."""
+    """Axial stiffness [N/m] of a pair back to back or face to face under a preload [N]; radial, tilt locked, where it is printed."""
 
     contact_angle_deg: float
     preload: float
     stiffness: float
+    radial: float | None = None
 
 
 @attrs.frozen
@@ -87,6 +88,7 @@ class Printed:
         for pair in self.pairs:
             numbers += [("angle of a pair", pair.contact_angle_deg), ("preload of a pair", pair.preload)]
             numbers += [("stiffness of a pair", pair.stiffness)]
+            numbers += [] if pair.radial is None else [("radial stiffness of a pair", pair.radial)]
         rule = "must be a finite number above 0"
         mistakes = [Mistake(f"{self.title}: {name}", x, rule) for name, x in numbers if not 0.0 < x < math.inf]
         if mistakes:
@@ -94,8 +96,6 @@ class Printed:
         if not self.bore < self.outer_diameter < 10.0:
             rule = 'must exceed the bore and be below 10 m: write a unit, "110 mm"'
             mistakes.append(Mistake(f"{self.title}: outer diameter", self.outer_diameter, rule))
-        if not self.ratings:
-            mistakes.append(Mistake(self.title, None, "needs the load ratings at one contact angle or more"))
         for rating in self.ratings:
             if not 0.0 <= rating.contact_angle_deg <= 45.0:
                 rule = "must be from 0 to 45 deg"
@@ -216,9 +216,16 @@ def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
         bore=number("bore_mm"),
         outer_diameter=number("outer_diameter_mm"),
         width=number("width_mm") if cells["width_mm"] else None,
-        ratings=(Rating(angle, number("dynamic_rating_n"), number("static_rating_n"), optional("static_factor")),),
+        ratings=(Rating(angle, number("dynamic_rating_n"), number("static_rating_n"), optional("static_factor")),)
+        if cells["dynamic_rating_n"] or cells["static_rating_n"]
+        else (),
         pairs=tuple(
-            PairStiffness(angle, number(pair["preload"]), 1e6 * number(pair["stiffness"]))
+            PairStiffness(
+                angle,
+                number(pair["preload"]),
+                1e6 * number(pair["stiffness"]),
+                1e6 * number(pair["radial"]) if cells.get(pair["radial"]) else None,
+            )
             for pair in pairs
             if cells.get(pair["preload"]) and cells.get(pair["stiffness"])
         ),

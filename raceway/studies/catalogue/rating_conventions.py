@@ -24,8 +24,8 @@ from raceway.studies.catalogue.printed import Printed, printed_by
 _NEWTON = 8
 
 
-def _pair_stiffness(row: BallRow, preload: ArrayLike, young: float, poisson: float) -> np.ndarray:
-    """Axial stiffness [N/m] of two such rows back to back or face to face under a rigid preload.
+def pair_stiffness(row: BallRow, preload: ArrayLike, young: float, poisson: float) -> np.ndarray:
+    """Axial and radial stiffness (2, ...) [N/m], tilt locked, of two such rows back to back or face to face under a rigid preload.
 
     preload : [N];  young, poisson : of balls and rings, [Pa] and 1
     """
@@ -34,8 +34,9 @@ def _pair_stiffness(row: BallRow, preload: ArrayLike, young: float, poisson: flo
     stretch = _stretch(np.asarray(preload) / (row.count * factor * distance**1.5), np.cos(row.angle))
     cosine = np.cos(row.angle) / (1.0 + stretch)
     approach, length = stretch * distance, (1.0 + stretch) * distance
-    along = 1.5 * factor * np.sqrt(approach) * (1.0 - cosine**2) + factor * approach**1.5 / length * cosine**2
-    return np.asarray(2.0 * row.count * along)
+    normal, across = 1.5 * factor * np.sqrt(approach), factor * approach**1.5 / length
+    axial, radial = normal + (across - normal) * cosine**2, 0.5 * (across + (normal - across) * cosine**2)
+    return np.asarray(2.0 * row.count * np.stack([axial, radial]))
 
 
 def _stretch(load: np.ndarray, cosine: np.ndarray) -> np.ndarray:
@@ -134,7 +135,7 @@ def stiffnesses(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLi
     angle = np.radians([pair.contact_angle_deg for pair in size.pairs])
     count, inner, outer = (np.asarray(x)[..., None] for x in (count, inner, outer))
     row = BallRow(count, diameter, size.mean_diameter, angle, inner, outer)
-    return _pair_stiffness(row, [pair.preload for pair in size.pairs], YOUNG, POISSON)
+    return np.asarray(pair_stiffness(row, [pair.preload for pair in size.pairs], YOUNG, POISSON)[0])
 
 
 def _misfits(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
