@@ -191,7 +191,7 @@ def test_the_catalogue_is_searched_by_pattern_or_by_a_part_of_the_name():
 def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     static = {"bearing": {"preset": "7014C"}, "load": {"axial": 1000.0}}
     found = run(static)
-    words = "geometry inferred from NSK's prints: stiffness uncertain by about 4 % axially, 10 % radially; maker not said: +0 to +14 %"
+    words = "geometry inferred from NSK's prints: stiffness uncertain by about 4 % axially, 10 % radially; maker not said: -2 to +14 %"
     assert found.geometry["words"] == f"{words} (`bearing.maker`)"
     # A series without printed stiffnesses is known less well than those that have some.
     other = run({**static, "bearing": {"preset": "7914C"}}).geometry

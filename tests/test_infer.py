@@ -14,10 +14,10 @@ from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
 from raceway.core.ratings import BallRow, _groove, _load_factor, _static_factor
-from raceway.studies.catalogue.infer import _infer_table, _sizes_of
-from raceway.studies.catalogue.inferred import STIFFNESS_95, infer_printed
+from raceway.studies.catalogue.infer import _sizes_of
+from raceway.studies.catalogue.inferred import infer_printed
 from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by
-from raceway.studies.catalogue.rating_conventions import CONFORMITY, LIMITS, pair_stiffness
+from raceway.studies.catalogue.rating_conventions import CONFORMITY, pair_stiffness
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -84,23 +84,6 @@ def test_the_load_factor_is_that_of_the_core():
 # --- the answers
 
 
-def test_printed_ratings_are_met(series):
-    """Issue's limits; one of 249 dynamic ratings misses its limit by 0.013 % (a printed step of 500 N is 1.4 % there)."""
-    errors = [(one.worst("dynamic rating"), one.worst("static rating")) for one in series.values()]
-    assert sum(len(one.printed.ratings) for one in series.values()) == 249
-    assert sum(c > LIMITS[0] for c, _ in errors) <= 2
-    assert max(c for c, _ in errors) < 0.00614
-    assert max(c0 for _, c0 in errors) < LIMITS[1]
-
-
-def test_printed_stiffnesses_of_pairs_are_met_with_one_conformity(series):
-    errors = [abs(x.error) for one in series.values() for x in one.checks if x.quantity == "pair stiffness"]
-    assert len(errors) == 384
-    assert np.median(errors) <= 0.01
-    assert np.quantile(errors, 0.9) <= 0.04
-    assert np.quantile(errors, 0.95) <= STIFFNESS_95["tables"] <= 0.05
-
-
 def test_one_printed_angle_gives_the_same_balls(series):
     balls = {name: found for found in series.values() for name in found.printed.names}
     for one in printed_by("nsk")[::3]:
@@ -115,16 +98,6 @@ def test_the_practice_need_not_be_said(series):
     wrong = [x for x in map(infer_printed, printed_by("nsk")[::3]) if x.ball_count.value != balls[x.printed.names[0]]]
     assert len(wrong) <= 1
     assert all(x.share < 0.6 for x in wrong)
-
-
-def test_bearings_with_printed_balls_are_inferred_from_the_others():
-    """Each is left out of the known ones: Z in 95 %, D and d_m within 1 % (the issue's limits)."""
-    found = _infer_table("gmn").summary
-    assert found["internals_printed"] == 103
-    assert found["ball_count_right"] >= 0.95
-    assert found["ball_diameter_within_1_percent"] >= 0.95
-    assert found["pitch_diameter_within_1_percent"] >= 0.95
-    assert found["pair_stiffness_error_90"] <= STIFFNESS_95["grooves"]
 
 
 def test_balls_of_whole_millimetres_are_found_where_no_inch_size_fits():
@@ -215,20 +188,6 @@ def test_the_printed_f0_gives_the_same_z_d2(deep_groove):
     assert len(beyond) == 225
     assert {name for name, error in beyond.items() if error > 0.01} == {"6808", "6809"}
     assert max(beyond.values()) < 0.015
-
-
-def test_balls_of_deep_groove_bearings_are_those_that_makers_print(deep_groove):
-    """NMB's by its own ratings; GMN's from 10 mm bore by NSK's ratings: the same balls but for 6200."""
-    found = _infer_table("nmb_deep_groove").summary
-    assert (found["internals_printed"], found["inferred"]) == (57, 52)
-    assert found["ball_count_right"] >= 0.89 and found["ball_diameter_within_1_percent"] >= 0.9
-    right = [
-        found.ball_count.value == one.internals.ball_count
-        and abs(found.ball_diameter.value / one.internals.ball_diameter - 1.0) <= 0.01
-        for one in printed_by("gmn_deep_groove")
-        if one.bore >= 10e-3 and (found := deep_groove[one.names[0]])
-    ]
-    assert (sum(right), len(right)) == (15, 16)
 
 
 def test_a_deep_groove_bearing_is_inferred_at_an_angle_of_zero():

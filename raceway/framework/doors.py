@@ -106,10 +106,6 @@ _TEXTS = _several(_TEXT)
 _FINITE = _number("a finite number", math.isfinite)
 
 
-def _pair(angle: Any, preload: Any, axial: Any, radial: Any = None) -> tuple[Any, ...]:
-    return (float(angle), preload, axial, *(() if radial is None else (radial,)))
-
-
 _READERS: dict[str, Reader] = {
     name: reader
     for names, reader in {
@@ -136,8 +132,8 @@ _READERS: dict[str, Reader] = {
             lambda v: {float(angle): (c, c0, *f) for angle, (c, c0, *f) in v.items()},
         ),
         "pairs": (
-            "(angle, preload, axial stiffness), or with the radial stiffness as a fourth number",
-            lambda v: [_pair(*one) for one in v],
+            "(angle, preload, axial stiffness) each, with or without the radial stiffness behind",
+            lambda v: [(float(angle), *{2: k, 3: k}[len(k)]) for angle, *k in v],
         ),
         "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),
         "row": _reader("a finished row of `judged`", lambda v: v["physics"] and float(v["error"]) >= 0.0),

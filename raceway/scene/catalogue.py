@@ -141,18 +141,14 @@ def catalogue() -> dict[str, Preset]:
 
 
 @cache
-def _series_files() -> dict[str, list[Traversable]]:
-    """By the beginning of the designations in them."""
-    files_of: dict[str, list[Traversable]] = {}
-    for file in _tomls(files("raceway").joinpath("data/series")):
-        files_of.setdefault(file.name.removesuffix(".toml").partition("_")[0], []).append(file)
-    return files_of
+def _series_files() -> dict[str, Traversable]:
+    """By the beginning of the designations in it, and for another maker's series _ and that."""
+    return {file.name.removesuffix(".toml"): file for file in _tomls(files("raceway").joinpath("data/series"))}
 
 
 @cache
 def _series_presets(stem: str) -> dict[str, Preset]:
-    contents = [tomllib.loads(file.read_text(encoding="utf-8")) for file in _series_files()[stem]]
-    return {entry.name: entry for content in contents for entry in _series(content)}
+    return {entry.name: entry for entry in _series(tomllib.loads(_series_files()[stem].read_text(encoding="utf-8")))}
 
 
 @cache
@@ -229,9 +225,9 @@ def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
 
 
 def _named(name: str) -> Preset | None:
-    """By its name in the catalogue; only the series that it begins with is read."""
-    stem = max((stem for stem in _series_files() if name.startswith(stem)), key=len, default=None)
-    return _single_presets().get(name) or (None if stem is None else _series_presets(stem).get(name))
+    """By its name in the catalogue; only the series that it begins with are read."""
+    series = (stem for stem in _series_files() if name.startswith(stem.partition("_")[0]))
+    return _single_presets().get(name) or next(filter(None, (_series_presets(stem).get(name) for stem in series)), None)
 
 
 def _tomls(folder: Traversable) -> list[Traversable]:
@@ -344,10 +340,10 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
         for key in ("axial", "radial"):
             same[key] = [min(same[key][0], part[key][0]), max(same[key][1], part[key][1])]
     axial, radial = (max(geometry[key] for geometry in presets) for key in ("stiffness_error", "radial_stiffness_error"))
-    maker, source = (
-        words.pop() if len(words := {geometry[key] for geometry in presets}) == 1 else None
-        for key in ("maker", "inferred_from")
+    alike = all(
+        (one["maker"], one["inferred_from"]) == (presets[0]["maker"], presets[0]["inferred_from"]) for one in presets
     )
+    maker, source = (presets[0]["maker"], presets[0]["inferred_from"]) if alike else (None, None)
     whose = f"{maker}'s geometry inferred" if maker else "geometry inferred" + (f" from {source}'s prints" if source else "")
     first = f"stiffness uncertain by about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially"
     return {

@@ -31,22 +31,18 @@ def pair_stiffness(row: BallRow, preload: ArrayLike, young: float, poisson: floa
     """
     factor = row.load_factor(0.5 * young / (1.0 - poisson**2))
     distance = (row.inner + row.outer - 1.0) * row.diameter
-    stretch = _stretch(np.asarray(preload) / (row.count * factor * distance**1.5), np.cos(row.angle))
-    cosine = np.cos(row.angle) / (1.0 + stretch)
+    load, free = np.asarray(preload) / (row.count * factor * distance**1.5), np.cos(row.angle)
+    # t = cos(a) / cos(b) - 1 of sin(b) t^1.5 = load, by Newton's method from above: sin(b) is at least sin(a).
+    stretch = (load / np.sqrt(1.0 - free**2)) ** (2.0 / 3.0)
+    for _ in range(_NEWTON):
+        sine = np.sqrt(1.0 - (free / (1.0 + stretch)) ** 2)
+        slope = 1.5 * np.sqrt(stretch) * sine + stretch**1.5 * free**2 / ((1.0 + stretch) ** 3 * sine)
+        stretch = stretch - (sine * stretch**1.5 - load) / slope
+    cosine = free / (1.0 + stretch)
     approach, length = stretch * distance, (1.0 + stretch) * distance
     normal, across = 1.5 * factor * np.sqrt(approach), factor * approach**1.5 / length
     axial, radial = normal + (across - normal) * cosine**2, 0.5 * (across + (normal - across) * cosine**2)
     return np.asarray(2.0 * row.count * np.stack([axial, radial]))
-
-
-def _stretch(load: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    """t = cos(a) / cos(b) - 1 of sin(b) t^1.5 = ``load``, by Newton's method from above: sin(b) is at least sin(a)."""
-    t = (load / np.sqrt(1.0 - cosine**2)) ** (2.0 / 3.0)
-    for _ in range(_NEWTON):
-        sine = np.sqrt(1.0 - (cosine / (1.0 + t)) ** 2)
-        slope = 1.5 * np.sqrt(t) * sine + t**1.5 * cosine**2 / ((1.0 + t) ** 3 * sine)
-        t = t - (sine * t**1.5 - load) / slope
-    return np.asarray(t)
 
 
 _INCH = 25.4e-3
