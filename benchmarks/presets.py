@@ -87,42 +87,29 @@ def _angular(series: str) -> _Kind:
     )
 
 
-def _ntn() -> _Kind:
+def _ntn(sizes: list[Inferred]) -> str:
     """Series 70 of NTN's own designations: balls are NSK's, grooves and angle those that give the printed stiffnesses."""
-    maker = "NTN-SNR, ULTAGE high-precision angular contact ball bearings 70xxU, 79xxU"
-    columns = _columns(maker, "", "", "")
+    printed = "NTN-SNR, ULTAGE high-precision angular contact ball bearings 70xxU, 79xxU"
     balls = "inferred: NSK's of the same dimensions, NTN prints none; where it has one more ball, a narrower groove stands for it"
-    fitted = f"gives axial and radial stiffness of the pair that NTN prints: {maker}"
-    columns = {key: columns[key] for key in ("bore", "outer_diameter", "width")}
-    columns["contact_angle_deg"] = f"{fitted}; nominal: suffix UC 15, UAD 25 deg", True, "angle_scatter"
-    columns |= {key: (balls, True, f"{key}_scatter") for key in ("ball_count", "ball_diameter", "pitch_diameter")}
-    columns |= {key: (fitted, True, f"{key}_scatter") for key in ("conformity_inner", "conformity_outer")}
-    return _Kind(
-        "angular-contact ball bearing of NTN's series 70U",
-        ("angular_pair",),
-        columns,
-        _steel(YOUNG, "assumed by the fit of the conformity"),
-        "NTN",
-        ("pair_stiffness_error", "radial_stiffness_error"),
+    fitted = f"gives axial and radial stiffness of the pair that NTN prints: {printed}"
+    columns: dict[str, tuple[str, bool, str | None]] = dict.fromkeys(
+        ("bore", "outer_diameter", "width"), (printed, False, None)
     )
-
-
-def _ntn_rows(sizes: list[Inferred]) -> list[tuple[str, str]]:
-    ratings = {
-        (x.printed.bore, x.printed.outer_diameter): x.printed.ratings for x in sizes if x.printed.names[0].startswith("70")
-    }
-    rows = []
+    columns["contact_angle_deg"] = f"{fitted}; nominal: suffix UC 15, UAD 25 deg", True, "angle_scatter"
+    for key in ("ball_count", "ball_diameter", "pitch_diameter", "conformity_inner", "conformity_outer"):
+        columns[key] = fitted if "conformity" in key else balls, True, f"{key}_scatter"
+    errors, rows = ("pair_stiffness_error", "radial_stiffness_error"), []
+    steel = _steel(YOUNG, "assumed by the fit of the conformity")
+    kind = _Kind("angular-contact ball bearing of NTN's series 70U", ("angular_pair",), columns, steel, "NTN", errors)
     for one in printed_by("ntn"):
-        found = infer_printed(attrs.evolve(one, ratings=ratings[one.bore, one.outer_diameter]), maker="NSK")
-        angle = found.contact_angles[one.pairs[0].contact_angle_deg]
+        own = next(x for x in sizes if x.printed.names[0].startswith(one.names[0][:4]))
+        found = infer_printed(attrs.evolve(one, ratings=own.printed.ratings), maker="NSK")
+        (angle,) = found.contact_angles.values()
         numbers = [angle, *found.numbers.values()]
         scatters = [angle.scatter, 1.0 / found.ball_count.value, *(x.scatter for x in numbers[2:])]
-        errors = [
-            next(x.error for x in found.checks if x.quantity == word) for word in ("pair stiffness", "radial stiffness")
-        ]
         values = [one.bore, one.outer_diameter, one.width, *(x.value for x in numbers)]
-        rows.append((one.names[0], _cells(values, [*scatters, *errors])))
-    return rows
+        rows.append((one.names[0], _cells(values, [*scatters, *(x.error for x in found.checks[-2:])])))
+    return text(kind, rows)
 
 
 def _deep_groove(series: str) -> _Kind:
@@ -313,7 +300,7 @@ def every() -> dict[str, str]:
     deep = [x for x in deep if max(abs(check.error) for check in x.checks) <= _LARGEST]
     return {
         **{series: of(_angular(series), sizes, series) for series in SERIES},
-        "70_NTN": text(_ntn(), _ntn_rows(sizes)),
+        "70_NTN": _ntn(sizes),
         **{series: of(_deep_groove(series), deep, written) for series, written in DEEP_GROOVE.items()},
         **_roller_texts(),
     }

@@ -15,7 +15,6 @@ from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import _single_presets, catalogue, found_by, preset, preset_of
 from raceway.scene.clearance import CLASSES, clearance_range
 from raceway.scene.sets import RATINGS
-from raceway.studies.catalogue.printed import printed_by
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.
@@ -65,11 +64,6 @@ class TestEachPreset:
         }
         assert keys <= known
         assert keys >= NEEDED
-
-
-def test_the_suffix_sets_the_angle():
-    angles = {name: preset(name)["contact_angle_deg"] for name in ("B7206C", "B7206E", "7206A", "7206C-NSK", "7206A-NSK")}
-    assert angles == {"B7206C": 15.0, "B7206E": 25.0, "7206A": 30.0, "7206C-NSK": 15.0, "7206A-NSK": 30.0}
 
 
 def test_the_inferred_free_angle_of_harris_and_mindel_gives_what_they_print():
@@ -134,21 +128,10 @@ def test_a_deep_groove_bearing_counts_from_the_middle_of_its_clearance(bodies):
     assert answer(1e-3).displacement[0] == pytest.approx(play, rel=1e-3)
 
 
-def test_a_typo_offers_the_nearest_preset():
-    with pytest.raises(SceneError) as caught:
-        scene_from_dict({"title": "t", "bearing": {"preset": "DGB7-MASTE"}})
-    assert "DGB7-MASTA" in str(caught.value)
-    assert caught.value.mistakes[0].path == "bearing.preset"
-
-
 # --- series
 
 
-def test_the_series_hold_all_designations_of_the_printed_table():
-    names = [one.names[0] for one in printed_by("nsk")]
-    assert len(names) == 249
-    assert set(names) <= set(catalogue())
-    # A preset with a file of its own goes first: 7206A keeps its numbers.
+def test_a_preset_with_a_file_of_its_own_goes_first():
     assert catalogue()["7206A"].table["rings"]["young"] == 212e9
 
 
@@ -157,12 +140,6 @@ def test_a_series_states_source_and_scatter_of_every_number():
         assert len(fact.source) > 20
         assert fact.inferred is (fact.key not in ("bore", "outer_diameter", "width", "contact_angle_deg", *RATINGS))
         assert (fact.scatter is not None) is (fact.inferred and "." not in fact.key)
-
-
-def test_designations_that_only_differ_in_the_angle_have_the_same_balls():
-    same = [{**preset(name), "preset": "", "contact_angle_deg": 0} for name in ("7014C", "7014A5", "7014A")]
-    assert same[0] == same[1] == same[2]
-    assert [preset(name)["contact_angle_deg"] for name in ("7014C", "7014A5", "7014A")] == [15, 25, 30]
 
 
 def test_an_unknown_designation_names_the_nearest_five():
@@ -209,65 +186,42 @@ def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     assert run({**static, "bearing": {"preset": "B7206C"}}).geometry["stiffness_error"] == 0.045
 
 
-#: Keys of [bearing]: whose geometry a result says it is, and parts of its uncertainty.
-DATA = {
-    "not said": ({"preset": "7008C"}, None, ["inferred geometry", "other makers"]),
-    "key": ({"preset": "7008C", "maker": "NSK"}, "NSK", ["inferred geometry"]),
-    "another's": ({"preset": "HC7008-C", "maker": "NTN"}, "NTN", ["inferred geometry"]),
-    "its own": ({"preset": "7008UC", "maker": "NSK"}, "NSK", ["inferred geometry"]),
-    "spelling": ({"preset": "7008UADG/GNP42"}, "NTN", ["inferred geometry"]),
-    "article": ({"preset": "B7206C"}, None, ["inferred geometry", "other makers"]),
-    "no class": ({"preset": "6205"}, None, ["inferred geometry", "clearance class", "other makers"]),
-    "clearance": ({"preset": "6205", "maker": "NSK", "radial_clearance": 1e-5}, "NSK", ["inferred geometry"]),
-    "grooves": ({"preset": "6205/C3", "conformity_inner": 0.52, "conformity_outer": 0.52}, None, ["clearance class", "other makers"]),
-    "rows": (
-        {"row": [{"preset": "7008C", "direction": "+"}, {"preset": "7008UC", "direction": "-"}], "preload": 100.0},
-        None,
-        ["inferred geometry", "other makers"],
-    ),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("bearing", "maker", "parts"), DATA.values(), ids=DATA)
+@pytest.mark.parametrize(
+    ("bearing", "maker", "parts"),
+    [
+        ({"preset": "7008C"}, None, "inferred geometry, other makers"),
+        ({"preset": "HC7008-C", "maker": "NTN"}, "NTN", "inferred geometry"),
+        ({"preset": "7008UADG/GNP42"}, "NTN", "inferred geometry"),
+        ({"preset": "6205"}, None, "inferred geometry, clearance class, other makers"),
+        ({"preset": "6205/C3", "conformity_inner": 0.52, "conformity_outer": 0.52}, None, "clearance class, other makers"),
+        ({"preset": "6205", "maker": "NSK", "radial_clearance": 1e-5}, "NSK", "inferred geometry"),
+    ],
+)
 def test_a_result_says_whose_geometry_it_is_and_which_key_would_make_it_sure(bearing, maker, parts):
     geometry = run({"bearing": bearing, "load": {"axial": 400.0}}).geometry
-    assert (geometry["maker"], [part["part"] for part in geometry["data"]]) == (maker, parts)
-    for part in geometry["data"]:
-        assert set(part) == {"part", "axial", "radial", "why", "remedy"}
-        assert all(low <= 0.0 <= high for low, high in (part["axial"], part["radial"]))
+    assert (geometry["maker"], ", ".join(part["part"] for part in geometry["data"])) == (maker, parts)
+    assert all(low <= 0.0 <= high for part in geometry["data"] for low, high in (part["axial"], part["radial"]))
     assert (f"{maker}'s geometry" if maker else "maker not said") in geometry["words"]
     assert ("clearance class not said" in geometry["words"]) is (bearing == {"preset": "6205"})
 
 
 def test_a_maker_that_is_not_known_or_has_no_such_bearing_is_refused():
     for name, maker in (("7008C", "ACME"), ("7208C", "NTN"), ("6205", "NTN")):
-        with pytest.raises(
-            SceneError, match=f"`bearing.maker` = '{maker}': must be one of NSK, NTN with a bearing of the size of {name}"
-        ):
+        with pytest.raises(SceneError, match=f"`bearing.maker` = '{maker}': must be one of NSK, NTN with .* of {name}"):
             scene_from_dict({"bearing": {"preset": name, "maker": maker}})
-    static = {"bearing": {"preset": "7008C", "maker": "NTN"}, "load": {"axial": 400.0}}
-    own = run({**static, "bearing": {"preset": "7008UC"}})
-    assert run(static).stiffness.tolist() == own.stiffness.tolist()
 
 
-@pytest.mark.parametrize("name", ["6002", "6206", "6316"])
+@pytest.mark.parametrize("name", ["6206", "6316"])
 def test_stiffness_within_a_clearance_class_lies_within_what_a_result_says(name):
-    """Under 5 % of C0: C3 where no class is said, the limits of CN; 6002 at its limits leaves the 95 % by 3 %."""
-    load = {"axial": 0.05 * preset_of(name).ratings["static_rating"]}
-
-    def axial(**keys):
-        result = run({"bearing": {"preset": name, **keys}, "load": load})
-        return result.stiffness[0, 0], {part["part"]: part for part in result.geometry["data"]}["clearance class"]["axial"]
-
-    middle, (low, high) = axial()
-    assert low < axial(preset=f"{name}/C3")[0] / middle - 1.0 < high
-    (of_class, narrow), bore = axial(preset=f"{name}/CN"), preset(name)["bore"]
-    assert of_class == middle and narrow[1] < high
-    ends = [
-        run({"bearing": {"preset": name, "radial_clearance": x}, "load": load}).stiffness[0, 0]
-        for x in clearance_range("ball", bore)
-    ]
-    assert narrow[0] - 0.03 < ends[0] / middle - 1.0 < 0.0 < ends[1] / middle - 1.0 < narrow[1] + 0.03
+    """Under 5 % of C0, from the middle of CN: to that of C3, and to the limits of CN."""
+    load, limits = {"axial": 0.05 * preset_of(name).ratings["static_rating"]}, clearance_range("ball", preset(name)["bore"])
+    keys = [{}, {"preset": f"{name}/C3"}, *({"radial_clearance": x} for x in limits), {"preset": f"{name}/CN"}]
+    results = [run({"bearing": {"preset": name, **each}, "load": load}) for each in keys]
+    changes = [result.stiffness[0, 0] / results[0].stiffness[0, 0] - 1.0 for result in results]
+    low, high = results[0].geometry["data"][1]["axial"]
+    narrow = results[4].geometry["data"][1]["axial"]
+    assert low <= narrow[0] < changes[2] < 0.0 < changes[3] < narrow[1] < high and 0.0 < changes[1] < high
+    assert changes[4] == 0.0
 
 
 def test_presets_of_rows_are_spoken_of_too():

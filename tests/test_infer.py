@@ -171,12 +171,6 @@ def deep_groove():
     return sizes
 
 
-def test_printed_ratings_of_deep_groove_bearings_are_met(deep_groove):
-    assert {one.names[0] for one in printed_by("nsk_deep_groove")} - set(deep_groove) == {"623"}
-    worst = sorted(max(abs(check.error) for check in found.checks) for found in deep_groove.values())
-    assert worst[-2] <= 0.01 and worst[-1] <= 0.011
-
-
 def test_the_printed_f0_gives_the_same_z_d2(deep_groove):
     """C0 / f_0 = Z D^2 whatever the pitch diameter is; f_0 is printed to 0.1, C0 to 0.5 %: 1 % of both, but for 6808 and 6809."""
     beyond = {}

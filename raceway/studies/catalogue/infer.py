@@ -286,7 +286,7 @@ def infer_texts(
     outer_diameter : with a unit: "110 mm"
     width : with a unit: "20 mm"
     ratings : contact angle [deg], dynamic and static rating: "15:47 kN:43 kN"
-    pairs : axial and, where printed, radial stiffness of a preloaded pair: "15:145 N:51 N/µm" or "15:127 N:60.1 N/µm:335 N/µm"
+    pairs : axial, or axial and radial, stiffness of a preloaded pair: "15:127 N:60.1 N/µm:335 N/µm"
     maker : rating conventions of NSK, NMB or GMN; None: those that fit better
     conformity : of both grooves, above 0.5 and at most 0.6; None: from --pair, else 0.522
     """
