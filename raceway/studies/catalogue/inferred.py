@@ -8,9 +8,7 @@ from typing import ClassVar
 
 import attrs
 import numpy as np
-from numpy.typing import ArrayLike
 
-from raceway.core.ratings import BallRow
 from raceway.errors import SceneError
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
@@ -26,9 +24,9 @@ from raceway.studies.catalogue.rating_conventions import (
     POISSON,
     YOUNG,
     Candidate,
+    both_stiffnesses,
     by_grooves,
     by_tables,
-    pair_stiffness,
     size_words,
     stiffnesses,
 )
@@ -360,10 +358,6 @@ def _fitted_conformity(size: Printed, best: Candidate) -> tuple[float, float] | 
     return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
 
 
-def _row(size: Printed, best: Candidate, angle: ArrayLike, inner: ArrayLike, outer: ArrayLike) -> BallRow:
-    return BallRow(best.ball_count, best.ball_diameter, size.mean_diameter, angle, inner, outer)
-
-
 def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
     """The angles [deg] at which one groove gives both stiffnesses of a pair, by the nominal ones; mean of the pairs of an angle.
 
@@ -372,8 +366,7 @@ def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
     found: dict[float, list[tuple[float, float]]] = {}
     for pair in size.pairs:
         tried = pair.contact_angle_deg + _TURNS
-        row = _row(size, best, np.radians(tried)[:, None], _TRIED, _TRIED)
-        axial, radial = pair_stiffness(row, pair.preload, YOUNG, POISSON)
+        axial, radial = both_stiffnesses(size, best, pair.preload, tried[:, None], _TRIED, _TRIED)
         grooves = [np.interp(pair.stiffness, k[::-1], _TRIED[::-1], left=np.nan, right=np.nan) for k in axial]
         beside = np.array([np.interp(f, _TRIED, k) for f, k in zip(grooves, radial, strict=True)])
         tried, beside = tried[np.isfinite(beside)], beside[np.isfinite(beside)]
@@ -400,8 +393,8 @@ def _checks(size: Printed, pairs: list[PairStiffness], best: Candidate, inner: f
         for word, rated, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
             checks.append(_Check(rating.contact_angle_deg, f"{word} rating", rated, rated * (1.0 + off)))
     for printed, pair in zip(size.pairs, pairs, strict=True):
-        angle, row = printed.contact_angle_deg, _row(size, best, np.radians(pair.contact_angle_deg), inner, outer)
-        axial, radial = pair_stiffness(row, pair.preload, YOUNG, POISSON)
+        angle = printed.contact_angle_deg
+        axial, radial = both_stiffnesses(size, best, pair.preload, pair.contact_angle_deg, inner, outer)
         checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
         checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
     return tuple(checks)

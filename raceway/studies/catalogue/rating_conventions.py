@@ -134,6 +134,14 @@ def stiffnesses(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLi
     return np.asarray(pair_stiffness(row, [pair.preload for pair in size.pairs], YOUNG, POISSON)[0])
 
 
+def both_stiffnesses(
+    size: Printed, balls: Candidate, preload: float, angle_deg: ArrayLike, inner: ArrayLike, outer: ArrayLike
+) -> np.ndarray:
+    """Axial and radial stiffness (2, ...) [N/m] of a pair under a preload [N], of contact angles [deg] and conformities (...)."""
+    row = BallRow(balls.ball_count, balls.ball_diameter, size.mean_diameter, np.radians(angle_deg), inner, outer)
+    return pair_stiffness(row, preload, YOUNG, POISSON)
+
+
 def _misfits(size: Printed, count: ArrayLike, diameter: float, inner: ArrayLike, outer: ArrayLike) -> np.ndarray:
     return stiffnesses(size, count, diameter, inner, outer) / [pair.stiffness for pair in size.pairs] - 1.0
 
