@@ -150,7 +150,13 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
         all_rows, rows = still.evaluate(q, ball=ball), _some(still, second).evaluate(q, ball=ball[second])
         excess = side * float(rows.force[0]) - preload
         if abs(excess) <= _TOLERANCE * preload:
-            _refuse_travel(problem, shift - origin)
+            slid, travel = abs(shift - origin), problem.bearing.spring_travel
+            if travel is not None and slid > travel:
+                raise ConvergenceError(
+                    f"the rings on the spring would slide {1e6 * slid:.3g} µm from where the preload sets them before mounting, beyond "
+                    f"`bearing.spring_travel` = {travel:g} m: they reach their stop, and the preload is no longer the spring's. Allow "
+                    "more travel, reduce the load, or use preload_kind = 'rigid'."
+                )
             return q
         low, high = (low, shift) if excess > 0.0 else (shift, high)
         tangent = system.reduced(all_rows.stiffness + system.stiffness)
@@ -167,17 +173,6 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
         "loads: raise the preload, or use preload_kind = 'rigid'.",
         {"q": q},
     )
-
-
-def _refuse_travel(problem: Problem, slid: float) -> None:
-    """A spring that would have to slide further than it can."""
-    travel = problem.bearing.spring_travel
-    if travel is not None and abs(slid) > travel:
-        raise ConvergenceError(
-            f"the rings on the spring would slide {1e6 * abs(slid):.3g} µm from where the preload sets them before mounting, beyond "
-            f"`bearing.spring_travel` = {travel:g} m: they reach their stop, and the preload is no longer the spring's. Allow more travel, "
-            "reduce the load, or use preload_kind = 'rigid'."
-        )
 
 
 def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:

@@ -173,12 +173,7 @@ def end(code: int) -> NoReturn:
             signal.signal(number, leave)
     if _first is not None:
         _end_quietly(code)
-    _end_in_order(code)
-
-
-def _end_in_order(code: int) -> NoReturn:
-    """As Python ends, but for taking itself apart: meanwhile it answers no signal, and the process would die of one."""
-    # Waits for threads, as the interpreter does when it ends; there is no public name for that, and typeshed knows no other.
+    # As Python ends, but for taking itself apart: meanwhile it answers no signal, and the process would die of one.  This waits for threads, as the interpreter does when it ends; there is no public name for that, and typeshed knows no other.
     threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):

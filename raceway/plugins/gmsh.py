@@ -101,6 +101,7 @@ class Gmsh:
         three directions' occurs four times.
         """
         from raceway.core.mesh.hex_mesh import ball_names
+        from raceway.core.mesh.quality import Prediction, refuse_memory
 
         cells: dict[str, float] = {}
         prediction: Prediction | None = None
@@ -111,15 +112,9 @@ class Gmsh:
             _refuse_file(path)
             count = self._opened(path, self._cells)
             cells.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], count))
-            prediction = self._refuse_large(cells, path)
-        return prediction
-
-    def _refuse_large(self, cells: dict[str, float], path: str) -> Prediction:
-        from raceway.core.mesh.quality import Prediction, refuse_memory
-
-        # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
-        prediction = Prediction.of(cells, _BESIDE_BYTES + _BYTES_BESIDE * max(cells.values()))
-        refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
+            # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
+            prediction = Prediction.of(cells, _BESIDE_BYTES + _BYTES_BESIDE * max(cells.values()))
+            refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
     def _opened(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -151,7 +152,16 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
             mistakes.append(Mistake(f"--at {key}", requested, f"is not in the sweep, which has {listed(values)}"))
     if mistakes:
         raise SceneError(mistakes)
-    part = _list_at(dataset, fixed_values) if LIST in dataset.dims else dataset.sel(fixed_values)
+    if LIST in dataset.dims:
+        kept = np.ones(dataset.sizes[LIST], dtype=bool)
+        for key, value in fixed_values.items():
+            kept &= np.array([same(coordinate, value) for coordinate in dataset[key].values.tolist()])
+        if not kept.any():
+            words = ", ".join(f"{key} = {shown(value)}" for key, value in fixed_values.items())
+            raise RacewayError(f"no point of the sweep has {words} together")
+        part = dataset.isel({LIST: np.flatnonzero(kept)})
+    else:
+        part = dataset.sel(fixed_values)
     axes, fixed = Tables(), Tables()
     for key in keys:
         values = _values(part[key].values)
@@ -159,7 +169,8 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
             fixed[key] = values[0] if values else fixed_values[key]
         else:
             axes[key] = values
-    unfinished = _unfinished(part)
+    states = Counter(part["status"].values.astype(str).ravel().tolist() if "status" in part else ())
+    unfinished = {state: count for state, count in sorted(states.items()) if state not in FINISHED}
     return Selection(_as_grid(part, axes, fixed), axes, fixed, unfinished)
 
 
@@ -208,22 +219,6 @@ def _values(array: np.ndarray) -> list[Any]:
     """Different values as plain Python objects, numbers in rising order."""
     different = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))
     return sorted(different) if _numeric(different) else different
-
-
-def _list_at(dataset: Dataset, fixed: ReadTables) -> Dataset:
-    keep = np.ones(dataset.sizes[LIST], dtype=bool)
-    for key, value in fixed.items():
-        keep &= np.array([same(coordinate, value) for coordinate in dataset[key].values.tolist()])
-    if not keep.any():
-        raise RacewayError(f"no point of the sweep has {', '.join(f'{k} = {shown(v)}' for k, v in fixed.items())} together")
-    return dataset.isel({LIST: np.flatnonzero(keep)})
-
-
-def _unfinished(dataset: Dataset) -> dict[str, int]:
-    if "status" not in dataset:
-        return {}
-    states, counts = np.unique(dataset["status"].values.astype(str), return_counts=True)
-    return {str(state): int(count) for state, count in zip(states, counts, strict=True) if state not in FINISHED}
 
 
 def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:

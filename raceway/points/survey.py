@@ -66,7 +66,12 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
         files |= set(files_of(scene))
     if mistakes:
         raise SceneError(mistakes)
-    return _Survey(first, frozenset(used), {name: _hash(name) for name in sorted(files)}, tuple(notes))
+    paths = {name: Path(name) for name in sorted(files)}
+    digests = {
+        name: hashlib.sha256(path.read_bytes()).hexdigest()[:24] if path.is_file() else "missing"
+        for name, path in paths.items()
+    }
+    return _Survey(first, frozenset(used), digests, tuple(notes))
 
 
 def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
@@ -95,11 +100,6 @@ def _others(design: Design, continuous: Collection[str]) -> Iterator[tuple[str, 
         for n in ends.get(axis.key, range(len(axis.values))):
             if n:
                 yield "", axis.key, {**first, axis.key: axis.values[n]}
-
-
-def _hash(name: str) -> str:
-    path = Path(name)
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:24] if path.is_file() else "missing"
 
 
 def key_facts(scene: Scene, key: str) -> tuple[str, str]:

@@ -105,14 +105,6 @@ def _scan_loads(design: Design) -> list[float]:
     return [design.loads[0], design.loads[len(design.loads) // 2], design.loads[-1]]
 
 
-def _scan_points(design: Design, load: float, registry: Registry) -> list[Tables]:
-    """Scenes at the lowest and highest speed over the shaft's tilt stiffness."""
-    ends = [
-        design.point(_base("shaft", design.bodies), load, speed, registry) for speed in (design.speeds[0], design.speeds[-1])
-    ]
-    return [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
-
-
 def hardening(rows: list[Tables]) -> np.ndarray:
     """k*(1) over the stiffnesses (n,); nan where a run failed."""
     k = np.array([row["k"] if row["status"] == "completed" else np.nan for row in rows]).reshape(-1, 2)
@@ -326,7 +318,9 @@ def _tasks(design: Design, registry: Registry) -> list[_Task]:
     tasks: list[_Task] = [("static verification", _static_pressures, _STATIC)]
     tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
     for load in _scan_loads(design):
-        tasks.append((f"tilt stiffness at {load:g} N", _curve, _scan_points(design, load, registry)))
+        ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
+        scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
+        tasks.append((f"tilt stiffness at {load:g} N", _curve, scan))
     tasks += [("the rig's speeds", _curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
     for setting, load in design.tasks():
         name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"

@@ -77,7 +77,10 @@ def extreme(
 ) -> None:  # fmt: skip
     """One scene with one law: its equilibrium, and its motion by every transient integrator."""
     if penalty_factor is not None:
-        bench = bench.changed({"contact.stiffness": penalty_factor * _default_penalty(bench)})
+        # Of the penalty [N/m3] that gives the inner races the stiffness of the default.
+        models = [bench.changed({"contact.stiffness": value}).model() for value in (None, 1.0)]
+        default, unit = (float(surrogate(model.system).law_params[0, 0]) for model in models)
+        bench = bench.changed({"contact.stiffness": penalty_factor * (default / unit)})
     if may_be_too_stiff and _too_stiff(rows, bench):
         return
     _at_rest(rows, bench, closed_form)
@@ -299,13 +302,6 @@ def hertz_factor(rows: Rows, bench: Bench) -> None:
     near, words = series_factor(scene.bearing) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
     why = "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)"
     rows.check(words, softness, why, Limit.equal(near, 0.05))
-
-
-def _default_penalty(bench: Bench) -> float:
-    """The penalty [N/m3] that gives the inner races the stiffness of the default."""
-    models = [bench.changed({"contact.stiffness": value}).model() for value in (None, 1.0)]
-    default, unit = (float(surrogate(model.system).law_params[0, 0]) for model in models)
-    return default / unit
 
 
 def refusal(rows: Rows, bench: Bench, words: str, reason: str) -> None:

@@ -205,19 +205,14 @@ def _impact_of_spheres(case: Case, registry: Registry) -> Rows:
     for entry in transient_integrators(registry):
         note, force, time = "", None, None
         try:
-            force, time = _worst_measured(entry.plugin(), impact, _STEPS_PER_CONTACT)
+            # What lies farthest off, over touches at several instants within a step.
+            touches = [_measure(entry.plugin(), impact, _STEPS_PER_CONTACT, phase) for phase in _PHASES]
+            force = max((touch[0] for touch in touches), key=lambda f: abs(f - impact.largest_force))
+            time = max((touch[1] for touch in touches), key=lambda t: abs(t - impact.contact_time))
         except Exception as why:  # a third party's own code: it is reported by name
             note = f"integrator '{entry.name}' of {entry.distribution} fails: {type(why).__name__}: {why}"
         yield case.row(f"peak force, {entry.name} [N]", out["Fmax_N"], force, _TRANSIENT_TOLERANCE, note)
         yield case.row(f"contact time, {entry.name} [s]", out["tc_s"], time, _TRANSIENT_TOLERANCE, note)
-
-
-def _worst_measured(method: Integrator, impact: _Impact, steps: int) -> tuple[float, float]:
-    """Peak force [N] and contact time [s] that lie farthest off, over touches at several instants within a step."""
-    measured = [_measure(method, impact, steps, phase) for phase in _PHASES]
-    force = max((m[0] for m in measured), key=lambda f: abs(f - impact.largest_force))
-    time = max((m[1] for m in measured), key=lambda t: abs(t - impact.contact_time))
-    return force, time
 
 
 def _measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:

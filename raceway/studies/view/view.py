@@ -208,8 +208,13 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
         fields = _stresses(result, images, on_progress)
     files = {name: image.content for name, image in images.items()}
     if page:
+        b, problem = result.model.problem.bearing, result.model.problem
+        subtitle = (
+            f"{f'{b.preset}: ' if b.preset else ''}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, "
+            f"contact angle {b.contact_angle * 57.29577951308232:.4g} deg; {problem.bodies.name} bodies, tilt {problem.supports.tilt}"
+        )
         words = {
-            "title": result.title, "subtitle": _bearing_words(result), "when": when, "lead": _lead(result, state),
+            "title": result.title, "subtitle": subtitle, "when": when, "lead": _lead(result, state),
             "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."], "quantities": quantity_rows(result.to_dict()),
         }  # fmt: skip
         pictures = [(image.content, image.alternative, image.caption) for image in images.values()]
@@ -278,15 +283,6 @@ def _loads(state: State) -> str:
 def _widened(bearing: Bearing, state: State) -> str:
     factor = bearing.widening(state)
     return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are enlarged {factor} times"
-
-
-def _bearing_words(result: Result) -> str:
-    b, problem = result.model.problem.bearing, result.model.problem
-    name = f"{b.preset}: " if b.preset else ""
-    return (
-        f"{name}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, contact angle "
-        f"{b.contact_angle * 57.29577951308232:.4g} deg; {problem.bodies.name} bodies, tilt {problem.supports.tilt}"
-    )
 
 
 def _lead(result: Result, state: State) -> str:
