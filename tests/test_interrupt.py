@@ -182,20 +182,8 @@ def stored(folder):
 
 
 def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_none(tmp_path):
-    words = [
-        "study",
-        "article",
-        "--bodies",
-        "rigid",
-        "--friction",
-        "0",
-        "--processes",
-        "2",
-        "--out",
-        tmp_path,
-        "--no-pictures",
-        "--json",
-    ]
+    options = "--bodies rigid --friction 0 --processes 2 --no-pictures --json --out"
+    words = ["study", "article", *options.split(), tmp_path]
     command = [sys.executable, "-m", "raceway", *map(str, words)]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     end = time.monotonic() + PATIENCE_S

@@ -194,14 +194,8 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
 
 def test_killed_while_it_computes(tmp_path):
     """The store of a process that was killed is whole, and goes on to the same values."""
-    words = [
-        "--grid",
-        "excitation.speed_rpm=10980:15000:32",
-        "--grid",
-        "load.axial=400,900,2000",
-        "--out",
-        str(tmp_path / "s"),
-    ]
+    grids = "--grid excitation.speed_rpm=10980:15000:32 --grid load.axial=400,900,2000"
+    words = [*grids.split(), "--out", str(tmp_path / "s")]
     words = ["-m", "raceway", "sweep", ARTICLE, "--set", "integrator.kind=quasi_static", *words]
     process = subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     file, done = tmp_path / "s" / "points.sqlite", 0
@@ -460,16 +454,8 @@ def test_executors_say_what_is_missing(monkeypatch):
 
 
 def test_the_command(tmp_path):
-    words = [
-        "sweep",
-        ARTICLE,
-        "--set",
-        "integrator.kind=quasi_static",
-        "--grid",
-        "load.axial=500,600",
-        "--out",
-        tmp_path / "s",
-    ]
+    options = "--set integrator.kind=quasi_static --grid load.axial=500,600 --out"
+    words = ["sweep", ARTICLE, *options.split(), tmp_path / "s"]
     shown = invoke(*words, "--csv")
     assert shown.exit_code == 0 and "2 points: 2 done" in shown.output
     lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
