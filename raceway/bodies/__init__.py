@@ -13,6 +13,7 @@ condensed    finite elements reduced to contact compliances: kind and cost;  con
 patch_bearing   condensed bodies with pressures at surface points
 elastic      finite elements in full: kind and cost;  elastic_bearing: the ring
 elastic_contacts   its contacts in a result;  elastic_stress: shear below them
+elastic_change   how much elastic rings and balls change the stiffness of rigid ones, without a mesh
 """
 
 from __future__ import annotations
