@@ -71,6 +71,7 @@ def _heat() -> list[Row]:
         low, high = measured_factors(0.036, speed)
         outside += [] if low < measured / computed < high else [f"51205 at {speed:.3g} rad/s"]
     words = f"friction band: measured torque or heat of every bearing in {_PAGE} inside it: {'not ' * bool(outside)}all, without refit"
-    out.append(below(words, len(outside), 0, COMMAND, str(outside)))
+    assumed = "120 and 167 mm under an assumed load of 22 240 N; under 2224 N four runs at 120 mm lie above"
+    out.append(below(words, len(outside), 0, COMMAND, f"{assumed} {outside}"))
     left = warm.outside_the_others()
     return [*out, below("measured bearings outside the band that the others give them", len(left), 0, COMMAND, str(left))]

@@ -59,7 +59,7 @@ class MeasuredFriction(NamedTuple):
     largest: float
 
 
-#: By size; sources in docs/measurements.md.
+#: By size; sources in docs/measurements.md.  The load of the last two is assumed, 22 240 N; under a tenth of it 120 mm would have 2.4 and more.
 MEASURED = (
     MeasuredFriction("51205 with three balls", 0.036, 2.16e3, 7.56e3, 1.11, 1.79),
     MeasuredFriction("35 mm bore, jets", 0.0465, 1.302e6, 3.348e6, 0.76, 1.17),
