@@ -16,6 +16,7 @@ from .errors import (
     SceneError as SceneError,
     StabilityError as StabilityError,
 )
+from .framework.doors import door as door
 from .framework.hookspecs import hookimpl as hookimpl
 from .framework.options import (
     above as above,

@@ -7,15 +7,19 @@ import itertools
 import pickle
 import runpy
 import sqlite3
+from collections.abc import Iterable
 from contextlib import closing
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import pytest
 
 import raceway as rw
 import raceway.core
-from raceway.framework.doors import door
+from raceway import at_least, positive
+from raceway.framework.doors import DURATION, PATH, PATHS
+from raceway.out.progress import ShowProgress
 from raceway.points.dataset import open_store
 from raceway.storage.files import write_whole
 
@@ -23,16 +27,16 @@ SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 SOFT = {"preset": "B7206C", "balls": {"young": 1e6}}
 
 
-@door
+@rw.door
 def opened(
-    out=None,
-    points: int = 1,
-    seed: int = 0,
-    patience: float = 1.0,
-    aim: float = 1.0,
-    plugins=(),
+    out: Annotated[str | Path | None, PATH] = None,
+    points: Annotated[int, at_least(1)] = 1,
+    seed: Annotated[int, at_least(0)] = 0,
+    patience: Annotated[float, DURATION] = 1.0,
+    aim: Annotated[float, positive()] = 1.0,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     name: str = "",
-    progress=None,
+    progress: ShowProgress = None,
 ):
     return out, points, seed, patience, aim, plugins, name, progress
 
@@ -40,9 +44,9 @@ def opened(
 @pytest.mark.parametrize(
     ("argument", "value", "rule"),
     [
-        ("out", 3, "path"), ("out", b"x", "path"), ("out", "x\0y", "path"), ("points", 0, "from 1"), ("points", 2.0, "whole"),
-        ("points", True, "whole"), ("points", 10**12, "1e+09"), ("seed", -1, "from 0"), ("patience", float("nan"), "from 0"),
-        ("patience", "3", "from 0"), ("patience", 10**400, "from 0"), ("aim", 0, "above 0"), ("aim", float("inf"), "above 0"), ("plugins", [None], "path"), ("name", 3, "text"), ("progress", 3, "function"),
+        ("out", 3, "path"), ("out", b"x", "path"), ("out", "x\0y", "path"), ("points", 0, "at least 1"), ("points", 2.0, "whole"),
+        ("points", True, "whole"), ("points", 10**12, "1e9"), ("seed", -1, "at least 0"), ("patience", float("nan"), "from 0"),
+        ("patience", "3", "from 0"), ("patience", 10**400, "from 0"), ("aim", 0, "greater than 0"), ("aim", float("inf"), "finite"), ("plugins", [None], "path"), ("name", 3, "text"), ("progress", 3, "function"),
         ("progress", len, "function"), ("progress", int, "function"),
     ],
 )  # fmt: skip
@@ -238,3 +242,51 @@ def test_names_that_no_system_takes(long, tmp_path, monkeypatch):
     ):
         with pytest.raises(rw.RacewayError, match="too long|neither a file"):
             call()
+
+
+class Bolts(rw.Answer):
+    """A third party's answer, with an argument that the package's own methods have, too, and a method that is a door."""
+
+    stem = "bolts"
+
+    def line(self, row, seed, out="here"):
+        return row, seed, out
+
+    @rw.door
+    def torque(self, bolts: Annotated[int, at_least(2)], grip: Annotated[float | None, positive()] = None) -> float:
+        return bolts * (grip or 1.0)
+
+
+def test_methods_of_others_stay_as_they_are():
+    assert Bolts().line(3, -1, 5) == (3, -1, 5)
+    assert list(inspect.signature(Bolts().line).parameters) == ["row", "seed", "out"]
+
+
+def test_others_read_at_their_own_parameters_and_show_plain_types():
+    assert Bolts().torque(np.int64(3), None) == 3.0 and Bolts().torque(2, grip=0.5) == 1.0
+    for arguments, words in (
+        ((1,), "`bolts` = 1: must be a whole number below 1e9, at least 2"),
+        ((2, 0), "`grip`"),
+    ):
+        with pytest.raises(rw.SceneError, match=words):
+            Bolts().torque(*arguments)
+    assert str(inspect.signature(Bolts.torque)) == "(self, bolts: 'int', grip: 'float | None' = None) -> 'float'"
+    from typing import get_type_hints
+
+    assert get_type_hints(Bolts.torque) == {"bolts": int, "grip": float | None, "return": float}
+
+
+def test_annotations_that_are_no_text_are_read_alike():
+    def far(metres, feet=1.0):
+        return metres + feet
+
+    far.__annotations__ = {"metres": Annotated[float, positive(), "of another program"], "feet": float | None}
+    assert rw.door(far)(2, 1.0) == 3.0
+    with pytest.raises(rw.SceneError, match="`metres` = -1: must be a finite number, greater than 0"):
+        rw.door(far)(-1)
+
+
+def test_no_signature_of_the_package_shows_a_marker():
+    for name in rw.__all__:
+        shown = inspect.signature(getattr(rw, name)) if inspect.isroutine(getattr(rw, name)) else ""
+        assert "Annotated" not in str(shown), name

@@ -138,6 +138,17 @@ def test_the_jacobian_is_the_compliance() -> None:
     np.testing.assert_allclose(slopes["load.radial[0]"], compliance[:, 1], rtol=0, atol=1e-8 * abs(compliance[:, 1]).max())
 
 
+@pytest.mark.filterwarnings("error")
+def test_points_without_a_number_have_no_derivative_and_change_no_other() -> None:
+    f = rw.function(STATIC, ["load.axial"], ["x"])
+    slopes, alone = (
+        f.jacobian(loads)["x"]["load.axial"] for loads in ([np.inf, 400.0, np.nan, -np.inf, 900.0], [400.0, 900.0])
+    )
+    assert np.isnan(slopes[[0, 2, 3]]).all()
+    np.testing.assert_allclose(slopes[[1, 4]], alone, rtol=1e-10)  # rounding of a sum over a step of 1e-3
+    assert np.isnan(f.jacobian(np.inf)["x"]["load.axial"])
+
+
 def test_derivatives_at_the_end_of_a_range_are_one_sided() -> None:
     """An interference is not negative; the tangent of the secants is met to their curvature, 1e-4 of it over 10 nm."""
     f = rw.function(STATIC, ["load.axial", "mounting.shaft_interference", "load.radial[1]"], ["kyy", "x"])
@@ -271,11 +282,24 @@ def test_condensed_bodies_that_points_do_not_share(tables: Tables, key: str, wor
         ([], ["kyy"], "are empty"),
         (["load.axial"], ["kyyy"], "did you mean 'kyy'"),
         (["load.axial"], ["K"], "is of a motion"),
+        (None, ["kyy"], "`inputs`: must be text"),
+        (5, ["kyy"], "`inputs` = 5: must be text"),
+        (["load.axial"], [["kyy"]], "`outputs` = .*must be text"),
     ],
 )
 def test_functions_that_are_refused(inputs: list[str], outputs: list[str], words: str) -> None:
     with pytest.raises(rw.SceneError, match=words):
         rw.function(STATIC, inputs, outputs)
+
+
+class Closed:
+    """What has no numbers, and raises where it is asked for them."""
+
+    def __array__(self, *_: object, **__: object) -> np.ndarray:
+        raise OSError("closed")
+
+    def __getattr__(self, name: str) -> object:
+        raise OSError("closed")
 
 
 def test_calls_that_are_refused() -> None:
@@ -285,10 +309,11 @@ def test_calls_that_are_refused() -> None:
         (([], []), "are empty"),
         (([400.0],), "is missing"),
         (([400.0], [0.0], [1.0]), "more columns"),
-        ((["many"], [0.0]), "must be numbers"),
+        *(((wrong, [0.0]), "must be numbers") for wrong in (["many"], 10**400, [1j], Closed())),
     ):
-        with pytest.raises(rw.SceneError, match=words):
-            f(*columns)
+        for call in (f, f.arrays, f.jacobian):
+            with pytest.raises(rw.SceneError, match=words):
+                call(*columns)
     with pytest.raises(rw.SceneError, match="is no input"):
         f([400.0], [0.0], **{"load.axail": 1.0})
     with pytest.raises(rw.RacewayError, match=r"need \S+ bytes"):

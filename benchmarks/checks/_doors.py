@@ -1,10 +1,12 @@
-"""Random calls of all functions of ``import raceway`` that read their arguments by name, on random scenes, some arguments wrong."""
+"""Random calls of all public functions and of the methods of their answers, from their signatures, some arguments wrong."""
 
 from __future__ import annotations
 
 import inspect
+import itertools
 import json
 import traceback
+import warnings
 from collections.abc import Callable
 from contextlib import chdir
 from functools import cache
@@ -15,20 +17,19 @@ import numpy as np
 
 import raceway as rw
 from benchmarks.checks._scenes import GARBAGE, Chance, Tables, example, scene, scene_keys
-from raceway.errors import RacewayError
+from raceway.errors import RacewayError, _short
 
+
+def _raises(self: object, *_: object, **__: object) -> Any:
+    raise OSError("closed")
+
+
+#: Nothing that one asks of the last ones has an answer.
 _WRONG: tuple[Any, ...] = (
-    *GARBAGE,
-    b"x",
-    object(),
-    np.array([1.0, np.nan]),
-    {"a", "b"},
-    print,
-    iter(()),
-    1j,
-    "load.axial",
-    range(3),
-)
+    *GARBAGE, b"x", object(), np.array([1.0, np.nan]), {"a", "b"}, print, iter(()), 1j, "load.axial", range(3), 10**400, 5, "x", [[]],
+    {0: (1, 2, 3, 4)}, [["kyy"]], np.array(["x"]), np.array([None]), np.empty(0),
+    *(type("Raises", (), {f"__{word}__": _raises})() for word in ["array", "float", "index", "str", "repr", "fspath", "iter", "len", "bool", "getattr"]),
+)  # fmt: skip
 _SPEED, _AXIAL = "excitation.speed_rpm", "load.axial"
 _TABLE = {"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [39.38, 67.43, 98.77]}
 _ANGLE = np.arange(0.0, 0.1, 5e-5) * 400.0 * np.pi
@@ -45,15 +46,19 @@ GOOD: dict[str, Tables] = {
     "catalogue": {"pattern": "70*C"},
     "check": {},
     "compare": {"vary": {_AXIAL: [400.0, 1000.0]}},
+    "build_model": {"scene": None},
     "evolve": {},
     "export_coefficients": {"data": None, "kind": ("csv", "json", "nastran", "ansys")},
+    "export_fmu": {"ranges": {_AXIAL: (400.0, 500.0)}, "outputs": ["kyy"], "tolerance": 1e-3},
     "export_ross": {"data": None},
     "fit": {"data": _TABLE, "free": "bearing.contact_angle_deg"},
     "follow": {"over": f"{_SPEED}=9000:9500", "points": 3},
+    "function": {"inputs": [_AXIAL], "outputs": ["kyy"]},
     "identify": {"signals": _SIGNALS},
     "infer": {"bore": "70 mm", "outer_diameter": "110 mm", "ratings": _RATINGS, "width": "20 mm"},
     "law": {"name": "hertz"},
     "load_scene": {"path": Path(__file__).parents[2] / "examples" / "minimal.toml", "changes": [f"{_AXIAL}=400"]},
+    "make_plan": {"scene": None},
     "plan": {},
     "precision": {"vary": {"integrator.steps_per_turn": [24, 48]}, "repeats": 1},
     "run": {},
@@ -66,11 +71,39 @@ GOOD: dict[str, Tables] = {
 _SCENES = ("steady_orbit", "set_tbt", "test_rig", "test_rig")
 
 
+#: What is no front: rules and parts of plug-ins, and the app, which serves until it is stopped.
+_OTHERS = {"app", "above", "at_least", "between", "door", "finite", "inside", "jit", "length", "one_of", "option", "optional", "positive",
+           "word_or", "worded"}  # fmt: skip
+#: Arguments of methods, by their names, where they must be given; and methods of ``Function`` for columns that it has made itself.
+_GIVEN: Tables = {
+    "folder": "here",
+    "files": [],
+    "path": "here.toml",
+    "pictures": False,
+    "physics": "rigid",
+    "name": "load.axial",
+}
+_INNER = ("slopes", "columns", "looped", "with_reasons", "refuse_time", "texts", "tables")
+
+
 @cache
 def fronts() -> dict[str, Callable[..., Any]]:
-    """Functions of the package that take a scene, or data; those of plug-ins, of rules and of parts are others."""
-    found = {name: getattr(rw, name) for name in rw.__all__}
-    return {name: f for name, f in found.items() if inspect.isfunction(f) and (".front" in f.__module__ or name in GOOD)}
+    """Functions of the package that take a scene, or data."""
+    return {name: f for name in rw.__all__ if inspect.isfunction(f := getattr(rw, name)) and name not in _OTHERS}
+
+
+@cache
+def methods() -> dict[str, Callable[..., Any]]:
+    """Public methods with arguments of one answer of each front."""
+    found = {}
+    for name in fronts().keys() - {"view", "load_scene", "scene_from_dict", "catalogue", "build_model"}:
+        given = {place: one[0] if isinstance(one, tuple) else one for place, one in GOOD[name].items()}
+        answer = fronts()[name](**_completed(name, given, example("test_rig")))
+        for word, method in inspect.getmembers(answer, callable):
+            own = (not word.startswith("_") or word in ("__call__", "__getitem__")) and word not in _INNER
+            if own and type(answer).__module__.startswith("raceway") and inspect.signature(method).parameters:
+                found[f"{type(answer).__name__}.{word}"] = method
+    return dict(sorted(found.items()))
 
 
 @cache
@@ -78,29 +111,38 @@ def _swept() -> Any:
     return rw.sweep(example("test_rig"), {_SPEED: "9000:12000:5"})
 
 
+def _completed(name: str, given: Tables, tables: Tables) -> Tables:
+    """Arguments with what a front takes as its scene, or its data."""
+    given = {place: _swept() if place == "data" and one is None else one for place, one in given.items()}
+    scene = rw.scene_from_dict(tables) if "scene" in given else tables
+    return given | dict.fromkeys({"scene", "tables"} & set(inspect.signature(fronts()[name]).parameters), scene)
+
+
 def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
-    """Name of a function, how its call ended, and what is wrong with that.
+    """Name of a function or method, how its call ended, and what is wrong with that.
 
     Parameters
     ----------
     folder : of the files that a scene may name; what is written falls below it
     """
-    chance, names = Chance(seed), sorted(fronts())
+    chance, names = Chance(seed), [*sorted(fronts()), *methods()]
     name = names[seed % len(names)]
-    function, parameters = fronts()[name], inspect.signature(fronts()[name]).parameters
-    given = {place: chance.one(*one) if isinstance(one, tuple) else one for place, one in GOOD[name].items()}
-    if given.get("data", 0) is None:
-        given["data"] = _swept()
-    for place in {"scene", "tables"} & set(parameters):
-        given[place] = _scene(chance, folder)
-    extra = [p for p in parameters.values() if p.kind is not p.VAR_POSITIONAL]
-    for _ in range(chance.one(0, 0, 1, 2)):
-        given[chance.one(*extra).name] = chance.one(*_WRONG)
+    function, given = (fronts() | methods())[name], {}
+    parameters = list(inspect.signature(function).parameters.values())
     below = folder / "calls" / "here"
     below.mkdir(parents=True, exist_ok=True)
     try:
-        with chdir(below):
-            found = function(**given)
+        with chdir(below), warnings.catch_warnings(action="error", category=RuntimeWarning):
+            if name in fronts():
+                drawn = {place: chance.one(*one) if isinstance(one, tuple) else one for place, one in GOOD[name].items()}
+                given = _completed(name, drawn, _scene(chance, folder))
+            else:
+                given = {p.name: _GIVEN.get(p.name, _AXIAL) for p in parameters if p.default is p.empty}
+            for _ in range(chance.one(0, 1, 1, 2)):
+                given[chance.one(*parameters).name] = chance.one(*_WRONG)
+            places = [p.name for p in parameters if p.kind is p.VAR_POSITIONAL and p.name in given]
+            columns = [given.pop(place) for place in places]
+            found = function(*_before(parameters, given, columns), **given)
             if not hasattr(found, "dims"):  # no labelled arrays, which have places for what there is not
                 told = found.to_dict() if hasattr(found, "to_dict") else None
                 json.dumps(told, allow_nan=False)
@@ -111,8 +153,17 @@ def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
         return name, "refused", [] if good else [["traceback", name, f"{error!r}, exit code {error.exit_code}"]]
     except Exception as error:
         word = "nan" if "JSON compliant" in str(error) else "traceback"
-        return name, "broken", [[word, name, f"{name}({given!r:.600}): {traceback.format_exc()[-900:]}"]]
+        told = ", ".join(f"{place}={_short(value)}" for place, value in given.items())
+        return name, "broken", [[word, name, f"{name}({told}): {traceback.format_exc()[-900:]}"]]
     return name, "answered", []
+
+
+def _before(parameters: list[inspect.Parameter], given: Tables, columns: list[Any]) -> list[Any]:
+    """Positional arguments: those before columns, which are taken out of ``given``, and these."""
+    if not columns:
+        return []
+    first = itertools.takewhile(lambda p: p.kind is not p.VAR_POSITIONAL, parameters)
+    return [given.pop(p.name) if p.name in given else p.default for p in first] + columns
 
 
 def _scene(chance: Chance, folder: Path) -> Tables:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -27,10 +27,10 @@ from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
 from raceway.errors import PluginError, SceneError
 from raceway.framework.contracts import Traits
-from raceway.framework.doors import door
+from raceway.framework.doors import door, reader
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import Problem, resolve
-from raceway.scene.scene import Scene
+from raceway.scene.scene import SCENE, Scene
 from raceway.storage.tables import Tables
 
 #: A number and how it was found, or None and why there is none.
@@ -228,7 +228,10 @@ class Model:
 
 
 @door
-def build_model(scene: Scene, plan: ScenePlan | None = None) -> Model:
+def build_model(
+    scene: Annotated[Scene, SCENE],
+    plan: Annotated[ScenePlan | None, reader("a plan, as raceway.make_plan makes it", ScenePlan)] = None,
+) -> Model:
     """Arrays and kernels of a scene, by its kind of bodies, and by ``make_plan(scene)`` where no plan is given.
 
     Raises

@@ -2,7 +2,7 @@
 
 contracts   duties of each kind, numbered
 hookspecs   hooks that a plug-in may implement
-doors       arguments of public functions, read by their names
+doors       arguments of public functions, read by their annotations
 options     attrs fields with unit, help and rule
 registry    plug-ins by kind and name
 rules       keys that cannot stand or do nothing, when and why, as data

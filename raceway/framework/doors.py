@@ -1,7 +1,8 @@
-"""Doors: public functions and methods read their arguments here; one name means one thing at all of them."""
+"""Doors: public functions and methods read their arguments here, each by the annotation that stands at it."""
 
 from __future__ import annotations
 
+import ast
 import inspect
 import math
 import operator
@@ -9,23 +10,48 @@ import os
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar, get_origin
 
 from raceway.errors import SceneError
 
 F = TypeVar("F", bound=Callable[..., Any])
-#: What an argument must be, and what converts it: TypeError or ValueError where it cannot.
-Reader = tuple[str, Callable[[Any], object]]
-#: No argument counts more: beyond, a number stands where another was meant.
-_MOST = 10**9
+
+
+class Reader(NamedTuple):
+    """What an argument must be, in words, and what converts it, with any exception where it cannot."""
+
+    words: str
+    read: Callable[[Any], object]
 
 
 def door(function: F) -> F:
-    """A function whose arguments are read by their names, defaults as they are; ``SceneError`` with name, value and rule."""
-    signature = inspect.signature(function)
-    if hasattr(function, "__wrapped__") or not signature.parameters.keys() - {"self"}:
-        return function
-    readers = [(p.name, p.default, read) for p in signature.parameters.values() if (read := _reader_of(p)) is not None]
+    """A function whose arguments are read by their annotations, defaults as they are; ``SceneError`` with name, value and rule.
+
+    ``str``, ``bool``, ``int`` and ``float`` are read by these types; ``Annotated[float, positive()]`` adds a rule of options.
+    Who asks for the signature gets the plain types.
+
+    Examples
+    --------
+    >>> from typing import Annotated
+    >>> from raceway import door, positive
+    >>> @door
+    ... def stiffness(force: float, travel: Annotated[float, positive()] = 1e-6) -> float:
+    ...     return force / travel
+    >>> stiffness(3, 0)
+    Traceback (most recent call last):
+        ...
+    raceway.errors.SceneError: `travel` = 0: must be a finite number, greater than 0
+    """
+    signature, readers, plain = inspect.signature(function), [], []
+    for parameter in signature.parameters.values():
+        kind, markers = _parts(parameter.annotation, function.__globals__)
+        plain.append(parameter.replace(annotation=kind))
+        text = kind if isinstance(kind, str) else inspect.formatannotation(kind)
+        steps = [each if isinstance(each, Reader) else _ruled(each) for each in markers if hasattr(each, "words")]
+        if not any(each in steps for each in markers):  # whose reader takes the place of the type's
+            steps = [*filter(None, [_TYPES.get(text.removesuffix(" | None"))]), *steps]
+        if steps and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            readers.append((parameter.name, parameter.default, "None" in text, steps))
 
     @wraps(function)
     def opened(*args: object, **keywords: object) -> Any:
@@ -33,23 +59,36 @@ def door(function: F) -> F:
             bound = signature.bind(*args, **keywords)
         except TypeError:
             return function(*args, **keywords)  # Python's own words, which name the function
-        for name, default, (words, read) in readers:
-            if (value := bound.arguments.get(name, default)) is not default:
-                try:
-                    bound.arguments[name] = read(value)
-                except Exception:  # whatever a foreign object makes of being asked
-                    raise SceneError.at(name, value, f"must be {words}") from None
+        for name, default, optional, steps in readers:
+            given = value = bound.arguments.get(name, default)
+            if given is default or (given is None and optional):
+                continue
+            try:
+                for _, read in steps:
+                    value = read(value)
+            except Exception:  # whatever a foreign object makes of being asked
+                raise SceneError.at(name, given, f"must be {', '.join(words for words, _ in steps)}") from None
+            bound.arguments[name] = value
         return function(*bound.args, **bound.kwargs)
 
+    opened.__signature__ = signature.replace(parameters=plain)  # type: ignore[attr-defined]
     return opened  # type: ignore[return-value]
 
 
-def _reader_of(parameter: inspect.Parameter) -> Reader | None:
-    """By the name; of text and of true or false by the type, as of numbers whose name says no more."""
-    kind = str(parameter.annotation).removesuffix(" | None")
-    if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-        return None
-    return _READERS.get(kind if kind in ("str", "bool") else parameter.name) or _READERS.get(kind)
+def _parts(annotation: Any, names: dict[str, Any]) -> tuple[Any, tuple[Any, ...]]:
+    """Type and markers of ``Annotated`` or of an alias for it; the type stays text: its names may be those of type checkers alone."""
+    if isinstance(annotation, str) and annotation.startswith("Annotated["):
+        kind, *markers = ast.parse(annotation, mode="eval").body.slice.elts  # type: ignore[attr-defined]
+        return ast.unparse(kind), tuple(eval(ast.unparse(marker), names) for marker in markers)
+    stands_for: Any = names.get(annotation) if isinstance(annotation, str) else annotation
+    if get_origin(stands_for) is Annotated:
+        return annotation if isinstance(annotation, str) else stands_for.__origin__, stands_for.__metadata__
+    return annotation, ()
+
+
+def _ruled(rule: Any) -> Reader:
+    """Of a rule, which raises or gives None."""
+    return reader(rule.words, lambda value: rule(None, None, value) is None)
 
 
 def member(argument: str, value: object, choices: Collection[str]) -> Any:
@@ -59,22 +98,19 @@ def member(argument: str, value: object, choices: Collection[str]) -> Any:
     return value
 
 
-def _reader(words: str, test: Callable[[Any], object], convert: Callable[[Any], object] = lambda value: value) -> Reader:
+def reader(words: str, test: type | Callable[[Any], object], convert: Callable[[Any], object] = lambda v: v) -> Reader:
+    """Of what is of a type, or passes a test."""
+
     def read(value: object) -> object:
-        if not test(value):
+        if not (isinstance(value, test) if isinstance(test, type) else test(value)):
             raise ValueError(words)
         return convert(value)
 
-    return words, read
-
-
-def _count(low: int) -> Reader:
-    words = f"a whole number from {low} to {_MOST:.0e}"
-    return _reader(words, lambda v: not isinstance(v, bool) and low <= operator.index(v) <= _MOST, operator.index)
+    return Reader(words, read)
 
 
 def _number(words: str, test: Callable[[float], bool]) -> Reader:
-    return _reader(words, lambda v: not isinstance(v, bool | str | bytes) and not math.isnan(v) and test(v), float)
+    return reader(words, lambda v: not isinstance(v, bool | str | bytes) and not math.isnan(v) and test(v), float)
 
 
 def _several(of: Reader) -> Reader:
@@ -82,67 +118,29 @@ def _several(of: Reader) -> Reader:
 
     def read(value: Any) -> list[object]:
         alone = isinstance(value, str | bytes | Mapping | os.PathLike) or not isinstance(value, Iterable)
-        return [of[1](element) for element in ([value] if alone else value)]
+        return [of.read(element) for element in ([value] if alone else value)]
 
-    return f"{of[0]}, or a list of these", read
-
-
-def _is(*kinds: type) -> Callable[[Any], bool]:
-    return lambda value: isinstance(value, kinds)
-
-
-def _tells(value: Any) -> bool:
-    return isinstance(value, bool) or bool(inspect.signature(value).bind("what", 0, 1))
+    return Reader(f"{of.words}, or a list of these", read)
 
 
 def _table(value: object) -> object:
-    texts = _TEXTS[1](list(value) if isinstance(value, Mapping) else value)
+    texts = TEXTS.read(list(value) if isinstance(value, Mapping) else value)
     return value if isinstance(value, Mapping) else texts
 
 
-_PATH = _reader("the path of a file or folder, text or pathlib.Path", lambda v: "\0" not in os.fspath(v), Path)
-_TEXT = _reader("text", _is(str))
-_TEXTS = _several(_TEXT)
-_FINITE = _number("a finite number", math.isfinite)
-
-
-_READERS: dict[str, Reader] = {
-    name: reader
-    for names, reader in {
-        "out store folder path": _PATH,
-        "kept": _PATH,
-        "plugins": _several(_PATH),
-        "str": _TEXT,
-        "bool": _reader("True or False", lambda v: type(v).__name__ in ("bool", "bool_"), bool),
-        "int": _count(0),
-        "float": _FINITE,
-        "keys free force changes names": _TEXTS,
-        "points repeats frames workers number": _count(1),
-        "aim amplitude frequency conformity": _number("a finite number above 0", lambda v: 0.0 < v < math.inf),
-        "patience limit_s": _number("a number from 0, or inf", lambda v: v >= 0.0),
-        "vary at reference tolerances": ("a mapping of keys to values, or texts KEY=VALUE", _table),
-        "axes": ("a mapping of keys to values, or a list of points", lambda v: dict(v) if hasattr(v, "keys") else list(v)),
-        "columns": (
-            "a mapping of column headers to names, text both",
-            lambda v: {_TEXT[1](one): _TEXT[1](name) for one, name in v.items()},
-        ),
-        "tables": _reader("a mapping, such as a dict", _is(Mapping)),
-        "ratings": (
-            "a mapping of angles to (C, C0)",
-            lambda v: {float(angle): (c, c0, *f) for angle, (c, c0, *f) in v.items()},
-        ),
-        "pairs": (
-            "(angle, preload, axial stiffness) each, with or without the radial stiffness behind",
-            lambda v: [(float(angle), *{2: k, 3: k}[len(k)]) for angle, *k in v],
-        ),
-        "Scene": _reader("a Scene, as raceway.load_scene reads it", lambda v: type(v).__name__ == "Scene"),
-        "row": _reader("a finished row of `judged`", lambda v: v["physics"] and float(v["error"]) >= 0.0),
-        "progress": _reader("True, or a function of (what, done, total)", _tells),
-        "run_out": ("two finite numbers", lambda v: (lambda a, b: (_FINITE[1](a), _FINITE[1](b)))(*v)),
-        "ax": _reader("axes of matplotlib", lambda v: hasattr(v, "plot") and hasattr(v, "figure")),
-        "executor": _reader("text or an executor", lambda v: isinstance(v, str) or hasattr(v, "compute")),
-        "plan": _reader("a plan, as raceway.make_plan makes it", lambda v: hasattr(v, "keeps")),
-        "registry": _reader("a registry of plug-ins", lambda v: hasattr(v, "find") and hasattr(v, "all")),
-    }.items()
-    for name in names.split()
+TEXT = reader("text", str)
+TEXTS = _several(TEXT)
+FINITE = _number("a finite number", math.isfinite)
+DURATION = _number("a number from 0, or inf", lambda v: v >= 0.0)
+PATH = reader("the path of a file or folder, text or pathlib.Path", lambda v: "\0" not in os.fspath(v), Path)
+PATHS = _several(PATH)
+KEY_VALUES = Reader("a mapping of keys to values, or texts KEY=VALUE", _table)
+_TYPES = {
+    "str": TEXT,
+    "bool": reader("True or False", lambda v: type(v).__name__ in ("bool", "bool_"), bool),
+    # With more digits a number stands where another was meant.
+    "int": reader(
+        "a whole number below 1e9", lambda v: not isinstance(v, bool) and abs(operator.index(v)) < 1e9, operator.index
+    ),
+    "float": FINITE,
 }

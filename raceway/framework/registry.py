@@ -24,6 +24,7 @@ import pluggy
 from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
 from raceway.framework.contracts import KINDS, broken_duties
+from raceway.framework.doors import reader
 from raceway.framework.options import nearest
 from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 
@@ -311,6 +312,9 @@ class Registry:
         same = self.entries.setdefault((entry.kind, entry.name), [])
         if all(e.plugin is not entry.plugin for e in same):
             same.append(entry)
+
+
+REGISTRY = reader("a registry of plug-ins", Registry)
 
 
 def _shown(thing: object) -> str:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
-from inspect import isfunction
 from math import floor, log10
 from textwrap import shorten
 
-from raceway.framework.doors import door
 from raceway.storage.tables import ReadTables
 
 #: Name, value with its unit, and what is to be known of it.
@@ -22,14 +20,9 @@ _WHOLE, _BROKEN = "white-space:nowrap;font-variant-numeric:tabular-nums", "overf
 
 
 class Shown:
-    """What has a short text and a table of its own, from a title and facts; its public methods are doors."""
+    """What has a short text and a table of its own, from a title and facts."""
 
     __slots__ = ()
-
-    def __init_subclass__(cls) -> None:
-        for name, method in list(vars(cls).items()):
-            if isfunction(method) and not name.startswith("_"):
-                setattr(cls, name, door(method))
 
     def _shown(self) -> tuple[str, Sequence[Fact]]:
         """Title, whose first line is bold, and facts in the order of their weight: the one duty of who shows itself."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, Annotated, ClassVar, TypeAlias
 
 from raceway.errors import RacewayError
+from raceway.framework.doors import PATH, TEXTS, door
 from raceway.framework.shown import Fact, Shown
 from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import Tables
@@ -76,7 +77,8 @@ class Answer(Shown):
         """What makes a finished answer worthless, raised after it has been shown and written."""
         return None
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    @door
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = False) -> list[Path]:
         """Write JSON and texts into a folder, and the picture where ``pictures`` asks for it.
 
         Returns
@@ -95,7 +97,8 @@ class Answer(Shown):
         ]
         return paths + (self.picture(folder) if pictures else [])
 
-    def picture(self, folder: str | Path) -> list[Path]:
+    @door
+    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
         """Draw into a folder.
 
         Returns
@@ -112,7 +115,8 @@ class Answer(Shown):
         figure = self.draw()
         return [] if figure is None else [save_figure(figure, Path(folder) / f"{self.stem}.png", 100)]
 
-    def screen(self, files: Iterable[str] = ()) -> RenderableType:
+    @door
+    def screen(self, files: Annotated[Iterable[str], TEXTS] = ()) -> RenderableType:
         """The report on a terminal, the written files below it."""
         from rich.console import Group
 

@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from raceway.errors import RacewayError, extra
+from raceway.errors import RacewayError, SceneError, extra
 from raceway.out.wrapping import lines_of
 from raceway.storage.files import write_whole
 
@@ -54,9 +54,11 @@ def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Ax
     Raises
     ------
     RacewayError
-        Where matplotlib is not installed.
+        Where matplotlib is not installed, or of what are no axes.
     """
     if axes is not None:
+        if not (hasattr(axes, "plot") and hasattr(axes, "figure")):
+            raise SceneError.at("ax", axes, "must be axes of matplotlib")
         return axes
     try:
         from matplotlib import pyplot

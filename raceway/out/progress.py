@@ -12,7 +12,10 @@ import threading
 import time
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, ClassVar, Self
+from inspect import signature
+from typing import TYPE_CHECKING, Annotated, ClassVar, Self
+
+from raceway.framework.doors import reader
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,7 +23,10 @@ if TYPE_CHECKING:
 
 _PATIENCE_S = 1.0
 #: What a function of the package takes as ``progress``: True for a bar on a terminal, or what is called with what, done, total.
-ShowProgress = bool | Callable[[str, int, int], None] | None
+ShowProgress = Annotated[
+    bool | Callable[[str, int, int], None] | None,
+    reader("True, or a function of (what, done, total)", lambda v: isinstance(v, bool) or signature(v).bind("what", 0, 1)),
+]
 _LOGGER = logging.getLogger("raceway")
 #: What follows in a description is news of the same thing.
 _NEWS = re.compile(r"[,:;(]")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 
-from raceway.framework.doors import door
+from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
 from raceway.out.progress import telling
 from raceway.scene.inputs import SceneSource, as_scene
@@ -27,10 +27,10 @@ def run(
     scene: SceneSource,
     *,
     progress: ShowProgress = None,
-    reports: Iterable[str] = (),
-    patience: float = PATIENCE,
-    plugins: Iterable[str | Path] = (),
-    out: str | Path | None = None,
+    reports: Annotated[Iterable[str], TEXTS] = (),
+    patience: Annotated[float, DURATION] = PATIENCE,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
+    out: Annotated[str | Path | None, PATH] = None,
 ) -> Result:
     """Compute one scene: equilibrium, motion, dynamic stiffness with its error and cost.
 

@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import cached_property
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, cast, overload
+from typing import TYPE_CHECKING, Annotated, ClassVar, cast, overload
 
 import attrs
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
+from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
 from raceway.framework.estimate import Note, short
 from raceway.framework.options import nearest
@@ -168,6 +169,7 @@ class Result(Answer):
         across = self._across()
         return None if across is None else math.degrees(across)
 
+    @door
     def gradient(self, path: str) -> Gradient:
         """Derivatives by the number at one key: of displacement, stiffness and ball loads, and of Z, K, C where there is an excitation.
 
@@ -280,6 +282,7 @@ class Result(Answer):
     @overload
     def plot(self, what: None = None, ax: None = None) -> tuple[Axes, ...]: ...
 
+    @door
     def plot(self, what: str | None = None, ax: Axes | None = None) -> Axes | tuple[Axes, ...]:
         """Draw the orbit, the spectrum of the displacement, or the ball loads.
 
@@ -372,11 +375,13 @@ class Result(Answer):
 
         return report(self.to_dict())
 
-    def picture(self, folder: str | Path) -> list[Path]:
+    @door
+    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
         """Orbit, spectrum and ball loads, as far as there is data, a PNG each."""
         return Pictures().write(Path(folder), self)
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    @door
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = False) -> list[Path]:
         """Write result.json, pictures where they are asked for, and the reports; remove what an earlier run that failed left there.
 
         Raises

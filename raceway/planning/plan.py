@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import attrs
 
 from raceway.errors import Mistake, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATHS, TEXTS, door
 from raceway.framework.shown import Fact, Shown, duration
 from raceway.planning.cost import START_S, slowness
 from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
 from raceway.planning.resolve import Problem, refuse_memory, resolve
 from raceway.planning.rules import foreseen, refuse_what_cannot_run, scene_warnings
 from raceway.scene.inputs import as_scene
-from raceway.scene.scene import Scene
+from raceway.scene.scene import SCENE, Scene
 from raceway.storage.tables import Tables
 
 
@@ -102,7 +102,7 @@ class ScenePlan(Shown):
 
 
 @door
-def make_plan(scene: Scene, force: Collection[str] = ()) -> ScenePlan:
+def make_plan(scene: Annotated[Scene, SCENE], force: Annotated[Collection[str], TEXTS] = ()) -> ScenePlan:
     """Decide what a scene needs.
 
     Parameters
@@ -161,7 +161,7 @@ def plan_of(problem: Problem, force: Collection[str] = ()) -> ScenePlan:
 
 
 @door
-def plan(scene: Any, *, plugins: Iterable[str | Path] = ()) -> ScenePlan:
+def plan(scene: Any, *, plugins: Annotated[Iterable[str | Path], PATHS] = ()) -> ScenePlan:
     """Decide what a scene needs, and predict size, time step and cost; nothing is built.
 
     Parameters
@@ -233,7 +233,7 @@ class Check(Shown):
 
 
 @door
-def check(scene: Any, *, plugins: Iterable[str | Path] = ()) -> Check:
+def check(scene: Any, *, plugins: Annotated[Iterable[str | Path], PATHS] = ()) -> Check:
     """Look for every mistake of a scene; compute nothing.
 
     Parameters

@@ -10,7 +10,7 @@ import attrs
 
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
-from raceway.out.picture import label_axes, new_figure, save_figure, wrapped
+from raceway.out.picture import given_axes, label_axes, new_figure, save_figure, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,7 +94,7 @@ def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes
     if ax is not None and what is None:
         raise RacewayError(f"`ax` is for one picture: choose it by `what`, {', '.join(available)}")
     names = available if what is None else (what,)
-    axes = _new_axes(names) if ax is None else (ax,)
+    axes = _new_axes(names) if ax is None else (given_axes(ax),)
     for name, frame in zip(names, axes, strict=True):
         polar = _DRAWINGS[name].projection == "polar"
         if polar and frame.name != "polar":

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import KEY_VALUES, PATH, PATHS, TEXTS, door
+from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
@@ -364,14 +365,14 @@ def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
 @door
 def band(
     scene: SceneSource,
-    tolerances: Mapping[str, str] | Iterable[str] = (),
+    tolerances: Annotated[Mapping[str, str] | Iterable[str], KEY_VALUES] = (),
     *,
-    count: int = 512,
-    seed: int = 1,
-    processes: int = 0,
-    kept: str | Path | None = None,
+    count: Annotated[int, at_least(0)] = 512,
+    seed: Annotated[int, at_least(0)] = 1,
+    processes: Annotated[int, at_least(0)] = 0,
+    kept: Annotated[str | Path | None, PATH] = None,
     progress: ShowProgress = None,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
 ) -> Band:
     """The range of stiffness, displacement and ball loads over tolerances of a scene, and which of them causes it.
 
@@ -427,16 +428,16 @@ def band(
 @door
 def uncertainty(
     scene: SceneSource,
-    tolerances: Mapping[str, str] | Iterable[str] = (),
-    keys: Iterable[str] = (),
+    tolerances: Annotated[Mapping[str, str] | Iterable[str], KEY_VALUES] = (),
+    keys: Annotated[Iterable[str], TEXTS] = (),
     *,
-    samples: int = 0,
-    seed: int = 1,
-    processes: int = 0,
+    samples: Annotated[int, at_least(0)] = 0,
+    seed: Annotated[int, at_least(0)] = 1,
+    processes: Annotated[int, at_least(0)] = 0,
     plan: bool = False,
-    kept: str | Path | None = None,
+    kept: Annotated[str | Path | None, PATH] = None,
     progress: ShowProgress = None,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
 ) -> Band | Sensitivities | Workload:
     """How much the numbers and tolerances of a scene change its answer: K, C, stiffness, displacement and ball loads.
 

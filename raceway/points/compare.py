@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door, member
+from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.out.answer import Answer, Interrupted, Part
@@ -105,6 +105,7 @@ class Comparison(Answer, Findings):
 
         return labelled(self)
 
+    @door
     def plot(self, quantity: str | None = None, ax: Axes | None = None) -> Axes:
         """Draw one quantity over the axis of numbers with most values; without one, a dot for each run.
 
@@ -275,11 +276,11 @@ _CONTENT = "compare.json"
 @door
 def compare(
     scene: SceneSource,
-    vary: Vary,
+    vary: Annotated[Vary, KEY_VALUES],
     *,
-    out: str | Path | None = None,
-    kept: str | Path | None = None,
-    plugins: Iterable[str | Path] = (),
+    out: Annotated[str | Path | None, PATH] = None,
+    kept: Annotated[str | Path | None, PATH] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> Comparison:
     """Vary keys of a scene, all others constant; report the effect of each key and of pairs.

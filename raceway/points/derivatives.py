@@ -36,7 +36,9 @@ def jacobian(
     """
     stencils, steps = {}, {}
     for key, unit in units.items():
-        value, least = inputs[key], _LEAST.get(unit, 1.0)
+        least, finite = _LEAST.get(unit, 1.0), np.isfinite(inputs[key])
+        # What is no number has no derivative, and no say in the steps of the others.
+        value = np.where(finite, inputs[key], inputs[key][finite][0] if finite.any() else least)
         size = np.abs(value)
         steps[key] = _STEP * np.where(size > 0.0, size, size.max() or least)
         low, high = (

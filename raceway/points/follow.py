@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Annotated
 
 import attrs
 import numpy as np
@@ -16,7 +17,8 @@ from raceway.core.periodic.collocation import solve
 from raceway.core.periodic.refinement import motion_at
 from raceway.core.periodic.search import MOST, directly, find, highest_order, mesh_of
 from raceway.errors import ConvergenceError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATH, PATHS, door
+from raceway.framework.options import at_least, positive
 from raceway.framework.registry import registry_with
 from raceway.out.answer import Interrupted
 from raceway.out.progress import ShowProgress, telling
@@ -46,12 +48,12 @@ def follow(
     scene: SceneSource,
     over: str,
     *changes: Change,
-    points: int = 1000,
-    aim: float = 1e-3,
+    points: Annotated[int, at_least(1)] = 1000,
+    aim: Annotated[float, positive()] = 1e-3,
     doubled: bool = False,
-    turns: int = 0,
-    out: str | Path | None = None,
-    plugins: Iterable[str | Path] = (),
+    turns: Annotated[int, at_least(0)] = 0,
+    out: Annotated[str | Path | None, PATH] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> Followed:
     """Follow the steady orbit of a scene over a continuous key, through folds, with its stability.

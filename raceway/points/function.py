@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from enum import IntEnum
 from functools import cached_property
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 import numpy as np
@@ -18,9 +19,9 @@ from numpy.typing import ArrayLike
 from raceway.bodies.columns import Excitations, build_columns, column_problem, law_keys, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATHS, TEXTS, door
 from raceway.framework.duties import is_foundation, why_no_quantities
-from raceway.framework.options import nearest
+from raceway.framework.options import at_least, nearest
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
 from raceway.out.quantities import KNOWN, Quantity, plugin_quantities
@@ -146,14 +147,15 @@ class Function:
             More points than the memory holds, or that need runs of their own for longer than two minutes.
         """
         values = self._named(columns, by_name)
-        if any(hasattr(value, "dims") for value in values.values()):
+        xarray = sys.modules.get("xarray")
+        if xarray is not None and any(isinstance(value, xarray.DataArray) for value in values.values()):
             return self._labelled(values)
         shape, flat = self._flat(values)
         return {name: column.reshape((*shape, *column.shape[1:])) for name, column in self.columns(flat).items()}
 
     def arrays(self, *columns: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
         """The outputs alone, a tuple of arrays, or the array of a single output: for ``scipy`` and ``xarray.apply_ufunc``."""
-        answer = self(*map(np.asarray, columns))
+        answer = self(**{key: _numbers(key, column) for key, column in self._named(columns, {}).items()})
         values = tuple(np.asarray(answer[name]) for name in self.outputs)
         return values[0] if len(values) == 1 else values
 
@@ -259,8 +261,8 @@ class Function:
         import xarray
 
         arrays = [
-            value if isinstance(value, xarray.DataArray) else xarray.DataArray(np.asarray(value))
-            for value in values.values()
+            value if isinstance(value, xarray.DataArray) else xarray.DataArray(_numbers(key, value))
+            for key, value in values.items()
         ]
         same = xarray.broadcast(*arrays)
         shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
@@ -450,8 +452,11 @@ def refuse_bytes(n: int, entries: int, advice: str) -> None:
 
 def _numbers(key: str, value: ArrayLike) -> np.ndarray:
     try:
-        return np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
+        array = np.asarray(value)
+        if array.dtype.kind in "c":
+            raise TypeError("a complex number is no point")
+        return np.asarray(array, dtype=float)
+    except Exception:  # whatever a foreign object makes of being asked
         raise SceneError.at(key, None, "must be numbers") from None
 
 
@@ -471,13 +476,13 @@ def _joined(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
 @door
 def function(
     scene: SceneSource,
-    inputs: Iterable[str],
-    outputs: Iterable[str],
+    inputs: Annotated[Iterable[str], TEXTS],
+    outputs: Annotated[Iterable[str], TEXTS],
     *,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     tolerance: float = 1e-8,
     force: bool = False,
-    threads: int | None = None,
+    threads: Annotated[int | None, at_least(1)] = None,
 ) -> Function:
     """The bearing as a function of its numbers, for millions of points.
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
@@ -22,7 +22,8 @@ from raceway.core.ring.kernels.impact import single_contact
 from raceway.core.ring.ring import Increment
 from raceway.core.ring.system import compiled
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATHS, door
+from raceway.framework.options import at_least, positive
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
@@ -246,10 +247,10 @@ def law(
     scene: SceneSource | None = None,
     *changes: Change,
     race: str = "inner",
-    ball: int | None = None,
-    amplitude: float = 0.2,
-    frequency: float | None = None,
-    plugins: Iterable[str | Path] = (),
+    ball: Annotated[int | None, at_least(0)] = None,
+    amplitude: Annotated[float, positive()] = 0.2,
+    frequency: Annotated[float | None, positive()] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
 ) -> LawCurves:
     """Force, stiffness, damping and energy per cycle of a contact law at one contact of a bearing.
 

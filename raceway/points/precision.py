@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.doors import door, member
+from raceway.framework.doors import DURATION, KEY_VALUES, PATH, PATHS, door, member
+from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
@@ -130,7 +131,7 @@ class Precision(Answer):
                         orders[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
         return orders
 
-    def bounded(self, row: Row) -> float:
+    def _bounded(self, row: Row) -> float:
         """The largest error that the row can have."""
         return float(row["error"]) + self.references[row["physics"]].bound
 
@@ -153,7 +154,7 @@ class Precision(Answer):
         rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
         fastest: dict[str, int | None] = {}
         for threshold in THRESHOLDS:
-            good = [(time, k) for time, k in rows if self.bounded(self.judged[k]) <= threshold]
+            good = [(time, k) for time, k in rows if self._bounded(self.judged[k]) <= threshold]
             fastest[_text(threshold)] = min(good)[1] if good else None
         return fastest
 
@@ -162,7 +163,7 @@ class Precision(Answer):
         """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
         completed = [row for row in self.judged if row["status"] == "completed"]
         with_error = [row for row in completed if row["error"] is not None]
-        return any(self.bounded(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(completed)
+        return any(self._bounded(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(completed)
 
     @property
     def models(self) -> list[Tables]:
@@ -496,14 +497,14 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Ta
 @door
 def precision(
     scene: SceneSource,
-    vary: Vary | None = None,
+    vary: Annotated[Vary | None, KEY_VALUES] = None,
     *,
-    reference: Vary = (),
-    repeats: int = REPEATS,
-    limit_s: float = _LIMIT_S,
-    out: str | Path | None = None,
-    kept: str | Path | None = None,
-    plugins: Iterable[str | Path] = (),
+    reference: Annotated[Vary, KEY_VALUES] = (),
+    repeats: Annotated[int, at_least(1)] = REPEATS,
+    limit_s: Annotated[float, DURATION] = _LIMIT_S,
+    out: Annotated[str | Path | None, PATH] = None,
+    kept: Annotated[str | Path | None, PATH] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> Precision:
     """Run a scene with many numerical settings; report run time and error of each against a reference with a known bound.

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from raceway.bodies.model import build_model
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
-from raceway.framework.doors import door, member
+from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
@@ -272,11 +272,11 @@ def _largest(key: ReadTables, names: list[str]) -> float:
 @door
 def sensitivities(
     scene: SceneSource,
-    keys: Iterable[str] = (),
+    keys: Annotated[Iterable[str], TEXTS] = (),
     *,
-    tolerances: Mapping[str, str] | Iterable[str] = (),
+    tolerances: Annotated[Mapping[str, str] | Iterable[str], KEY_VALUES] = (),
     progress: ShowProgress = None,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
 ) -> Sensitivities:
     """Derivatives of displacement, stiffness and ball loads, and of Z, K and C of the steady orbit, by numbers of a scene.
 

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 import numpy as np
@@ -18,7 +18,8 @@ import numpy as np
 from raceway.core.threads import usable_cores
 from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
-from raceway.framework.doors import door
+from raceway.framework.doors import PATH, PATHS, Reader, door, reader
+from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
 from raceway.out.progress import telling
@@ -368,22 +369,24 @@ _FROM_ZERO = (
 )
 #: Values of the axes by key, or a list of points.
 Axes = Mapping[str, object] | Iterable[Mapping[str, object]] | Design
+_AXES = Reader("a mapping of keys to values, or a list of points", lambda v: dict(v) if hasattr(v, "keys") else list(v))
+_EXECUTOR = reader("text or an executor", lambda v: isinstance(v, str) or hasattr(v, "compute"))
 
 
 @door
 def sweep(
     scene: SceneSource,
-    axes: Axes,
+    axes: Annotated[Axes, _AXES],
     *,
-    executor: str | Executor = "serial",
-    workers: int | None = None,
-    store: str | Path | None = None,
+    executor: Annotated[str | Executor, _EXECUTOR] = "serial",
+    workers: Annotated[int | None, at_least(1)] = None,
+    store: Annotated[str | Path | None, PATH] = None,
     resume: bool = False,
     retry_failed: bool = False,
     design: str | None = None,
-    seed: int = 0,
+    seed: Annotated[int, at_least(0)] = 0,
     force: bool = False,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> xarray.Dataset:
     """Compute a scene at every point of a grid, a list or a random design.

@@ -11,13 +11,13 @@ import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.doors import door
-from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.framework.doors import PATH, TEXTS, door
+from raceway.framework.registry import REGISTRY, Registry, default_registry, registry_with
 from raceway.scene.units import unit_of
 from raceway.storage.files import size_of, why_unreadable
 from raceway.storage.tables import ReadTables, Tables
@@ -353,7 +353,11 @@ def _text(path: Path) -> str:
 
 
 @door
-def load_scene(path: str | Path, changes: Iterable[str] = (), registry: Registry | None = None) -> Scene:
+def load_scene(
+    path: Annotated[str | Path, PATH],
+    changes: Annotated[Iterable[str], TEXTS] = (),
+    registry: Annotated[Registry | None, REGISTRY] = None,
+) -> Scene:
     """A scene from a file, with ``key.path=value`` changes.
 
     Parameters

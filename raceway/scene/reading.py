@@ -7,16 +7,16 @@ import difflib
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import door, reader
 from raceway.framework.options import (
     nearest,
 )
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.registry import REGISTRY, Registry, default_registry
 from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import lubricant_mistakes
@@ -198,7 +198,10 @@ _PLACEHOLDER = {
 
 
 @door
-def scene_from_dict(tables: ReadTables, registry: Registry | None = None) -> Scene:
+def scene_from_dict(
+    tables: Annotated[ReadTables, reader("a mapping, such as a dict", Mapping)],
+    registry: Annotated[Registry | None, REGISTRY] = None,
+) -> Scene:
     """A scene from plain tables, as a TOML file would give them.
 
     Parameters

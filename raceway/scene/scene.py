@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from raceway.framework.doors import reader
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.bearing import Bearing
 from raceway.scene.changes import told
@@ -204,3 +205,6 @@ def _lists(value: Any) -> object:
     if isinstance(value, tuple):
         return [_lists(part) for part in value]
     return _plain(value) if attrs.has(type(value)) else value
+
+
+SCENE = reader("a Scene, as raceway.load_scene reads it", Scene)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import FINITE, Reader, door
+from raceway.framework.options import positive
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.table import rows_table
@@ -22,19 +23,27 @@ from raceway.studies.catalogue.printed import PairStiffness, Printed, Rating, Ta
 
 #: A number in SI units, or text with a unit.
 Quantity = float | str
+_RATINGS = Reader(
+    "a mapping of angles to (C, C0) or (C, C0, f_0)",
+    lambda v: {FINITE.read(angle): (*c[:2], *map(FINITE.read, c[2:])) for angle, c in v.items() if Rating(0.0, *c)},
+)
+_PAIRS = Reader(
+    "(angle, preload, axial stiffness) each, with or without the radial stiffness behind",
+    lambda v: [(FINITE.read(angle), *{2: k, 3: k}[len(k)]) for angle, *k in v],
+)
 
 
 @door
 def infer(
     bore: Quantity,
     outer_diameter: Quantity,
-    ratings: Mapping[float, Sequence[Quantity]],
+    ratings: Annotated[Mapping[float, Sequence[Quantity]], _RATINGS],
     *,
     width: Quantity | None = None,
-    pairs: Iterable[Sequence[Quantity]] = (),
+    pairs: Annotated[Iterable[Sequence[Quantity]], _PAIRS] = (),
     name: str = "",
     maker: str | None = None,
-    conformity: float | None = None,
+    conformity: Annotated[float | None, positive()] = None,
 ) -> Inferred:
     """Ball count, ball diameter, pitch diameter and conformity of an angular-contact or deep-groove bearing from what its maker prints.
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from functools import partial
 from math import isfinite
 from pathlib import Path
+from typing import Annotated
 
 from raceway.errors import SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATHS, TEXTS, door
 from raceway.framework.registry import registry_with
 from raceway.out.progress import ShowProgress, telling
 from raceway.scene.inputs import SceneSource, as_scene
@@ -18,7 +19,7 @@ from raceway.studies.fit.identify import Identified, identify
 from raceway.studies.fit.linear import fit_record
 from raceway.studies.fit.response import FrequencyResponse, is_response, response_of
 from raceway.studies.fit.rig import fit_rig
-from raceway.studies.fit.signals import Data, Signals, headers_of, signals_of, table_of
+from raceway.studies.fit.signals import COLUMNS, RUN_OUT, Data, Signals, headers_of, signals_of, table_of
 from raceway.studies.fit.synchronous import stated_run_out
 from raceway.studies.fit.table import fit_table, measurements_in
 
@@ -27,13 +28,13 @@ from raceway.studies.fit.table import fit_table, measurements_in
 def fit(
     data: Data,
     scene: SceneSource | None = None,
-    free: Iterable[str] | str = (),
+    free: Annotated[Iterable[str] | str, TEXTS] = (),
     *,
     mass: float | None = None,
     slow_roll: Data | None = None,
-    run_out: tuple[float, float] | None = None,
-    columns: Mapping[str, str] | None = None,
-    plugins: Iterable[str | Path] = (),
+    run_out: Annotated[tuple[float, float] | None, RUN_OUT] = None,
+    columns: Annotated[Mapping[str, str] | None, COLUMNS] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> Fitted:
     """Numbers of a scene from measured data, by least squares with the scene's exact derivatives.

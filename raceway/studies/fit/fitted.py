@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import member
+from raceway.framework.doors import PATH, door, member
 from raceway.framework.shown import Fact, number, number_within
 from raceway.out.answer import Answer, Part
 from raceway.out.quantities import read_in
@@ -132,7 +132,8 @@ class Fitted(Answer):
             )
         return [*out, *self.notes]
 
-    def to_uff(self, path: str | Path) -> Path:
+    @door
+    def to_uff(self, path: Annotated[str | Path, PATH]) -> Path:
         """Write the measured receptance as a universal file (UFF type 58), for tools such as sdypy; of a linear model in one direction.
 
         Raises

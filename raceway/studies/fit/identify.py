@@ -6,13 +6,13 @@ from cmath import exp
 from collections.abc import Iterable, Mapping
 from math import pi, radians
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.doors import door
+from raceway.framework.doors import PATH, PATHS, door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
@@ -30,7 +30,7 @@ from raceway.studies.fit.estimate import COVERAGE
 from raceway.studies.fit.fitted import interval
 from raceway.studies.fit.rig import changed_rotors, invert, refuse_no_load, with_tilt_of
 from raceway.studies.fit.shaft_angle import Rotation, rotation_of
-from raceway.studies.fit.signals import Data, Recording, faults_at, recording_of, signals_of
+from raceway.studies.fit.signals import COLUMNS, RUN_OUT, Data, Recording, faults_at, recording_of, signals_of
 from raceway.studies.fit.synchronous import RunOut, Synchronous, response_of, stated_run_out, synchronous
 from raceway.studies.shaft import Bearing, Rotor, State, bearing, rotor
 
@@ -233,7 +233,8 @@ class Identified(Answer):
         }
         return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
 
-    def picture(self, folder: str | Path) -> list[Path]:
+    @door
+    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
         """Draw signals.png, spectrum.png and orbits.png.
 
         Raises
@@ -245,6 +246,7 @@ class Identified(Answer):
 
         return [save_figure(figure, Path(folder) / f"{name}.png", 110) for name, figure in figures(self).items()]
 
+    @door
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:
         """Draw the orbits at the sensor and in the bearing [um], or the spectrum over orders.
 
@@ -321,10 +323,10 @@ def identify(
     scene: SceneSource,
     *,
     slow_roll: Data | None = None,
-    run_out: tuple[float, float] | None = None,
-    columns: Mapping[str, str] | None = None,
-    out: str | Path | None = None,
-    plugins: Iterable[str | Path] = (),
+    run_out: Annotated[tuple[float, float] | None, RUN_OUT] = None,
+    columns: Annotated[Mapping[str, str] | None, COLUMNS] = None,
+    out: Annotated[str | Path | None, PATH] = None,
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> Identified:
     """Identify a bearing's K and C, with their uncertainty, from the signals of a sensor beside it.

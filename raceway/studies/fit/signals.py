@@ -15,6 +15,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
+from raceway.framework.doors import FINITE, TEXT, Reader
 from raceway.framework.options import nearest
 from raceway.storage.files import write_whole
 from raceway.storage.headings import is_number
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 
 #: A CSV file's path, columns by their headers, or labelled columns.
 Data: TypeAlias = "str | Path | Mapping[str, ArrayLike] | DataFrame | Dataset"
+COLUMNS = Reader(
+    "a mapping of column headers to names, text both",
+    lambda v: {TEXT.read(head): TEXT.read(name) for head, name in v.items()},
+)
+RUN_OUT = Reader("two finite numbers", lambda v: (lambda a, b: (FINITE.read(a), FINITE.read(b)))(*v))
 #: Fewest samples of a record.
 _LEAST = 32
 #: Share of all samples that may lie at one end of the range beyond those of a sine of the same resolution.

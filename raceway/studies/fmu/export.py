@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.doors import door, member
+from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.wrapping import Words
@@ -105,10 +105,10 @@ def export_fmu(
     scene: SceneSource,
     *,
     kind: str = "map",
-    ranges: Mapping[str, object] | Iterable[str] = (),
-    outputs: Iterable[str] = (),
+    ranges: Annotated[Mapping[str, object] | Iterable[str], KEY_VALUES] = (),
+    outputs: Annotated[Iterable[str], TEXTS] = (),
     tolerance: float = 1e-5,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
 ) -> FMU:
     """Write a bearing as an FMU for simulators: its map of K, C over load and speed, or its force.
 

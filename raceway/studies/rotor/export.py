@@ -6,13 +6,14 @@ import json
 import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 import numpy as np
 
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import door, member
+from raceway.framework.doors import KEY_VALUES, PATH, TEXTS, door, member
+from raceway.framework.options import at_least
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, Shown
 from raceway.out.picture import given_axes
@@ -88,7 +89,8 @@ class CoefficientFile(Shown):
         """The numbers by our names, and the notes, as plain tables."""
         return {"programs": [self.program], "tag": self.tag, **self.coefficients.to_dict(), "notes": list(self.notes)}
 
-    def write(self, path: str | Path) -> Path:
+    @door
+    def write(self, path: Annotated[str | Path, PATH]) -> Path:
         """Write the file, whole or not at all.
 
         Raises
@@ -113,7 +115,8 @@ class CoefficientFile(Shown):
         attributes = {"definition": self.coefficients.definition, "notes": "\n".join(self.notes)}
         return labelled_dataset(variables, coordinates, attributes)
 
-    def plot(self, names: tuple[str, ...] = ("kyy", "kzz"), ax: Axes | None = None) -> Axes:
+    @door
+    def plot(self, names: Annotated[tuple[str, ...], TEXTS] = ("kyy", "kzz"), ax: Axes | None = None) -> Axes:
         """Draw coefficients over the speed [r/min]; of a table over both, over the frequency at its first speed.
 
         Parameters
@@ -183,7 +186,8 @@ class RossTable(CoefficientFile):
         """The numbers by our names, and the notes, as plain tables."""
         return {"ross": self.generation, **CoefficientFile.to_dict(self)}
 
-    def write(self, path: str | Path) -> Path:
+    @door
+    def write(self, path: Annotated[str | Path, PATH]) -> Path:
         """Write the TOML or JSON file that ``ross.BearingElement.load`` reads, by the ending.
 
         Raises
@@ -196,7 +200,8 @@ class RossTable(CoefficientFile):
         text = self.text if path.suffix.lower() == ".toml" else ross_json(self.tag, self.content, self.notes)
         return write_whole(text.encode(), path)
 
-    def element(self, node: int | None = None) -> BearingElement:
+    @door
+    def element(self, node: Annotated[int | None, at_least(0)] = None) -> BearingElement:
         """The ``ross.BearingElement``, which passes through the points of the table in ROSS 2, too.
 
         Parameters
@@ -224,13 +229,13 @@ def _ross_table(table: Coefficients, generation: int, tag: str, node: int, origi
 @door
 def export_ross(
     data: Dataset | str | Path,
-    path: str | Path | None = None,
+    path: Annotated[str | Path | None, PATH] = None,
     *,
-    at: Mapping[str, object] | Iterable[str] = (),
+    at: Annotated[Mapping[str, object] | Iterable[str], KEY_VALUES] = (),
     source: str | None = None,
     damping: float = 0.0,
     ross_version: int | str | None = None,
-    node: int = 0,
+    node: Annotated[int, at_least(0)] = 0,
     tag: str | None = None,
 ) -> RossTable:
     """Linearised coefficients kyy, kyz, kzy, kzz, cyy ... of a swept bearing, for ROSS.
@@ -286,14 +291,14 @@ def export_ross(
 @door
 def export_coefficients(
     data: Dataset | str | Path,
-    path: str | Path | None = None,
+    path: Annotated[str | Path | None, PATH] = None,
     *,
     kind: str | None = None,
-    at: Mapping[str, object] | Iterable[str] = (),
+    at: Annotated[Mapping[str, object] | Iterable[str], KEY_VALUES] = (),
     source: str | None = None,
     damping: float = 0.0,
-    number: int = 1,
-    node: int = 0,
+    number: Annotated[int, at_least(1)] = 1,
+    node: Annotated[int, at_least(0)] = 0,
     tag: str | None = None,
 ) -> CoefficientFile:
     """Linearised coefficients of a swept bearing for Nastran (PBUSHT) or Ansys (COMBI214), or as CSV or JSON.

@@ -6,13 +6,14 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.core.mesh.hex_mesh import FACES, HexMesh, boundary
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
 from raceway.framework.registry import registry_with
 from raceway.framework.sources import blamed
@@ -107,7 +108,8 @@ class _Meshes(Answer):
     def to_dict(self) -> Tables:
         return self.content
 
-    def save(self, folder: str | Path, pictures: bool = True) -> list[Path]:
+    @door
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = True) -> list[Path]:
         """Write a file for each ring, one for all balls, and the picture.
 
         RacewayError: a folder that cannot be written, or pyvista is missing.

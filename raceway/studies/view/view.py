@@ -7,14 +7,14 @@ import io
 from collections.abc import Iterable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.bodies.mesh import mesh_bodies
 from raceway.errors import RacewayError, SceneError, extra
-from raceway.framework.doors import door
+from raceway.framework.doors import PATH, PATHS, door
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact, largest_facts, race_words
 from raceway.out.answer import Answer, Part
@@ -72,7 +72,8 @@ class View(Answer):
         """What was written; empty where no folder was given."""
         return [Path(name) for name in self.content["files"]]
 
-    def save(self, folder: str | Path, pictures: bool = True) -> list[Path]:
+    @door
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = True) -> list[Path]:
         """Write all pictures into a folder, and nothing else.
 
         Raises
@@ -88,6 +89,7 @@ class View(Answer):
         """What is shown, as plain tables; the pictures by their files."""
         return dict(self.content)
 
+    @door
     def plot(self, name: str = "bearing.png", ax: Axes | None = None) -> Axes:
         """Put one picture on matplotlib axes.
 
@@ -310,10 +312,10 @@ def _notes(bearing: Bearing) -> list[str]:
 @door
 def view(
     scene: Any,
-    out: str | Path | None = None,
+    out: Annotated[str | Path | None, PATH] = None,
     *,
     page: bool = False,
-    plugins: Iterable[str | Path] = (),
+    plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
 ) -> View:
     """Compute one scene and draw it: ball loads on the bearing cut open, contact ellipses with pressure, ball loads over
