@@ -75,14 +75,7 @@ _SCENES = ("steady_orbit", "set_tbt", "test_rig", "test_rig")
 _OTHERS = {"app", "above", "at_least", "between", "door", "finite", "inside", "jit", "length", "one_of", "option", "optional", "positive",
            "word_or", "worded"}  # fmt: skip
 #: Arguments of methods, by their names, where they must be given; and methods of ``Function`` for columns that it has made itself.
-_GIVEN: Tables = {
-    "folder": "here",
-    "files": [],
-    "path": "here.toml",
-    "pictures": False,
-    "physics": "rigid",
-    "name": "load.axial",
-}
+_GIVEN: Tables = {"folder": "here", "files": [], "path": "here.toml", "physics": "rigid"}
 _INNER = ("slopes", "columns", "looped", "with_reasons", "refuse_time", "texts", "tables")
 
 
@@ -140,9 +133,13 @@ def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
                 given = {p.name: _GIVEN.get(p.name, _AXIAL) for p in parameters if p.default is p.empty}
             for _ in range(chance.one(0, 1, 1, 2)):
                 given[chance.one(*parameters).name] = chance.one(*_WRONG)
-            places = [p.name for p in parameters if p.kind is p.VAR_POSITIONAL and p.name in given]
-            columns = [given.pop(place) for place in places]
-            found = function(*_before(parameters, given, columns), **given)
+            columns = [p.name for p in parameters if p.kind is p.VAR_POSITIONAL and p.name in given]
+            first = [
+                given.pop(p.name, p.default)
+                for p in itertools.takewhile(lambda p: p.name not in columns, parameters)
+                if columns
+            ]
+            found = function(*first, *map(given.pop, columns), **given)
             if not hasattr(found, "dims"):  # no labelled arrays, which have places for what there is not
                 told = found.to_dict() if hasattr(found, "to_dict") else None
                 json.dumps(told, allow_nan=False)
@@ -156,14 +153,6 @@ def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
         told = ", ".join(f"{place}={_short(value)}" for place, value in given.items())
         return name, "broken", [[word, name, f"{name}({told}): {traceback.format_exc()[-900:]}"]]
     return name, "answered", []
-
-
-def _before(parameters: list[inspect.Parameter], given: Tables, columns: list[Any]) -> list[Any]:
-    """Positional arguments: those before columns, which are taken out of ``given``, and these."""
-    if not columns:
-        return []
-    first = itertools.takewhile(lambda p: p.kind is not p.VAR_POSITIONAL, parameters)
-    return [given.pop(p.name) if p.name in given else p.default for p in first] + columns
 
 
 def _scene(chance: Chance, folder: Path) -> Tables:

@@ -117,14 +117,14 @@ def _several(of: Reader) -> Reader:
     """Lists of values, or one value alone."""
 
     def read(value: Any) -> list[object]:
-        alone = isinstance(value, str | bytes | Mapping | os.PathLike) or not isinstance(value, Iterable)
+        alone = isinstance(value, str | bytes | os.PathLike) or not isinstance(value, Iterable)
         return [of.read(element) for element in ([value] if alone else value)]
 
     return Reader(f"{of.words}, or a list of these", read)
 
 
 def _table(value: object) -> object:
-    texts = TEXTS.read(list(value) if isinstance(value, Mapping) else value)
+    texts = TEXTS.read(value)
     return value if isinstance(value, Mapping) else texts
 
 

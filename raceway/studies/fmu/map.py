@@ -70,8 +70,8 @@ def map_unit(
     RacewayError
         A point within the ranges that has no answer, or runs for longer than two minutes.
     """
-    names = function(scene, list(ranges), asked).outputs
-    f = function(scene, list(ranges), list(dict.fromkeys([*names, *([K.name] if C.name in names else [])])))
+    names = function(scene, ranges, asked).outputs
+    f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))
     if f.why_slow:
         f.refuse_time(_LEAST_POINTS, "a map needs at least these. `raceway sweep` computes a table of fewer")
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
