@@ -14,7 +14,6 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
-from raceway.bodies.condensed_bearing import elastic_parts
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
 from raceway.bodies.running import renewed, running_pairs
@@ -29,7 +28,7 @@ from raceway.core.ring.kernels.layout import elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
 from raceway.framework.contracts import ContactLaw, Excitation, SolvedPoints
-from raceway.framework.duties import force_params, renews
+from raceway.framework.duties import finds_orbit, force_params, is_synchronous, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem, resolve
@@ -87,12 +86,6 @@ _KEYS = frozenset(
         "mounting.housing_interference",
     ]
 )
-#: Those that change the finite elements of condensed bodies.
-_SHAPES = frozenset(
-    key
-    for key in _KEYS
-    if key.startswith("bearing.") and not key.endswith(("preload", "density", "expansion", "azimuth_deg"))
-)
 C = TypeVar("C", bound="ColumnBearing")
 R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
@@ -108,12 +101,10 @@ def why_not(scene: Scene, moving: bool) -> str:
     moving : whether their motions are asked for
     """
     bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
-    deform = scene.bodies.name == "condensed"
+    if why := problem.body_kind.why_no_columns():
+        return why
     reasons = {
-        "bodies are in full": scene.bodies.name not in ("rigid", "condensed", "cylindrical_rollers"),
         "rollers move": moving and problem.traits.line_contacts,
-        "contacts have surface points": deform and scene.contact.discretisation != "resultant",
-        "balls interact through elastic rings": deform and scene.bodies.balls_meet(problem),
         "the contact law has a memory": law.state_size > 0,
         "contacts rub": scene.contact.friction > 0.0,
         "dashpots are given as a band": scene.contact.in_a_band,
@@ -122,8 +113,8 @@ def why_not(scene: Scene, moving: bool) -> str:
         and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
         "balls orbit": moving and scene.kinematics.orbiting,
         "the speed changes": problem.spin_changes,
-        "the motion is integrated over time": moving and problem.integrator.kind != "periodic",
-        "the identifier is not fft_1x": moving and scene.identifier.kind != "fft_1x",
+        "the motion is integrated over time": moving and not finds_orbit(problem.integrator.method),
+        "the identifier is not of synchronous (1x) components": moving and not is_synchronous(scene.identifier.method),
     }
     return next((reason for reason, holds in reasons.items() if holds), "")
 
@@ -132,8 +123,8 @@ def why_no_column(scene: Scene, key: str) -> str:
     """Why the numbers at a continuous key can not be a column; empty where they can."""
     if key.startswith("bearing.") and scene.kinematics.ring_growth:
         return "the growth of the rings differs by point"
-    if key in _SHAPES and scene.bodies.name == "condensed":
-        return f"{key} changes the finite elements"
+    if why := resolve(scene).body_kind.why_no_columns(key):
+        return why
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
     of_law = key in law_keys(scene)
     if of_law and not _same_kernel(scene.contact.law, key.partition(".")[2]):
@@ -377,12 +368,24 @@ def _running(bearing: ColumnBearing) -> ColumnBearing:
 @np.errstate(all="ignore")
 def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
     """The same with the contact law as at standstill."""
-    if problem.traits.line_contacts:
-        from raceway.bodies.roller_columns import roller_columns
+    return problem.body_kind.columns(plan)
 
-        return roller_columns(problem, plan)
+
+def ball_columns(
+    problem: Problem, plan: ScenePlan, deformed: Callable[[Problem, Basis, Tables], tuple[Tables, np.ndarray]] | None = None
+) -> ColumnBearing:
+    """Balls in grooves, for ``mounted_columns``.
+
+    Parameters
+    ----------
+    deformed : kernels and numbers of bodies that deform, from those of rigid ones; (n,) whether the law is too stiff for them
+    """
     basis = make_basis(problem)
-    bearing = assembled_columns(ColumnBearing, problem, plan, basis, contact_parts(problem, plan, basis))
+    parts, too_stiff = contact_parts(problem, plan, basis), np.zeros(problem.points, dtype=bool)
+    if deformed is not None:
+        parts, too_stiff = deformed(problem, basis, parts)
+    bearing = assembled_columns(ColumnBearing, problem, plan, basis, parts)
+    bearing.faults[too_stiff] = LOOSE
     if some(problem.bearing.preload):
         return bearing._preloaded()
     bearing.points.guess[:] = first_guess(problem, basis)
@@ -393,10 +396,6 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     """A bearing at n points of its kernels and their numbers, at standstill and without a guess."""
     n = problem.points[0]
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
-    faults = np.zeros(n, dtype=np.int64)
-    if problem.bodies.name == "condensed":
-        parts, too_stiff = elastic_parts(problem, basis, parts)
-        faults[too_stiff] = LOOSE
     columns = 2 + elastic_columns(parts["scalars"][0])
     kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"])
     load = _columns(n, problem.load.axial, *problem.load.radial, *problem.load.moment)
@@ -405,7 +404,7 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     none = np.zeros((5, 5))
     linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
     points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
-    return cls(problem, plan, basis, linear, points, kernels, faults)
+    return cls(problem, plan, basis, linear, points, kernels, np.zeros(n, dtype=np.int64))
 
 
 def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:

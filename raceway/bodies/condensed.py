@@ -10,6 +10,7 @@ import attrs
 from raceway.bodies.mesh import unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
+from raceway.framework.duties import is_hertzian
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import Balls, Decisions, Motion
@@ -18,6 +19,7 @@ from raceway.scene.scene import SceneTables
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
     from raceway.bodies.model import Bearing
     from raceway.planning.plan import ScenePlan
 
@@ -223,7 +225,7 @@ class Condensed:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""
         if _nodal(problem):
             return Traits(compiled=False, resultants=False)
-        return Traits(calibrated=problem.contact.kind == "hertz", renews=True, damps=True)
+        return Traits(calibrated=is_hertzian(problem.contact.law), renews=True, damps=True)
 
     def stable_step(self, problem: Problem) -> float:
         """Of the ring on its contacts [s]."""
@@ -304,6 +306,22 @@ class Condensed:
         from raceway.bodies.condensed_bearing import build
 
         return build(problem, plan)
+
+    def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
+        """See ``raceway.bodies.columns``."""
+        from raceway.bodies.columns import ball_columns
+        from raceway.bodies.condensed_bearing import elastic_parts
+
+        return ball_columns(problem, plan, elastic_parts)
+
+    def why_no_columns(self, problem: Problem, key: str | None) -> str:
+        """Surface points, compliances between balls; keys of shape and elasticity, which the finite elements are made of."""
+        if key is not None:
+            mere = key.endswith(("preload", "density", "expansion", "azimuth_deg"))
+            return f"{key} changes the finite elements" if key.startswith("bearing.") and not mere else ""
+        if _nodal(problem):
+            return "contacts have surface points"
+        return "balls interact through elastic rings" if self.balls_meet(problem) else ""
 
 
 def _nodal(problem: Problem) -> bool:

@@ -34,6 +34,7 @@ from raceway.core.structural import (
     ring_section,
 )
 from raceway.errors import ConvergenceError, SceneError
+from raceway.framework.duties import is_hertzian
 from raceway.framework.estimate import Estimate
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
@@ -302,7 +303,7 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
     stiffness = float(_law_stiffness(problem, stiff.basis, system.law, system.law_params))
     if stiffness * -compliance >= 1.0:
         thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
-        remedy = thin if problem.contact.kind == "hertz" else "Use 'hertz', or a softer law"
+        remedy = thin if is_hertzian(problem.contact.law) else "Use 'hertz', or a softer law"
         raise SceneError.at(
             "contact.kind",
             problem.contact.kind,

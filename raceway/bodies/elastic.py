@@ -11,7 +11,7 @@ from raceway.bodies.condensed import section_cost
 from raceway.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.framework.duties import is_constraint
+from raceway.framework.duties import is_constraint, is_hertzian
 from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
@@ -276,7 +276,7 @@ class Elastic:
     def traits(self, problem: Problem) -> Traits:
         """Stepped from Python; a run is too dear to be made twice."""
         resultants = problem.contact.discretisation == "resultant"
-        calibrated = resultants and problem.contact.kind == "hertz"
+        calibrated = resultants and is_hertzian(problem.contact.law)
         return Traits(compiled=False, resultants=resultants, calibrated=calibrated, every_node=True)
 
     def stable_step(self, problem: Problem) -> float | None:

@@ -19,7 +19,7 @@ from raceway.elastic.bearing_data import BearingData
 from raceway.elastic.resultant import ResultantContact
 from raceway.elastic.ring import ElasticRing
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.duties import law_params
+from raceway.framework.duties import is_hertzian, law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
@@ -87,7 +87,7 @@ def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) ->
     force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
     contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
     if (-d_gap * contact.local).max() >= 1.0:
-        remedy = "Take a smaller load" if problem.contact.kind == "hertz" else "Use 'hertz' or a softer law"
+        remedy = "Take a smaller load" if is_hertzian(problem.contact.law) else "Use 'hertz' or a softer law"
         raise SceneError.at(
             "contact.kind",
             problem.contact.kind,

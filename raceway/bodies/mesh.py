@@ -128,7 +128,7 @@ _FROM, _ONE_POINT = 0.49, 0.4
 
 def locking(problem: Problem) -> list[str]:
     """A warning for each material that is nearly incompressible."""
-    one_point = problem.bodies.name == "elastic" and problem.bodies.formulation == "one_point"
+    one_point = getattr(problem.bodies, "formulation", None) == "one_point"
     least = _ONE_POINT if one_point else _FROM
     warnings = []
     for part in ("rings", "balls"):

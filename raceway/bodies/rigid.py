@@ -13,6 +13,7 @@ from raceway.planning.parts import Balls, Decisions, Motion
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
     from raceway.bodies.model import Bearing
     from raceway.planning.plan import ScenePlan
 
@@ -43,7 +44,7 @@ class Rigid:
 
     def traits(self, problem: Problem) -> Traits:
         """Contact resultants with compiled forces."""
-        return Traits(renews=True, damps=True)
+        return Traits(renews=True, damps=True, contacts_alone=True)
 
     def stable_step(self, problem: Problem) -> float:
         """Of the ring on its contacts [s]."""
@@ -64,3 +65,9 @@ class Rigid:
         from raceway.bodies.rigid_bearing import build
 
         return build(problem, plan)
+
+    def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
+        """See ``raceway.bodies.columns``."""
+        from raceway.bodies.columns import ball_columns
+
+        return ball_columns(problem, plan)

@@ -15,6 +15,7 @@ from raceway.planning.cost import START_S, Times, compiled_motion
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
     from raceway.bodies.model import Bearing as BuiltBearing
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
@@ -146,3 +147,9 @@ class CylindricalRollers:
         from raceway.bodies.roller_bearing import build
 
         return build(problem, plan, self)
+
+    def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
+        """See ``raceway.bodies.roller_columns``."""
+        from raceway.bodies.roller_columns import roller_columns
+
+        return roller_columns(problem, plan)

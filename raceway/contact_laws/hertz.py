@@ -29,6 +29,7 @@ class Hertz:
     discretisations: ClassVar[frozenset[str]] = frozenset({"resultant", "nodal"})
     state_size: ClassVar[int] = 0
     dissipative: ClassVar[bool] = False
+    hertzian: ClassVar[bool] = True
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
         import numpy as np

@@ -60,6 +60,8 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     11. ``elementwise`` = True says that options may be arrays (n,), one number for each contact: many operating points whose
         options differ are then built at once, else once for each value.
     12. ``line_contact`` = True says that it is a law of line contacts, of rollers: ``pairs.length`` is their length.
+    13. ``hertzian`` = True says that the resultant of a point contact is Hertz's, ``hertz_factor`` times the approach to the 1.5: what
+       the calibration of elastic bodies leaves is then an error of the numbers, else of the law.
     """
 
     name: ClassVar[str]
@@ -206,6 +208,8 @@ class Integrator(attrs.AttrsInstance, Protocol):
     5. ``start.near``, if it is not None, is the ``solution`` that the same integrator left in the record of a similar motion:
        it may be started from, and must not change the answer beyond the method's tolerance; unless ``start.stay`` asks for
        the continuation of that motion where several exist.
+    6. May be left out: ``orbit`` = True says of a ``steady`` method that its motion is the steady orbit, to its stated error,
+       however it finds it: many points are then solved for by compiled loops, not by its driver.
     """
 
     name: ClassVar[str]
@@ -232,6 +236,8 @@ class Identifier(attrs.AttrsInstance, Protocol):
        speed it is replaced by the distance from the steady motion where that can be solved for.
     5. An option ``harmonics``, if there is one, is how many multiples of the frequency are fitted with mean and drift: the plan
        refuses more than the samples of a turn determine.
+    6. May be left out: ``synchronous`` = True says that Z of a steady motion is F^H F / F^H x of the synchronous (1x) components of
+       force and displacement: compiled loops over many points then state it.
     """
 
     name: ClassVar[str]
@@ -427,6 +433,8 @@ class Traits:
     renews : parameters of contact laws are renewed at the running speed and equilibrium (``ContactLaw``, duty 8)
     line_contacts : contacts are lines of rollers: numbers of point contacts, as lives, films and friction torques, are not computed
     damps : contacts have dashpots in proportion to their stiffness (``Problem.time_constant``)
+    contacts_alone : nothing but point contacts deforms, each by its own gap, and runs state no error of the bodies: sweeps and
+        derivatives need no runs for it
     """
 
     compiled: bool = True
@@ -436,6 +444,7 @@ class Traits:
     renews: bool = False
     damps: bool = False
     line_contacts: bool = False
+    contacts_alone: bool = False
 
 
 @attrs.frozen
@@ -478,6 +487,10 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
         for the suite; else that is a ball bearing of 30 mm bore under axial and radial load.
     10. May be left out: ``same_bodies(problem, changed)``: whether nothing that is meshed differs between two of this kind, so
         that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
+    11. May be left out: ``columns(problem, plan)``: a ``raceway.bodies.columns.ColumnBearing``, the bearing at the n points of a
+        problem whose numbers are columns: what compiled loops over many points take.  Else each point is a run.
+    12. May be left out, beside it: ``why_no_columns(problem, key)``: why ``key``, or with None anything, can be no column, in words;
+        empty where it can.
     """
 
     name: ClassVar[str]

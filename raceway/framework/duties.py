@@ -16,9 +16,10 @@ from raceway.framework.sources import blamed
 if TYPE_CHECKING:
     import numpy as np
 
+    from raceway.bodies.columns import ColumnBearing
     from raceway.bodies.model import Bearing
     from raceway.errors import Mistake
-    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Format, Quantities, SolvedPoints
+    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Quantities, SolvedPoints
     from raceway.framework.shown import Fact
     from raceway.planning.parts import Balls, Decisions, Motion
     from raceway.planning.plan import ScenePlan
@@ -63,6 +64,17 @@ class BodyKind:
 
     def build(self, plan: ScenePlan) -> Bearing:
         return _answer(self._name, "build", lambda: self._plugin.build(self._problem, plan), object)
+
+    def columns(self, plan: ScenePlan) -> ColumnBearing:
+        return _answer(self._name, "columns", lambda: self._plugin.columns(self._problem, plan), object)
+
+    def why_no_columns(self, key: str | None = None) -> str:
+        """Why these bodies are not built at many points at once, or a continuous key can be no column; empty where it is so."""
+        if not hasattr(self._plugin, "columns"):
+            return "bodies are in full"
+        if not hasattr(self._plugin, "why_no_columns"):
+            return ""
+        return _answer(self._name, "why_no_columns", lambda: self._plugin.why_no_columns(self._problem, key), str)
 
     def same_bodies(self, changed: Problem) -> bool:
         """Whether another problem of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""
@@ -142,29 +154,17 @@ def quantity_report(plugin: Quantities, points: SolvedPoints, values: Mapping[st
     return table, warnings
 
 
-def of_results(form: type[Format]) -> bool:
-    """Whether a format writes results; not unless it says so."""
-    return bool(getattr(form, "of_results", False))
+def _says(trait: str) -> Callable[[object], bool]:
+    """Whether a plug-in, or its class, says a trait of its contract; not unless it does."""
+    return lambda plugin: bool(getattr(plugin, trait, False))
 
 
-def renews(law: ContactLaw) -> bool:
-    """Whether a contact law's parameters follow the running speed and the loads; not unless it says so."""
-    return bool(getattr(law, "renewed", False))
-
-
-def line_contact(law: ContactLaw | type[ContactLaw]) -> bool:
-    """Whether a contact law is one of lines, of rollers; not unless it says so."""
-    return bool(getattr(law, "line_contact", False))
-
-
-def is_constraint(law: ContactLaw) -> bool:
-    """Whether a contact law stands for no penetration at all; not unless it says so."""
-    return bool(getattr(law, "constraint", False))
-
-
-def is_foundation(law: ContactLaw) -> bool:
-    """Whether a contact law integrates a pressure that follows from the overlap at each place; not unless it says so."""
-    return bool(getattr(law, "foundation", False))
+#: Traits of contact laws.
+renews, line_contact, is_constraint, is_foundation, is_hertzian, _is_elementwise = map(
+    _says, ("renewed", "line_contact", "constraint", "foundation", "hertzian", "elementwise")
+)
+#: Of formats, integrators and identifiers.
+of_results, finds_orbit, is_synchronous = map(_says, ("of_results", "orbit", "synchronous"))
 
 
 def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair") -> np.ndarray:
@@ -206,7 +206,7 @@ def _of_contacts(law: ContactLaw, pairs: ContactPairs, duty: str) -> np.ndarray:
     if not has_columns(law):
         return of(law, pairs)
     rows = np.repeat(np.arange(length(law)), len(pairs.curvature_a) // length(law))
-    if getattr(law, "elementwise", False):
+    if _is_elementwise(law):
         return of(at_rows(law, rows), pairs)
     laws, index = distinct(law)
     parts = [np.flatnonzero(index[rows] == k) for k in range(len(laws))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
+import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
@@ -81,17 +82,26 @@ class blamed:
 
     Notes
     -----
-    A class, as ``contextlib.suppress`` is one: a run calls plug-ins some twenty times.
+    A class, as ``contextlib.suppress`` is one: a run calls plug-ins some twenty times.  Several threads may be inside: standard output
+    is itself again when the last one leaves.
     """
+
+    _lock, _inside, _out = threading.Lock(), 0, sys.stdout
 
     def __init__(self, who: str, duty: str) -> None:
         self._who, self._duty = who, duty
 
     def __enter__(self) -> None:
-        self._out, sys.stdout = sys.stdout, sys.stderr
+        with blamed._lock:
+            if not blamed._inside:
+                blamed._out, sys.stdout = sys.stdout, sys.stderr
+            blamed._inside += 1
 
     def __exit__(self, kind: type[BaseException] | None, why: BaseException | None, _: object) -> None:
-        sys.stdout = self._out
+        with blamed._lock:
+            blamed._inside -= 1
+            if not blamed._inside:
+                sys.stdout = blamed._out
         if why is not None and not isinstance(why, RacewayError | MemoryError | GeneratorExit) and is_foreign_fault(why):
             raise PluginError(f"{self._who}: {self._duty} raises {type(why).__name__}: {why}") from why
 

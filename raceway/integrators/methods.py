@@ -125,6 +125,7 @@ class Periodic:
     inertial: ClassVar[bool] = True
     dissipative: ClassVar[bool] = False
     steady: ClassVar[bool] = True
+    orbit: ClassVar[bool] = True
 
     tolerance: float = option(
         1e-7, help="estimated error of the displacement over the amplitude of the motion", rule=inside(1e-12, 1e-2)

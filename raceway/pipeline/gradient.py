@@ -288,7 +288,8 @@ class Gradients:
         """
         answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
         scene = self.model.scene
-        if scene.bodies.name == "rigid" and not why_not(scene, False) and not (self.orbit and scene.kinematics.orbiting):
+        alone = self.model.traits.contacts_alone and not why_not(scene, False)
+        if alone and not (self.orbit and scene.kinematics.orbiting):
             answers |= self._by_columns(
                 [key for key in keys if key.path not in answers and not why_no_column(scene, key.path)]
             )

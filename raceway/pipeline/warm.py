@@ -253,7 +253,7 @@ def _one(scene: Scene) -> dict[str, np.ndarray]:
 
 def _simple(scene: Scene) -> Scene:
     """The scene whose loads decide its temperatures: with rigid bodies where its own are not computed as columns."""
-    if scene.bodies.name == "rigid" or not why_not(scene, False):
+    if resolve(scene).traits.contacts_alone or not why_not(scene, False):
         return scene
     law = scene.contact.law if "resultant" in scene.contact.law.discretisations else Hertz()
     contact = attrs.evolve(scene.contact, kind=law.name, law=law, discretisation="resultant", friction=0.0)

@@ -51,6 +51,7 @@ class Fft1x:
 
     name: ClassVar[str] = "fft_1x"
     needs: ClassVar[frozenset[str]] = frozenset({"record", "period"})
+    synchronous: ClassVar[bool] = True
     definition: ClassVar[str] = (
         "secant: 1x force over 1x displacement in the direction of the force, Fourier line over whole turns"
     )

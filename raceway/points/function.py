@@ -113,6 +113,11 @@ class Function:
         excited = self.scene.excitation is not None
         return any(name in MOVING or excited and (name in EXTREMES or name in self._stated) for name in self.outputs)
 
+    @property
+    def contacts_alone(self) -> bool:
+        """Whether runs of these bodies state no error of their own, which the compiled loop does not have: ``Traits``."""
+        return resolve(self.scene).traits.contacts_alone
+
     @cached_property
     def _stated(self) -> dict[str, tuple[str, Quantity]]:
         """Quantities of plug-ins."""

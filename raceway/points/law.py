@@ -311,14 +311,14 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     """A contact of a scene with rigid bodies, in its equilibrium; arguments and errors as of ``law``."""
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
-    if scene.bodies.name != "rigid":
+    if not resolve(scene).traits.contacts_alone:
         rule = (
             "has contacts whose approach is shared with the bodies' compliance: use bodies.kind = 'rigid' to see a law alone"
         )
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
     model = build_model(scene)
     still, ring = solve_equilibrium(model), compiled(model.system)
-    assert ring is not None, "rings of rigid bodies are compiled"
+    assert ring is not None, "contacts that deform alone are compiled"
     count = ring.ball_count
     loads = still.contact_force.reshape(2, count)[RACES.index(race)]
     number = int(np.argmax(loads)) if ball is None else ball

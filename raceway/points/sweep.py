@@ -139,8 +139,7 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
     tables : of the scene;  scene : at the first point
     """
     keys = {key.path for key in continuous_keys(scene)}
-    # What the meshes of bodies are off by is known to runs alone.
-    if scene.bodies.name != "rigid" or not all(axis.numeric and axis.key in keys for axis in design.axes):
+    if not all(axis.numeric and axis.key in keys for axis in design.axes):
         return None
     stated = stated_columns(scene, registry)
     moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
@@ -150,7 +149,9 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
         left_out.append(MODEL_BOUND.name)
     outputs = [name for name in (*outputs, *stated) if name not in left_out]
     function = Function(scene, design.keys, tuple(outputs), threads=usable_cores())
-    return None if function.why_slow or not _alone(function, tables, design, registry) else function
+    # What bodies that deform are off by is known to runs alone.
+    quick = not function.why_slow and function.contacts_alone
+    return function if quick and _alone(function, tables, design, registry) else None
 
 
 def _alone(function: Function, tables: ReadTables, design: Design, registry: Registry) -> bool:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway.bodies.columns import build_columns, column_problem, why_not
 from raceway.bodies.model import Bearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
@@ -29,6 +30,7 @@ from raceway.pipeline.run import run
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
+from raceway.scene.changes import with_number
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
@@ -45,6 +47,8 @@ if TYPE_CHECKING:
 _BALANCE = 1e-6
 #: Load that is added for a difference, over the loads: its own curvature leaves 1e-6, an iteration's residual 1e-4.
 _MORE, _TANGENT = 1e-3, 1e-3
+#: What two iterations that end at 1e-11 of the loads may be apart on soft coordinates.
+_COLUMNS = 1e-7
 #: Contact angles of bodies that deform are those of their rigid planes.
 _ANGLES = 0.02
 #: Steps of the explicit limit that each method takes, over it.
@@ -286,6 +290,32 @@ class BodiesSuite(Suite):
         skew = float(np.abs((K - K.T) / np.outer(scale, scale)).max())
         require(skew < _BALANCE, f"the forces have a potential, but K - K^T is {skew:.2g} of K")
         return f"differences {worst:.1e}, K - K^T {skew:.1e}"
+
+    @duty(
+        "columns(problem, plan): at several points at once the equilibria are those of each alone",
+        lambda bodies: "" if hasattr(bodies, "columns") else "no columns",
+    )
+    def test_columns(self, bodies: BodiesKind) -> str:
+        scene = _scene_of(bodies)
+        if why := why_not(scene, False):
+            return f"its example has none: {why}"
+        loads = scene.load.radial[0] * np.array([1.0, 0.6, 1.3])
+        bearing = build_columns(column_problem(scene, {"load.radial[0]": loads}), make_plan(scene))
+        states, worst = bearing.equilibria(), 0.0
+        for k, load in enumerate(loads.tolist()):
+            model, alone = settled(with_number(scene, "load.radial[0]", load))
+            require(states.status[k] == 0, f"no equilibrium under {load:g} N, where a run finds one")
+            angles = bearing.contact_angles(states)
+            for found, expected in (
+                (states.q[k], alone.displacement), (states.force[k], alone.contact_force),
+                (angles[0][k], alone.angle_inner), (angles[1][k], alone.angle_outer),
+            ):  # fmt: skip
+                same = np.isnan(found) == np.isnan(expected)
+                off = np.nanmax(np.abs(found - expected), initial=0.0) / np.nanmax(np.abs(expected), initial=1e-300)
+                require(same.all(), f"under {load:g} N other contacts are open")
+                worst = max(worst, float(off))
+        require(worst < _COLUMNS, f"columns differ by {worst:.2g} from single points")
+        return f"{worst:.1e} from single points"
 
     @duty(
         "contact forces (2 Z,) and gaps: never negative, none in an open contact; with their angles they balance the loads"

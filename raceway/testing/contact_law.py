@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.framework.contracts import ContactPairs
-from raceway.framework.duties import law_report, reach_of
+from raceway.framework.duties import is_hertzian, law_report, reach_of
 from raceway.testing.suite import ConformityError, Suite, check_class, check_kernel, check_shape, duty, require
 
 if TYPE_CHECKING:
@@ -295,6 +295,15 @@ class ContactLawSuite(Suite):
             require(law.dissipative or most <= 1e-10, words)
             largest = max(largest, most)
         return f"loses up to {100.0 * largest:.3g} % a cycle" if law.dissipative else ""
+
+    @duty("`hertzian`: the force of a resultant is K delta^1.5", lambda law: "" if is_hertzian(law) else "not `hertzian`")
+    def test_hertzian(self, law: ContactLaw) -> None:
+        pairs = _pairs_of(law, 64)
+        resting = attrs.evolve(pairs, entraining_speed=None, load=None)
+        for share in (0.01, 0.3, 1.0):
+            hertz = pairs.hertz_factor * (share * self.depth) ** 1.5
+            off = np.abs(drive(law, 64, pairs=resting)(-share * self.depth)[0] / hertz - 1.0).max()
+            require(off < 1e-9, f"the force differs by {off:.2g} from Hertz's at {share * self.depth:.2g} m")
 
     @duty(
         "a law of both discretisations is a pressure where it gets an area: zero outside, growing, derivative exact",

@@ -15,6 +15,10 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.system import System
 from raceway.core.time.schemes import Drivers, integrate
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
+from raceway.framework.duties import finds_orbit
+from raceway.points.column_quantities import SteadyLines
+from raceway.scene.reading import scene_from_dict
+from raceway.testing.scenes import b7206c, settled
 from raceway.testing.suite import Suite, check_class, duty, require
 from raceway.testing.systems import (
     NATURAL,
@@ -246,6 +250,23 @@ class IntegratorSuite(Suite):
         require(not len(wrong), f"in step {wrong + 1} the memory has been committed {commits[wrong] - 1} times before")
         require(not system.law_state.any(), "the system's own memory was changed")
         return ""
+
+    @duty(
+        "`orbit`: `steady`, and its motion of a bearing is the orbit of the compiled loops, to its stated error",
+        lambda method: "" if finds_orbit(method) else "not `orbit`",
+    )
+    def test_orbit(self, method: Integrator) -> str:
+        require(method.steady and method.inertial, "`orbit` is said of steady methods with inertia forces")
+        force = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3e-5}
+        scene = scene_from_dict(b7206c(rotor={"mass": 1.0}, excitation=force))
+        scene = attrs.evolve(scene, integrator=attrs.evolve(scene.integrator, kind=method.name, method=method))
+        (model, still), speed = settled(scene), 12000.0 * np.pi / 30.0
+        loop = SteadyLines().line(scene, speed)
+        assert loop is not None, "a mild orbit"
+        start = model.bearing.at_rest(model.system, still.displacement, still.ball, False)
+        record = integrate(method, model.system, start, Schedule(2.0 * np.pi / speed / 90, 90, 1))
+        line = 2.0 * (np.exp(-1j * speed * record.time)[:, None] * record.displacement).mean(axis=0)
+        return _within(_apart(loop[1:3], line[1:3]), _stated_error(record), "the loops' orbit")
 
     @duty(
         "compiled and stepped drivers, where a scheme has both, take the same steps",

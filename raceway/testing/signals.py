@@ -10,10 +10,12 @@ from math import radians
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, cast
 
+import attrs
 import numpy as np
 
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import Identification
+from raceway.framework.duties import is_synchronous
 from raceway.out.quantities import C, K
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
@@ -284,6 +286,19 @@ class IdentifierSuite(Suite):
     @duty("... with a window that is not whole turns")
     def test_window(self, identifier: Identifier) -> str:
         return self._recovers(identifier, 1e-3, turns=9.37, mean=3.0, harmonics=0.3)
+
+    @duty(
+        "`synchronous`: Z = F^H F / F^H x of the 1x components, as compiled loops state it, also where directions differ",
+        lambda identifier: "" if is_synchronous(identifier) else "not `synchronous`",
+    )
+    def test_synchronous(self, identifier: Identifier) -> None:
+        record = _synthetic_record()
+        wave = np.exp(2j * np.pi * FREQUENCY * record.time)[:, None]
+        moved = record.displacement + (wave * (3.0 - 2.0j) * 1e-7 * np.eye(5)[1]).real
+        force, line = (2.0 * (wave.conj() * part[:, :3]).mean(axis=0) for part in (record.force, moved))
+        answer = identifier.identify([attrs.evolve(record, displacement=moved)], _equilibrium_at_rest(), _model_of())
+        off = abs(answer.dynamic_stiffness / (np.vdot(force, force) / np.vdot(force, line)) - 1.0)
+        require(off < 1e-8, f"Z differs by {off:.2g} from F^H F / F^H x: compiled loops would state another definition")
 
     @duty("records and equilibrium are left untouched")
     def test_input_untouched(self, identifier: Identifier) -> None:

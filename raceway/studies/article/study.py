@@ -243,7 +243,7 @@ def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | N
         f = function(scene_from_dict(points[0], registry), numbers, [*_LOOPED.values(), *OF_ORBITS], threads=1)
     except RacewayError:  # its row says why
         return [None] * len(points)
-    if f.why_slow or f.scene.bodies.name != "rigid":  # the loop states no error of a mesh
+    if f.why_slow or not f.contacts_alone:  # the loop states no error of a mesh
         return [None] * len(points)
     answer = f.looped(numbers)
     multiplier, change = (answer[name] for name in OF_ORBITS)

@@ -256,7 +256,7 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
         return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(equilibrium.angle_inner)), 0.0)))
 
     load = scene.load.axial
-    if scene.bodies.name == "rigid":
+    if resolve(scene).traits.contacts_alone:
         why = "an equilibrium is solved to a residual of 1e-11"
         rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(load, 1e-8))
     else:

@@ -1,0 +1,149 @@
+"""Third parties' bodies, integrators and identifiers take the compiled loops over points where they declare what these need."""
+
+import sys
+
+import attrs
+import numpy as np
+import pytest
+
+import raceway as rw
+from raceway.bodies.rigid import Rigid
+from raceway.contact_laws.hertz import Hertz
+from raceway.framework.sources import blamed
+from raceway.integrators.methods import Periodic
+from raceway.out.quantities import K
+from raceway.plugins.identifiers import Fft1x
+from raceway.testing import BodiesSuite, ContactLawSuite, IdentifierSuite, IntegratorSuite, default_registry
+
+SCENE = {
+    "bearing": {"preset": "B7206C"},
+    "load": {"axial": 1000.0},
+    "rotor": {"mass": 1.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-5},
+    "integrator": {"kind": "periodic"},
+}
+
+
+@attrs.frozen
+class Own:
+    """Bodies of no built-in class, which say nothing of columns."""
+
+    name = "own"
+    faults, traits, stable_step, decide, cost, build = (
+        getattr(Rigid, duty) for duty in ("faults", "traits", "stable_step", "decide", "cost", "build")
+    )
+
+
+@attrs.frozen
+class OwnColumns(Own):
+    name = "own_columns"
+    columns = Rigid.columns
+
+    def why_no_columns(self, problem, key):
+        return "diamond does not shrink" if key == "bearing.balls.young" else ""
+
+
+Again, Transient = (
+    attrs.frozen(type("Again", (Periodic,), {"name": f"again_{yes}", "orbit": yes})) for yes in (True, False)
+)
+Lines, Secants = (
+    attrs.frozen(type("Lines", (Fft1x,), {"name": f"lines_{yes}", "synchronous": yes})) for yes in (True, False)
+)
+
+
+@pytest.fixture(autouse=True)
+def theirs():
+    class Plugin:
+        @rw.hookimpl
+        def raceway_bodies(self):
+            return [Own, OwnColumns]
+
+        @rw.hookimpl
+        def raceway_integrators(self):
+            return [Again, Transient]
+
+        @rw.hookimpl
+        def raceway_identifiers(self):
+            return [Lines, Secants]
+
+    default_registry().add(Plugin(), "theirs")
+
+
+def test_what_declares_it_takes_the_compiled_loop_with_the_numbers_of_runs():
+    scene = SCENE | {k: {"kind": p.name} for k, p in (("bodies", OwnColumns), ("integrator", Again), ("identifier", Lines))}
+    f = rw.function(scene, ["load.axial"], [K.name])
+    answer = f([600.0, 1000.0])
+    assert not f.why_slow and (answer["status"] == rw.PointStatus.COMPUTED).all()
+    # Orbits to 1e-7 of the motion in the run, to 1e-8 of its 1x component in the loop.
+    assert answer[K.name][1] == pytest.approx(K.of(rw.run(scene)), rel=1e-6)
+    assert np.array_equal(answer[K.name], rw.function(SCENE, ["load.axial"], [K.name])([600.0, 1000.0])[K.name])
+    assert rw.function(scene, ["bearing.balls.young"], [K.name]).why_slow == "diamond does not shrink"
+
+
+@pytest.mark.parametrize(
+    ("table", "plugin", "why"),
+    [("bodies", Own, "in full"), ("integrator", Transient, "over time"), ("identifier", Secants, "not of synchronous")],
+)
+def test_what_declares_nothing_is_run(table, plugin, why):
+    f = rw.function(SCENE | {table: {"kind": plugin.name}}, ["load.axial"], [K.name])
+    assert why in f.why_slow and f(1000.0)["status"] == rw.PointStatus.RUN
+
+
+def test_laws_and_sweeps_ask_for_traits_and_not_for_names(monkeypatch):
+    monkeypatch.setattr("raceway.points.engine._OWN", {(): default_registry()})
+    scene = {"bearing": SCENE["bearing"], "load": SCENE["load"], "bodies": {"kind": "own_columns"}}
+    assert rw.law("hertz", scene).rows == rw.law("hertz", {**scene, "bodies": {"kind": "rigid"}}).rows
+    assert set(rw.sweep(scene, {"load.axial": [400.0, 900.0]})["status"].values.tolist()) == {"computed"}
+
+
+@attrs.frozen
+class Halves(Fft1x):
+    def identify(self, records, equilibrium, model):
+        answer = super().identify(records, equilibrium, model)
+        return attrs.evolve(answer, dynamic_stiffness=0.5 * answer.dynamic_stiffness)
+
+
+@attrs.frozen
+class Rough(Periodic):
+    def solve(self, system, start, schedule, on_chunk=None):
+        record = super().solve(system, start, schedule, on_chunk)
+        return attrs.evolve(record, displacement=1.001 * record.displacement)
+
+
+@attrs.frozen
+class Shifted(Rigid):
+    def columns(self, problem, plan):
+        bearing = super().columns(problem, plan)
+        bearing.points.params[:] *= 1.001
+        return bearing
+
+
+@attrs.frozen
+class Stiffer(Hertz):
+    def build(self, pairs):
+        return 1.01 * super().build(pairs)
+
+
+@pytest.mark.parametrize(
+    ("suite", "plugin", "duty", "words"),
+    [
+        (IdentifierSuite, Halves, "synchronous", "compiled loops would state another definition"),
+        (IntegratorSuite, Rough, "orbit", "off the loops' orbit by 0.001"),
+        (BodiesSuite, Shifted, "columns", "from single points"),
+        (ContactLawSuite, Stiffer, "hertzian", "from Hertz's"),
+    ],
+)
+def test_suites_hold_what_is_declared_against_the_loops(suite, plugin, duty, words):
+    found, sound = (type("Run", (suite,), {"plugin": each()})().row(duty) for each in (plugin, plugin.__base__))
+    assert not found.good and words in found.message
+    assert sound.good, sound.message
+
+
+def test_standard_output_is_itself_again_whichever_thread_leaves_last():
+    out, first, second = sys.stdout, blamed("one", "build()"), blamed("another", "build()")
+    first.__enter__()
+    second.__enter__()
+    first.__exit__(None, None, None)
+    assert sys.stdout is sys.stderr
+    second.__exit__(None, None, None)
+    assert sys.stdout is out
