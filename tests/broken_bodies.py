@@ -57,6 +57,12 @@ def adrift(self, near=None, on_residual=None):
     return q + 1e-8, ball, iterations
 
 
+def larger(_self, problem, plan):
+    bearing = Rigid().columns(problem, plan)
+    bearing.points.params[:] *= 1.001
+    return bearing
+
+
 def stiff(factor, skew=0.0):
     """A tangent that is ``factor`` times the true one, and not symmetric."""
 
@@ -135,6 +141,7 @@ BROKEN = [
     (made("Strange", unused=lambda *_: [("bearing.rollers", "there are none")]), "plan", "which is no key"),
     (made("Endless", cost=lambda *_: Cost(float("nan"))), "plan", "is no time"),
     (made("Nothing", build=lambda *_: None), "build", "returns NoneType"),
+    (made("Larger", columns=larger), "columns", "from single points"),
     (of_bearing("Adrift", solve_equilibrium=adrift), "equilibrium", "of the loads is left"),
     (of_system("Stiff", stiffness_at=stiff(1.01)), "tangent", "K dq differs by 0.01"),
     (of_system("Skewed", stiffness_at=stiff(1.0, 1e-4)), "tangent", "K - K\\^T is"),

@@ -488,7 +488,8 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     10. May be left out: ``same_bodies(problem, changed)``: whether nothing that is meshed differs between two of this kind, so
         that a difference of their results is a derivative; else [bearing] decides where there is a [mesh].
     11. May be left out: ``columns(problem, plan)``: a ``raceway.bodies.columns.ColumnBearing``, the bearing at the n points of a
-        problem whose numbers are columns: what compiled loops over many points take.  Else each point is a run.
+        problem whose numbers are columns: what compiled loops over many points take.  Else each point is a run.  A class that
+        overrides ``build`` gives its own, as traits of laws, integrators and identifiers are said anew where a duty is overridden.
     12. May be left out, beside it: ``why_no_columns(problem, key)``: why ``key``, or with None anything, can be no column, in words;
         empty where it can.
     """

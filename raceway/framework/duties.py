@@ -70,7 +70,7 @@ class BodyKind:
 
     def why_no_columns(self, key: str | None = None) -> str:
         """Why these bodies are not built at many points at once, or a continuous key can be no column; empty where it is so."""
-        if not hasattr(self._plugin, "columns"):
+        if not gives_columns(self._plugin):
             return "bodies are in full"
         if not hasattr(self._plugin, "why_no_columns"):
             return ""
@@ -154,17 +154,25 @@ def quantity_report(plugin: Quantities, points: SolvedPoints, values: Mapping[st
     return table, warnings
 
 
-def _says(trait: str) -> Callable[[object], bool]:
-    """Whether a plug-in, or its class, says a trait of its contract; not unless it does."""
-    return lambda plugin: bool(getattr(plugin, trait, False))
+def _says(trait: str, *duties: str) -> Callable[[object], bool]:
+    """Whether a plug-in, or its class, says a trait of its contract; not unless it does, anew where it overrides what that is about."""
+
+    def says(plugin: object) -> bool:
+        classes = (plugin if isinstance(plugin, type) else type(plugin)).__mro__
+        at, *others = (next((k for k, c in enumerate(classes) if name in vars(c)), 0) for name in (trait, *duties))
+        return bool(getattr(plugin, trait, False)) and at <= min(others, default=at)
+
+    return says
 
 
 #: Traits of contact laws.
-renews, line_contact, is_constraint, is_foundation, is_hertzian, _is_elementwise = map(
-    _says, ("renewed", "line_contact", "constraint", "foundation", "hertzian", "elementwise")
+renews, line_contact, is_constraint, is_foundation, _is_elementwise = map(
+    _says, ("renewed", "line_contact", "constraint", "foundation", "elementwise")
 )
-#: Of formats, integrators and identifiers.
-of_results, finds_orbit, is_synchronous = map(_says, ("of_results", "orbit", "synchronous"))
+is_hertzian = _says("hertzian", "build", "kernel")
+#: Of formats, integrators, identifiers and bodies.
+of_results, finds_orbit = _says("of_results"), _says("orbit", "scheme")
+is_synchronous, gives_columns = _says("synchronous", "identify"), _says("columns", "build")
 
 
 def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair") -> np.ndarray:

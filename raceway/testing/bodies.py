@@ -21,7 +21,7 @@ from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import Cost, Traits
-from raceway.framework.duties import unused_with_bodies
+from raceway.framework.duties import gives_columns, unused_with_bodies
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
@@ -293,7 +293,7 @@ class BodiesSuite(Suite):
 
     @duty(
         "columns(problem, plan): at several points at once the equilibria are those of each alone",
-        lambda bodies: "" if hasattr(bodies, "columns") else "no columns",
+        lambda bodies: "" if gives_columns(bodies) else "no columns",
     )
     def test_columns(self, bodies: BodiesKind) -> str:
         scene = _scene_of(bodies)
