@@ -161,6 +161,7 @@ class OwnUnits(Hertz):
     """Hides a length of its own."""
 
     name: ClassVar[str] = "own_units"
+    hertzian: ClassVar[bool] = True
 
     def build(self, pairs):
         return (pairs.hertz_factor / (1.0 + 1e-6 * pairs.curvature_b))[:, None].copy()
