@@ -114,7 +114,7 @@ SLOW = {"study article", "fit, signals"}
 TOLD = {
     "run": (
         "tangent kxx, kyy",
-        "relative error of Z",
+        "numerical error of K",
         "|Z|",
         "equivalent stiffness K",
         "equivalent damping C",

@@ -150,8 +150,10 @@ def test_effects_and_words_say_what_the_rows_say(small):
 def test_json_table_and_picture(small, tmp_path):
     answer = json.loads(json.dumps(small.to_dict(), allow_nan=False))
     assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
-    assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 1
-    assert [list(row) for row in small.table()] == [["kind", "tilt", "K N/µm", "|Z| N/µm", "C N s/m", "error %"]] * 4
+    assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 2
+    assert [list(row) for row in small.table()] == [
+        ["kind", "tilt", "K N/µm", "|Z| N/µm", "K within", "C N s/m", "error %"]
+    ] * 4
     (path,) = small.picture(tmp_path)
     assert path.read_bytes()[:4] == b"\x89PNG"
 
@@ -214,7 +216,7 @@ def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     hertz = math.log(last["stiffness"][0][0] / first["stiffness"][0][0])
     assert {e["quantity"] for e in found.effects} == {"kxx", "kyy", "x"} and by_load["log_change"] > 0.5 * hertz > 0.0
     assert found.words[0].startswith("kxx lies between") and "load.axial from 400 to 1200 changes it by +" in found.words[0]
-    assert list(found.table()[0]) == ["axial", "kind", "kxx N/µm", "kyy N/µm", "x µm"]
+    assert list(found.table()[0]) == ["axial", "kind", "kxx N/µm", "kyy N/µm", "x µm", "kxx within"]
     data = found.to_xarray()
     assert data.kyy.values[0, 0] == first["stiffness"][1][1] and data.x.attrs["units"] == "m"
     (path,) = found.picture(tmp_path)

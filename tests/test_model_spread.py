@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.framework.estimate import Estimate
-from raceway.framework.shown import percents
-from raceway.out.quantities import KYY, K
-from raceway.pipeline.run_screen import _model_rows
 from raceway.points.dataset import values_of
-from validation.command_line import EXAMPLES
 
 STATIC = {"bearing": {"preset": "7014A"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 5000.0}}
 MOVING = {
@@ -117,33 +112,6 @@ def test_the_spread_is_no_part_of_the_total_and_a_number_of_every_point():
     assert result.to_dict()["error"]["total"] == result.error["total"] < 1e-6
     assert "model" not in result.error
     assert values_of(result)["error_model_bound"] == pytest.approx(result.model_spread[0]["bound"])
-    found = result.to_xarray()["equivalent_stiffness_model"]
-    np.testing.assert_allclose(found.values, result.model_spread[0]["equivalent_stiffness"])
-
-
-def test_the_screen_says_it_beside_k():
-    result = rw.run(MOVING)
-    low, high = result.model_spread[0]["equivalent_stiffness"]
-    ((_, _, sentence),) = _model_rows(result.to_dict(), K)
-    assert sentence == f"model error {percents(low, high)}: kinematics.gyroscopic, kinematics.ring_growth off"
-    assert high > 0.001
-    slow = {**STATIC, "kinematics": {"spin_speed_rpm": 100.0}}
-    assert _model_rows(rw.run(slow).to_dict(), KYY) == []
-
-
-def test_a_change_above_all_of_k_is_a_number_that_people_read():
-    rows = _model_rows({"error": {"model": {"kyy": [0.0, 3.7], "hypotheses": [
-        {"key": "kinematics.ring_growth", "value": True, "kyy": 3.7},
-    ]}, "short": {"model": ""}}}, KYY)  # fmt: skip
-    assert [row[2] for row in rows] == ["model error of kyy +370 %: kinematics.ring_growth off"]
-
-
-def test_the_screen_says_where_the_spread_is_not_estimated():
-    """A run-up has no steady motion to compare with: its K has no range, and that is not left to result.json."""
-    result = rw.run(EXAMPLES / "run_up.toml").to_dict()
-    (row,) = _model_rows(result, K, KYY)
-    assert result["error"]["how"]["model"].startswith("not estimated: ") and result["error"]["how"]["model"] in row[2]
-    assert _model_rows({"error": {"model": None, "short": {"model": Estimate.NOTHING_TURNS().short}}}, KYY) == []
 
 
 def test_what_is_left_out_by_default_is_said_so():

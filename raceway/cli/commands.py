@@ -73,6 +73,7 @@ ANSWERS: tuple[Command | Later, ...] = (
             "design": Option(metavar="KIND:N"),
             "ranges": Option("range", "A.B=X:Y"),
             "seed": Option(metavar="N"),
+            "quantities": Option("quantity", "NAME"),
             "settings": Option("set", "A.B=C"),
             "executor": Option(metavar="NAME"),
             "workers": Option(metavar="N"),

@@ -179,6 +179,7 @@ def sweep(
     design: str | Path | None = None,
     ranges: Iterable[str] = (),
     seed: int = 0,
+    quantities: Iterable[str] = (),
     settings: Iterable[str] = (),
     executor: str = "serial",
     workers: int | None = None,
@@ -211,6 +212,7 @@ def sweep(
     design : sobol:N or lhs:N points in ranges, or a file of a grid
     ranges : low:high of a key, for such a design
     seed : of its random numbers
+    quantities : ends of intervals, too: K_low, K_high, kyy_low, kyy_high
     settings : change a key of the scene
     executor : by name: serial, processes, dask, or a plug-in
     workers : processes of these; None: 2
@@ -243,7 +245,7 @@ def sweep(
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
     if (resume or retry_failed) and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to resume: a new one is started", stacklevel=2)
-    prepared = prepare(tables, listed, folder, plugins, resume or retry_failed or plan)
+    prepared = prepare(tables, listed, folder, plugins, resume or retry_failed or plan, quantities)
     if plan:
         return workload(prepared, pool)
     refuse_large(prepared, pool, force)

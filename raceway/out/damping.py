@@ -11,7 +11,8 @@ RULE_OF_THUMB_S = 1.25e-5
 #: Part of the rule's damping below which a damping is next to nothing: a twentieth of the lower end of the typical range.
 _NOTHING = 1e-2
 
-
+#: Of scenes without any damping.
+DRY = "dry: no damping is modelled"
 #: What to do in the scene.
 _REMEDY = "set contact.damping or contact.time_constant"
 

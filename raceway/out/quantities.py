@@ -152,7 +152,6 @@ _Z_IMAG_ERROR = Quantity("dynamic_stiffness_imag_error", "N/m", "estimated error
 Z_IMAG = Quantity("z_imag", "N/m", "imaginary part of the dynamic stiffness Z = F/x, w C", f"{_Z}.imag", f"{_Z}.imag", label="Z imaginary", error=_Z_IMAG_ERROR)
 K_ERROR = Quantity("equivalent_stiffness_error", "N/m", "estimated error of K", f"{_ID}.equivalent_stiffness_error")
 K = Quantity("equivalent_stiffness", "N/m", "K = Re Z + m w^2", f"{_ID}.equivalent_stiffness", symbol="K", label="equivalent stiffness K", error=K_ERROR)
-K_MODEL = Quantity(f"{K.name}_model", "1", "relative change of K by hypotheses left at their defaults", f"error.model.{K.name}", f"model_spread.0.{K.name}", label="model of K", dims=("end",))
 C_ERROR = Quantity("equivalent_damping_error", "N s/m", "estimated error of C", f"{_ID}.equivalent_damping_error")
 C = Quantity("equivalent_damping", "N s/m", "C = Im Z / w", f"{_ID}.equivalent_damping", symbol="C", label="equivalent damping C", error=C_ERROR)
 MASS = Quantity("mass", "kg", "m of K = Re Z + m w^2", f"{_ID}.mass_used_kg", f"{_ID}.mass_used")
@@ -180,6 +179,16 @@ _LEAST_LOAD = Quantity("min_ball_load", "N", "least load of a ball on the inner 
 P0 = Quantity("p0", "Pa", "largest Hertz pressure, of both races", "motion.peak_pressure_pa | equilibrium.largest_pressure_pa", "extremes.p0")
 _P0_INNER = Quantity("p0_inner", "Pa", "largest Hertz pressure on the inner race", attribute="extremes.p0_inner")
 _P0_OUTER = Quantity("p0_outer", "Pa", "largest Hertz pressure on the outer race", attribute="extremes.p0_outer")
+L10R = Quantity("l10r_million_revolutions", "1e6", "reference life, reached by 90 %", "life.l10r_million_revolutions", "quantities.l10r_million_revolutions", symbol="L10r", label="reference life L10r")
+PRELOAD = Quantity("running_preload", "N", "preload of a set as it runs, without loads", "equilibrium.preload.running_n", "at_rest.preload.running_n", symbol="preload")
+#: What has an ``uncertainty``, stiffnesses first.
+STIFFNESSES = (K, KXX, KYY, KYY_TILTS_FOLLOW)
+HEADLINE = (*STIFFNESSES, PEAK_BALL_LOAD, P0, L10R, PRELOAD)
+#: Ends of the intervals of stiffnesses, columns of a sweep on request.
+ENDS = named(*(
+    Quantity(f"{one.symbol}_{end}", "N/m", f"{end} end of the interval of {one.symbol}", *2 * (f"uncertainty.{one.name}.{end}",))
+    for one in (K, KYY) for end in ("low", "high")
+))
 # Relative errors of Z, and of kyy.
 ERROR = Quantity("error_total", "1", "estimated relative error of Z", "error.total", "error.total")
 _PARTS = {"time_step": "time step", "transient": "transient", "mesh": "mesh", "contact": "contact law", "identification": "identification"}

@@ -7,6 +7,7 @@ simulate         how a motion begins, and the motion
 error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults
+uncertainty      intervals of headline quantities, from the errors and spreads of the others
 gradient         derivatives by the keys of the scene, and the band over tolerances to first order
 quantities       numbers of plug-ins at one solved point
 warm             steady temperatures of scenes with [heat]

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import attrs
 
+from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
 from raceway.out.progress import telling
-from raceway.scene.inputs import SceneSource, as_scene
+from raceway.out.quantities import KYY, KYY_TILTS_FOLLOW
+from raceway.scene.inputs import SceneSource, as_scene, plain_tables
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 #: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
 PATIENCE = 20.0
+#: Time that a note is worth [s].
+_NOTE_S = 2.0
 
 
 @door
@@ -77,3 +81,20 @@ def run(
     if folder is not None:
         result.save(folder)
     return result
+
+
+def radial_note(scene: SceneSource) -> list[str]:
+    """For who reads coefficients of a scene: the interval of its radial stiffness at rest; empty where an equilibrium takes long."""
+    from raceway.pipeline.uncertainty import stated
+    from raceway.planning.plan import make_plan
+
+    try:
+        still = as_scene({**plain_tables(scene, registry=default_registry()), "identifier": {"kind": "tangent"}})
+        if make_plan(still).predicted_wall_s > _NOTE_S:
+            return []
+        result = run(still)
+    except RacewayError:
+        return []
+    quantity = KYY if result.kyy_tilts_follow is None else KYY_TILTS_FOLLOW
+    label, value, words = stated(quantity, {"uncertainty": result.uncertainty})
+    return [f"{label} of the scene itself {value}, {words}"]

@@ -20,14 +20,16 @@ from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
 from raceway.framework.estimate import Note, short
 from raceway.framework.options import nearest
-from raceway.framework.shown import Fact, in_micro, largest_facts, number, percents, tilt_words
+from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
 from raceway.out.answer import Answer, Part
-from raceway.out.quantities import C_ERROR, IDENTIFIED, K_MODEL, KYY_TILTS_FOLLOW, C, K, X, Z, nested
+from raceway.out.damping import DRY
+from raceway.out.quantities import C_ERROR, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
-from raceway.pipeline.plausible import NEGLIGIBLE, closed_bound, model_spread
+from raceway.pipeline.plausible import closed_bound, model_spread
 from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
+from raceway.pipeline.uncertainty import stated, uncertainty_table
 from raceway.planning.resolve import Problem
 from raceway.plugins.labelled import labelled
 from raceway.plugins.pictures import Pictures, plot
@@ -44,7 +46,7 @@ if TYPE_CHECKING:
     from raceway.framework.registry import Entry, Registry
     from raceway.pipeline.gradient import Gradient
 
-SCHEMA = 1
+SCHEMA = 2
 #: The entry in the registry of a format of results, and the format with its options' defaults.
 Chosen = tuple["Entry", "Format"]
 
@@ -219,6 +221,26 @@ class Result(Answer):
         return closed_bound(self.model, self.equilibrium)
 
     @cached_property
+    def uncertainty(self) -> Tables:
+        """How far K, kxx, kyy, loads, p0, L10r and preload may be off, and by what: the table ``uncertainty`` of result.json.
+
+        Each is a table of ``value``, ``unit``, ``low``, ``high``, ``relative``, ``parts`` and ``rule``, or None with its reason in ``why``.
+
+        Examples
+        --------
+        >>> import raceway as rw
+        >>> result = rw.run({"bearing": {"preset": "B7206C"}, "load": {"axial": "1 kN"}})
+        >>> [result.uncertainty["kyy"][end] > result.stiffness[1, 1] for end in ("low", "high")]
+        [False, True]
+        """
+        return uncertainty_table(self)
+
+    @cached_property
+    def at_rest(self) -> Tables:
+        """The table ``equilibrium``."""
+        return equilibrium_table(self.model, self.equilibrium)
+
+    @cached_property
     def extremes(self) -> Tables:
         """Mean axial displacement [m], ball loads [N] and pressures [Pa]: of the motion where there is one, else of the equilibrium."""
         loads = self.equilibrium.contact_force
@@ -314,12 +336,13 @@ class Result(Answer):
                 "scene": self.model.scene.to_dict(),
                 "plan": self.model.plan.to_dict(),
                 "geometry": self.geometry,
-                "equilibrium": equilibrium_table(self.model, self.equilibrium),
+                "equilibrium": self.at_rest,
                 **self.stated.tables,
                 "not_computed": self.stated.missing,
                 "identification": self._identification(),
                 "model": self.bodies,
                 "motion": self._motion(),
+                "uncertainty": self.uncertainty,
                 "tolerances": self.tolerances,
                 "error": self._errors(),
                 "cost": self.cost,
@@ -413,10 +436,6 @@ def band_table(ends: list[Result]) -> Tables:
     }
 
 
-#: Of scenes without any damping.
-DRY = "dry: no damping is modelled"
-
-
 def damping_origin(problem: Problem) -> str:
     """What damps a scene, in words."""
     contact, (low, high) = problem.contact, TIME_CONSTANTS
@@ -446,7 +465,7 @@ def facts(result: Result) -> list[Fact]:
 
 
 def _identified_facts(result: Result) -> list[Fact]:
-    z, band, total = result.identification, result.band, result.error["total"]
+    z, band, total, told = result.identification, result.band, result.error["total"], {"uncertainty": result.uncertainty}
     if z is None:
         return []
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
@@ -455,9 +474,9 @@ def _identified_facts(result: Result) -> list[Fact]:
         remark = "both ends of the band of time constants; other numbers are of the low end"
         damping = C.label, C.span(band[C.name], 3), remark
     rows = [
-        K.fact(result, speed),
+        stated(K, told),
         damping,
-        Z.fact(result),
+        Z.fact(result, speed),
         (
             "orbit",
             f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm",
@@ -465,18 +484,16 @@ def _identified_facts(result: Result) -> list[Fact]:
         ),
     ]
     rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
-    spread = K_MODEL.of(result)
-    if spread and max(map(abs, spread)) >= NEGLIGIBLE:
-        rows.append((K_MODEL.label, percents(*spread), "hypotheses left at their defaults: .model_spread"))
-    return [*rows, ("error of Z", "not estimated" if total is None else f"{total:.1e}", "relative, estimated")]
+    error = "not estimated" if total is None else f"{total:.1e}"
+    absolute = "" if total is None else f", of K {K.text(result.equivalent_stiffness_error, 2)}"
+    return [*rows, ("error of Z", error, f"numerical, relative{absolute}")]
 
 
 def _equilibrium_facts(result: Result) -> list[Fact]:
-    k, loads, forces = result.stiffness, result.ball_loads, result.equilibrium.contact_force
-    follows = result.kyy_tilts_follow
+    loads, forces = result.ball_loads, result.equilibrium.contact_force
+    told = {"uncertainty": result.uncertainty, "equilibrium": result.at_rest}
     return [
-        ("tangent kxx, kyy", f"{1e-6 * k[0, 0]:.5g}, {1e-6 * k[1, 1]:.5g} N/µm", "static, all other motions held"),
-        *([] if follows is None else [KYY_TILTS_FOLLOW.fact(result, "static, x and z held")]),
+        *(stated(quantity, told) for quantity in (KXX, KYY, KYY_TILTS_FOLLOW) if quantity.of(result) is not None),
         X.fact(result),
         ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
         *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
@@ -488,10 +505,10 @@ def _computed_facts(result: Result) -> list[Fact]:
     kind = f"{problem.bodies.name} bodies, {problem.contact.kind}, {problem.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
     compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
-    rows: list[Fact] = [("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind)]
-    if result.geometry is not None:
-        rows.append(("geometry", "inferred", result.geometry["words"].partition(": ")[2]))
-    return [*rows, ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}")]
+    return [
+        ("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
+    ]
 
 
 def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from raceway.framework.duties import quantity_screen
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
-from raceway.out.quantities import KXX, KYY, KYY_TILTS_FOLLOW, X
+from raceway.out.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X
 from raceway.out.table import Row, number, tilt_words
+from raceway.pipeline.uncertainty import interval, stated
 from raceway.storage.tables import ReadTables
 
 #: Counts of elements at a contact, and where they are counted: four of each resolve its stresses.
@@ -169,22 +170,30 @@ _NEGLIGIBLE = 1e-2
 
 
 def error_rows(result: ReadTables) -> list[Row]:
-    """Relative error of Z with its parts; of a static scene those that are known."""
+    """Intervals of loads, pressure, life and preload; the numerical error of K with the parts of that of Z."""
     error, identified = result["error"], result["identification"]
-    parts = {
-        name.replace("_", " "): error.get(name) for name in ("time_step", "transient", "identification", "mesh", "contact")
-    }
+    entries = {one.symbol.replace("_", " "): result["uncertainty"][one.name] for one in HEADLINE if one not in STIFFNESSES}
+    told = [
+        f"{name} {interval(one).partition(':')[0]}" for name, one in entries.items() if one and one["parts"]["data"]["of"]
+    ]
+    rows: list[Row] = [("", "", f"within {', '.join(told)}")] if told else []
+    # Laws other than Hertz's are no part of the total: they widen the intervals.
+    names = ["time_step", "transient", "identification", "mesh", *(["contact"] if error["bodies"] else [])]
+    parts = {name.replace("_", " "): error.get(name) for name in names}
     least = _NEGLIGIBLE * (error["total"] or 0.0)
     known = {name: f"{name} {value:.1e}" for name, value in parts.items() if value and value > least}
     if identified is None:
-        return [("relative error", "", f"of the stiffness: {', '.join(known.values())}")] if known else []
-    rigid = result["scene"]["bodies"]["kind"] == "rigid"  # which have no mesh
+        return [*rows, *([("relative error", "", f"of the stiffness: {', '.join(known.values())}")] if known else [])]
+    rigid = result["model"] is None  # which have no mesh
     unknown = [name for name, value in parts.items() if value is None and not (rigid and name == "mesh")]
     # A single part is the total, whose number stands beside it.
     words = [", ".join(known.values() if len(known) > 1 else known)] if known else []
     words += [f"{', '.join(unknown)} not estimated"] if unknown else []
     total = "not estimated" if error["total"] is None else f"{error['total']:.1e}"
-    rows: list[Row] = [("relative error of Z", total, "; ".join(words))]
+    if (absolute := K_ERROR.of(result)) is None:
+        rows.append(("relative error of Z", total, "; ".join(words)))
+    else:
+        rows.append(("numerical error of K", K.text(absolute, 2), f"of Z, relative: {total}, {'; '.join(words)}"))
     series = [window for window in identified.get("series", []) if window["error"] is not None]
     if series:
         worst = max(series, key=lambda window: window["error"])
@@ -207,15 +216,16 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 
 
 def cost_row(cost: ReadTables) -> Row:
-    """Time and memory."""
-    words = [f"{number(cost['cpu_s'], 'CPU-s', 3)}"] if "cpu_s" in cost else []
-    words += [f"{cost['steps']} steps"] if cost["steps"] and not cost["compile_s"] else []  # two lines at most
-    words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"] + (
-        [f"{cost['threads']} threads"] if cost["threads"] > 1 else []
-    )
-    if cost["compile_s"]:
-        cached = "cached for the next run" if cost.get("compiled_kept", True) else "not cached, the cache cannot be written"
-        words.append(f"and {number(cost['compile_s'], 's', 3)} of compiling, {cached}")
+    """Time and memory; of a run that compiled, which happens once, time alone."""
+    compiled, digits = cost["compile_s"], 2 if cost["compile_s"] else 3
+    words = [number(cost["cpu_s"], "CPU-s", digits)] if "cpu_s" in cost else []
+    if compiled:
+        cached = "cached" if cost.get("compiled_kept", True) else "not cached, the cache cannot be written"
+        words.append(f"compiling {number(compiled, 's', digits)}, {cached}")
+    else:
+        words += [f"{cost['steps']} steps"] if cost["steps"] else []
+        words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"]
+        words += [f"{cost['threads']} threads"] if cost["threads"] > 1 else []
     return "wall time", number(cost["wall_s"], "s", 3), ", ".join(words)
 
 
@@ -226,17 +236,28 @@ def stability_rows(found: ReadTables) -> list[Row]:
     return [] if limit is None and drift is None else [("stability", found["status"], words)]
 
 
-def tangent_rows(result: ReadTables) -> list[Row]:
-    """kxx, kyy, and kyy with tilts that follow."""
-    found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
-    axial, radial = (quantity.read(quantity.of(result)) for quantity in (KXX, KYY))
-    rows = [("tangent kxx, kyy", f"{axial:.5g}, {radial:.5g} {KYY.read_unit}", "other motions held")]
-    if tilt != "locked":
-        rows.append(KYY_TILTS_FOLLOW.fact(result, f"{tilt_words(tilt)}: tilts follow, x and z held"))
-    if found["stiffness_rows_held"] is not None:
-        held = KXX.text(found["stiffness_rows_held"][0][0])
-        rows.append(("kxx, rows held", held, "rows on the spring held as within a motion; above they follow"))
+def interval_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
+    """Quantities that the result has, with their intervals; what makes an interval is a line of its own."""
+    rows: list[Row] = []
+    for label, value, words in (stated(quantity, result) for quantity in quantities if quantity.of(result) is not None):
+        within, _, parts = words.partition(": ")
+        rows += [(label, value, within), *([("", "", parts)] if parts else [])]
     return rows
+
+
+def tangent_rows(result: ReadTables) -> list[Row]:
+    """kxx, kyy and kyy with tilts that follow, each within its interval."""
+    told = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
+    axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in told]
+    both = ("tangent kxx, kyy", f"{axial[1].partition(' ')[0]}, {radial[1]}", f"{axial[2]}, {radial[2]}")
+    return [both, *follows, *held_rows(result)]
+
+
+def held_rows(result: ReadTables) -> list[Row]:
+    """kxx within a motion, of a set with rows on a spring."""
+    held = result["equilibrium"]["stiffness_rows_held"]
+    how = "rows on the spring held as within a motion; above they follow"
+    return [] if held is None else [("kxx, rows held", KXX.text(held[0][0]), how)]
 
 
 def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from raceway.framework.shown import percents
 from raceway.out.answer import Part
-from raceway.out.damping import dry_damping_note
+from raceway.out.damping import DRY, dry_damping_note
 from raceway.out.quantities import (
     FORCE_AMPLITUDE,
+    KXX,
     KYY,
     KYY_TILTS_FOLLOW,
     MASS,
@@ -19,7 +19,6 @@ from raceway.out.quantities import (
     SPEED,
     C,
     K,
-    Quantity,
     Z,
 )
 from raceway.out.table import Row, micro, sections, tilt_words
@@ -29,11 +28,12 @@ from raceway.pipeline.run_parts import (
     cost_row,
     equilibrium_rows,
     error_rows,
+    held_rows,
+    interval_rows,
     loaded_balls,
     orbit_rows,
     quantity_rows,
     stability_rows,
-    tangent_rows,
 )
 from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
@@ -44,8 +44,6 @@ _LINE = 1e-9
 _OF_Z = (
     *(quantity.label for quantity in (K, C, Z, PHASE_LAG)), "loss factor", "orbit, semi-axes",
 )  # fmt: skip
-#: Relative change of a stiffness by a hypothesis below which it is not told.
-_LEAST_CHANGE = 1e-3
 
 
 def _answer_rows(result: ReadTables) -> list[Row]:
@@ -59,9 +57,7 @@ def _answer_rows(result: ReadTables) -> list[Row]:
     force = f"{FORCE_AMPLITUDE.text(FORCE_AMPLITUDE.of(result), 4)} {result['scene']['excitation']['kind']}"
     return [
         (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(found['tilt'])}", "", ""),
-        # The error of Z: larger than the same share of K where m w^2 cancels K.
-        K.fact(result),
-        *_model_rows(result, K, KYY_TILTS_FOLLOW, KYY),
+        *interval_rows(result, K),
         *_damping_rows(result),
         Z.fact(result, f"{found['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
         ("orbit, semi-axes", axes, f"synchronous (1x){', a line' if thin else ''}"),
@@ -80,7 +76,8 @@ def _damping_rows(result: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
     band, origin = result["identification"]["band"], result["identification"]["damping_origin"]
     if band is None:
-        return [C.fact(result, origin)]
+        name, value, remark = C.fact(result, origin)
+        return [(name, value, origin if origin == DRY else remark)]
     low, high = band["loss_factor"]
     return [
         (C.label, C.span(band[C.name], 3), origin),
@@ -89,27 +86,15 @@ def _damping_rows(result: ReadTables) -> list[Row]:
     ]
 
 
-def _model_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
-    """Change of the first quantity known by each hypothesis left at its default and by all of them; nothing below 0.1 %."""
-    spread, why = result["error"]["model"], result["error"]["short"]["model"]
-    if spread is None:
-        return [("", "", f"model: change by hypotheses left at their defaults {why}")] if why else []
-    name = next((quantity.name for quantity in quantities if spread[quantity.name] is not None), "")
-    of = "" if name in ("", K.name) else f"of {name.replace('_', ' ')} "
-    parts = {}
-    for key in ("kinematics.gyroscopic", "kinematics.ring_growth"):
-        changes = [one[name] for one in spread["hypotheses"] if name and one["key"] == key and one[name] is not None]
-        if max(map(abs, changes), default=0.0) >= _LEAST_CHANGE:
-            parts[key] = changes
-    changes = spread[name] if len(parts) > 1 else next(iter(parts.values()), [])
-    return [("", "", f"model error {of}{percents(*changes)}: {', '.join(parts)} off")] if parts else []
-
-
 def _static(result: ReadTables) -> list[Row]:
     return [
-        ("Answer of a static scene", "", "without a table [excitation] no K(w), C or orbit is identified"),
-        *tangent_rows(result),
-        *_model_rows(result, KYY_TILTS_FOLLOW, KYY),
+        (
+            f"Answer of a static scene, {tilt_words(result['scene']['supports']['tilt'])}",
+            "",
+            "without a table [excitation] no K(w), C or orbit is identified",
+        ),
+        *interval_rows(result, KXX, KYY, KYY_TILTS_FOLLOW),
+        *held_rows(result),
         *loaded_balls(result, ["most"]),
     ]
 
@@ -143,14 +128,15 @@ def screen(result: ReadTables) -> Screen:
 
 
 def report(result: ReadTables) -> list[Part]:
-    """Of a terminal: what makes the numbers doubtful is read before them."""
+    """Of a terminal: what makes the numbers doubtful is read before them, how the bearing is arranged and modelled after them."""
     shown = screen(result)
+    bearing, *model = shown.bearing.splitlines()
     return [
         *(Words(f"warning: {text}", "yellow") for text in shown.warnings),
         Words(shown.title, "bold"),
-        Words(shown.bearing, "dim"),
+        Words(bearing, "dim"),
         sections(shown.rows),
-        Words(shown.left_out, "dim"),
+        Words("\n".join([*model, shown.left_out]), "dim"),
     ]
 
 
@@ -177,11 +163,12 @@ def _bearing(result: ReadTables) -> str:
     if b.get("radial_clearance") and not b.get("contact_angle_deg") and not lines:
         angle += ", from the clearance"
     balls = f"{b['ball_count']} {'rollers' if lines else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
-    words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}"]
+    geometry = result.get("geometry") or {}
+    maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
+    words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
         words.append(_set(b))
-    if result.get("geometry"):
-        words += [result["geometry"][key] for key in ("designation", "words") if key in result["geometry"]]
+    words += [geometry["designation"]] if "designation" in geometry else []
     law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
     words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
     return "\n".join(words)

@@ -12,9 +12,9 @@ from raceway.out.quantities import (
     CONTACT_ANGLE,
     CONTACT_FORCE,
     DISPLACEMENT,
+    ENDS,
     FORCE,
     K_ERROR,
-    K_MODEL,
     MOTION,
     SPEED,
     STIFFNESS,
@@ -46,7 +46,8 @@ def labelled(result: Result) -> Any:
     Returns
     -------
     xarray.Dataset : ``displacement``, ``stiffness``, ``ball_load`` and ``contact_angle`` of the equilibrium; the ``motion``,
-        ``force`` and ``contact_force`` of the turns that are used by ``time``, where motion was recorded; the identified numbers
+        ``force`` and ``contact_force`` of the turns that are used by ``time``, where motion was recorded; the identified numbers, and
+        ends of the intervals of K and kyy
 
     Raises
     ------
@@ -80,9 +81,8 @@ def labelled(result: Result) -> Any:
     if result.identification is not None:
         numbers = ((quantity, quantity.of(result)) for quantity in (Z_REAL, Z_IMAG, SPEED, K, K_ERROR, C, C_ERROR))
         arrays += [(quantity, np.nan if value is None else value) for quantity, value in numbers]
-        if (spread := K_MODEL.of(result)) is not None:
-            coordinates["end"] = ["low", "high"]
-            arrays.append((K_MODEL, spread))
+    ends = {quantity: quantity.of(result) for quantity in ENDS.values()}
+    arrays += [(quantity, value) for quantity, value in ends.items() if value is not None]
     variables = {quantity.name: (quantity.dims, values, quantity.labels) for quantity, values in arrays}
     attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}
     return labelled_dataset(variables, coordinates, attributes)

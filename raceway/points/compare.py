@@ -16,9 +16,10 @@ from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.out.answer import Answer, Interrupted, Part
 from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import K_ERROR, C, Quantity, Z, named
+from raceway.out.quantities import ENDS, K_ERROR, C, Quantity, Z, named
 from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
+from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
 from raceway.plugins.labelled import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
@@ -94,7 +95,7 @@ class Comparison(Answer, Findings):
         Returns
         -------
         xarray.Dataset
-            equivalent_stiffness and its error, dynamic_stiffness |Z| [N/m], equivalent_damping [N s/m], NaN where it is not
+            equivalent_stiffness, its error and ends of its interval, dynamic_stiffness |Z| [N/m], equivalent_damping [N s/m], NaN where it is not
             resolved, and status, a dimension for each key
 
         Raises
@@ -168,10 +169,18 @@ def _number_of(row: Row) -> tuple[str, str]:
         return "-", row.doubt or ""
     doubt = f"; unreliable: {row.doubt}" if row.doubt else ""
     if z is None:
-        return f"{about.symbol} {about.text(value, 4)}", about.words + doubt
-    error = row.error * z
-    error_words = f"+- {about.text(error, 2)}" if row.estimated else "error not known"
+        return f"{about.symbol} {about.text(value, 4)}", f"{_within(row, about)}; {about.words}{doubt}"
+    error, within = row.error * z, _within(row, about)
+    error_words = (
+        f"{within}; numerical +- {about.text(error, 2)}" if row.estimated else f"{within}; numerical error not known"
+    )
     return f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}", error_words + doubt
+
+
+def _within(row: Row, about: Quantity) -> str:
+    """The interval of a quantity; what distinguishes runs, whose unknowns are alike, is seen below it."""
+    entry = (row.result.get("uncertainty") or {}).get(about.name)
+    return interval(entry).partition(":")[0] if entry else ""
 
 
 def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
@@ -179,6 +188,8 @@ def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[s
     for name, about in quantities.items():
         value = row.value(name)
         text[f"{about.symbol} {about.read_unit}"] = "" if value is None else f"{about.read(value):.3f}"
+    first = next(iter(quantities.values()))
+    text[f"{first.symbol} within"] = _within(row, first)
     if quantities is MOVING:
         text[f"{C.symbol} {C.unit}"] = row.damping_words
         text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
@@ -204,13 +215,15 @@ def labelled(comparison: Findings) -> Dataset:
     keys = [axis.key for axis in comparison.axes]
     shape = tuple(len(axis.values) for axis in comparison.axes)
     moving = comparison.quantities is MOVING
-    quantities = comparison.quantities | (named(K_ERROR, C) if moving else {})
+    ends = {name: ENDS[name] for name in (("K_low", "K_high") if moving else ("kyy_low", "kyy_high"))}
+    quantities = comparison.quantities | ends | (named(K_ERROR, C) if moving else {})
     numbers = {name: np.full(shape, np.nan) for name in quantities}
     status = np.full(shape, "waiting", dtype=object)
     for row in comparison.rows:
         entry = tuple(axis.values.index(row.point[axis.key]) for axis in comparison.axes)
         status[entry] = row.result["status"] if row.failed else "done"
         values = {name: row.value(name) for name in comparison.quantities}
+        values |= {name: end.of(row.result) for name, end in ends.items()}
         if moving:
             z = values[Z.name] if row.estimated else None
             values |= {C.name: row.damping, K_ERROR.name: None if z is None else row.error * z}

@@ -76,7 +76,7 @@ class SweepStore(Store):
     Attributes
     ----------
     design : points, in the order of their numbers
-    facts : scene (all keys, at the first point), design, labels of plug-ins' quantities, identity (versions and plug-ins), files, schema, created
+    facts : scene (all keys, at the first point), given (what of it was said), design, labels of plug-ins' quantities, identity (versions and plug-ins), files, schema, created
     """
 
     def __init__(self, path: Path, connection: Connection) -> None:
@@ -232,6 +232,7 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
     attributes = {
         "title": store.title,
         "scene": json.dumps(store.scene),
+        "given": json.dumps(store.facts["given"]),
         "plugins": json.dumps(store.facts["identity"]["plugins"]),
         "raceway": store.facts["identity"]["raceway"],
         "program": store.facts["identity"]["program"],

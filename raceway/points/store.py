@@ -28,7 +28,7 @@ from raceway.scene.scene import Scene
 from raceway.storage.kernel_cache import source_key
 from raceway.storage.tables import ReadTables, Tables
 
-SCHEMA = 6
+SCHEMA = 7
 _STATES = ("waiting", "done", "failed")
 POINTS, _LOCK = "points.sqlite", ".lock"
 _COLUMNS = "key, state, reason, content, cost, digest"

@@ -18,12 +18,12 @@ import numpy as np
 from raceway.core.threads import usable_cores
 from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
-from raceway.framework.doors import PATH, PATHS, Reader, door, reader
+from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, reader
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
 from raceway.out.progress import telling
-from raceway.out.quantities import COLUMNS, KYY_TILTS_FOLLOW, MODEL_BOUND
+from raceway.out.quantities import COLUMNS, ENDS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns
@@ -62,10 +62,11 @@ class Point:
 
     Attributes
     ----------
-    tables : of the scene
+    tables : of the scene;  further : names of ``ENDS`` that are asked for
     """
 
     tables: Tables
+    further: tuple[str, ...] = ()
 
     def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
         from raceway.pipeline.run import run
@@ -76,7 +77,9 @@ class Point:
         try:
             result = run(scene_from_dict(tables_at(self.tables, point, registry), registry), registry)
             unlimited = [name for name, value in result.quantities.items() if np.isposinf(value).all()]
-            content = {"values": values_of(result), "unlimited": unlimited, "warnings": list(result.warnings)}
+            ends = {name: ENDS[name].of(result) for name in self.further}
+            values = values_of(result) | {name: value for name, value in ends.items() if value is not None}
+            content = {"values": values, "unlimited": unlimited, "warnings": list(result.warnings)}
             cost = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
             state = "done"
         except RacewayError as error:
@@ -175,6 +178,7 @@ class Sweep:
     Attributes
     ----------
     function : that computes blocks of points; None where each point is a run
+    further : names of ``ENDS`` that are asked for
     """
 
     tables: Tables
@@ -183,14 +187,22 @@ class Sweep:
     plugins: tuple[str, ...]
     facts: Tables
     function: Function | None
+    further: tuple[str, ...] = ()
 
 
-def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str | Path] = (), resume: bool = False) -> Sweep:
+def prepare(
+    scene: SceneSource,
+    axes: Axes,
+    store: Path,
+    plugins: Iterable[str | Path] = (),
+    resume: bool = False,
+    quantities: Iterable[str] = (),
+) -> Sweep:
     """Look over a sweep; nothing is computed or written.  Options that a change of kind leaves out are warned of.
 
     Parameters
     ----------
-    plugins : one-off plug-in files;  resume : go on with a store that is there
+    plugins : one-off plug-in files;  resume : go on with a store that is there;  quantities : further ones, of ``ENDS``
 
     Raises
     ------
@@ -199,7 +211,9 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
     RacewayError
         A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
     """
-    files = tuple(str(Path(file).resolve()) for file in plugins)
+    files, further = tuple(str(Path(file).resolve()) for file in plugins), tuple(quantities)
+    for name in further:
+        member("quantities", name, ENDS)
     registry = registry_of(files)
     tables = plain_tables(scene, registry=registry)
     design = design_in_units(_design_of(axes), tables, registry)
@@ -209,12 +223,17 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
         raise _with_static_remedy(error) from None
     for note in surveyed.notes:
         warnings.warn(note, stacklevel=2)
-    function = None if files else _column_function(tables, surveyed.scene, design, registry)
+    # Intervals are known to runs alone.
+    function = None if files or further else _column_function(tables, surveyed.scene, design, registry)
     facts = {
         "scene": surveyed.scene.to_dict(),
+        "given": tables_at(tables, design.point(0), registry),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
-        "quantities": {name: each.labels for name, each in stated_columns(surveyed.scene, registry).items()},
+        "quantities": {
+            name: each.labels
+            for name, each in (*stated_columns(surveyed.scene, registry).items(), *((name, ENDS[name]) for name in further))
+        },
         "identity": identity(registry, surveyed.used),
         "files": surveyed.files,
     }
@@ -231,7 +250,7 @@ def prepare(scene: SceneSource, axes: Axes, store: Path, plugins: Iterable[str |
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(tables, design, store, files, facts, function)
+    return Sweep(tables, design, store, files, facts, function, further)
 
 
 def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
@@ -264,7 +283,7 @@ def workload(prepared: Sweep, executor: Executor, planned: int = 100) -> Workloa
         )
         return Workload(
             title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refused, refused=refused, stored=stored,
-            disk_bytes=_RUN_BYTES * design.size, why_runs="an axis or the scene that no compiled loop takes",
+            disk_bytes=_RUN_BYTES * design.size, why_runs="an axis, the scene or a quantity that no compiled loop takes",
         )  # fmt: skip
     return of_columns(title, function, design.size, stored, len(design.keys) + sum(map(_numbers, function.outputs)))
 
@@ -318,7 +337,7 @@ def fill_store(
             numbers = [number for number in range(design.size) if number in waiting]
         finished = design.size - len(numbers)
         batches = ((n, [(n, design.point(n))]) for n in numbers)
-        for n, answer in _rows(executor, prepared, Point(prepared.tables), batches):
+        for n, answer in _rows(executor, prepared, Point(prepared.tables, prepared.further), batches):
             store.put([Row(n, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer])
             finished = advance(finished + 1)
     return open_store(prepared.store)
@@ -340,6 +359,8 @@ def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
     difference = "another scene"
     if not reasons:
         difference, reasons = "another sweep", _changed(stored.facts["design"], facts["design"])
+    if not reasons:
+        difference, reasons = "other quantities", sorted(stored.facts["quantities"].keys() ^ facts["quantities"].keys())
     if not reasons and stored.facts["files"] != facts["files"]:
         difference, reasons = (
             "changed files of the scene",
@@ -386,6 +407,7 @@ def sweep(
     retry_failed: bool = False,
     design: str | None = None,
     seed: Annotated[int, at_least(0)] = 0,
+    quantities: Annotated[Iterable[str], TEXTS] = (),
     force: bool = False,
     plugins: Annotated[Iterable[str | Path], PATHS] = (),
     progress: ShowProgress = None,
@@ -402,6 +424,7 @@ def sweep(
     store : folder of all finished points; None: a temporary one, removed when the results are loaded
     resume : go on with a store that is there: compute what is not finished;  retry_failed : failed points again, too
     design : "sobol:N", of a power of 2, or "lhs:N": N points that fill the ranges;  seed : of its random numbers
+    quantities : "K_low", "K_high", "kyy_low", "kyy_high" [N/m]: ends of the intervals of K and kyy, of which each point is a run
     force : also where runs are predicted to take longer than a day
     plugins : files of one-off plug-ins, which the workers load, too
     progress : True for a bar on a terminal, or called as ``progress(what, done, total)``
@@ -440,7 +463,7 @@ def sweep(
             if not isinstance(axes, Mapping):
                 raise SceneError.at("axes", None, f"must be ranges, key -> (low, high), for the design {design}")
             axes = sampled(axes, design, seed)
-        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed)
+        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed, quantities)
         refuse_large(prepared, worker_pool, force)
         with fill_store(prepared, worker_pool, retry_failed, report) as filled:
             if (failed := all_failed(filled)) is not None:

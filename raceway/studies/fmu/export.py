@@ -15,6 +15,7 @@ from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Part
 from raceway.out.wrapping import Words
+from raceway.pipeline.front import radial_note
 from raceway.points.axes import box
 from raceway.points.rigid_force import SPIN
 from raceway.scene.inputs import SceneSource, as_scene
@@ -157,4 +158,4 @@ def export_fmu(
         unit = force_unit(read, name, limits[SPIN][1] if limits else None)
     notes = [] if limits else ["ranges are not set (--range): about the scene's own numbers"]
     unit = attrs.evolve(unit, words=f"{title}: {unit.words}")
-    return FMU(title, unit, [*(NOTES if kind == "force" else []), *notes])
+    return FMU(title, unit, [*(NOTES if kind == "force" else []), *notes, *radial_note(read)])

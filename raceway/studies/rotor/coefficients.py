@@ -11,6 +11,7 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 
@@ -21,6 +22,7 @@ from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.doors import member
 from raceway.out.damping import dry_damping_words
 from raceway.out.quantities import COLUMNS
+from raceway.pipeline.front import radial_note
 from raceway.points.axes import shown
 from raceway.points.plot import LIST, Selection, listed, only_axes
 from raceway.scene.tables import TIME_CONSTANTS
@@ -147,7 +149,13 @@ def coefficients(
     stiffness, damping, resolved, definition, notes = SOURCES[source](selection)
     measured = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, replaced = _without_noise(damping, resolved, unresolved)
-    notes += [*replaced, *_band(selection), *tilt_note(selection), *_dry(source, stiffness, damping, measured, unresolved)]
+    notes += [
+        *radial_note(json.loads(selection.dataset.attrs.get("given", "{}"))),
+        *replaced,
+        *_band(selection),
+        *tilt_note(selection),
+        *_dry(source, stiffness, damping, measured, unresolved),
+    ]
     tangent, tangent_damping = _at_equilibrium(selection, "stiffness"), _at_equilibrium(selection, "damping")
     axial = _undirected(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
     data = selection.dataset

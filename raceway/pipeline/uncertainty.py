@@ -1,0 +1,267 @@
+"""How far the headline quantities of a result may be off, and by what: ``uncertainty`` of result.json.
+
+Notes
+-----
+Parts are relative changes, each with how it was found: ``numerical``, of the solver; ``hypotheses``, ``error.model``; ``data``, geometry that
+is inferred, whose bearing it is, and [tolerances]; ``contact``, exact Hertz instead of the law; ``bodies``, elastic rings and balls instead of
+rigid ones.  Nobody prints how loads, pressures and lives differ between bearings: there inferred numbers go to the ends of their scatter,
+one by one, in the equilibrium of rigid rings under the constant loads.
+
+References
+----------
+JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.1.2 (squares of independent parts) and F.2.4.5 (known effects
+that are not corrected widen one side).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import hypot, isfinite
+from typing import TYPE_CHECKING, Any
+
+import attrs
+
+from raceway.bodies.elastic_change import elastic_change
+from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
+from raceway.bodies.rigid_bearing import build, with_hertz
+from raceway.core.ring.ring import TOLERANCE
+from raceway.errors import RacewayError
+from raceway.framework.duties import fitting_quantities
+from raceway.framework.estimate import Estimate
+from raceway.framework.shown import Fact, number_within, percents
+from raceway.out.quantities import HEADLINE, KXX, KYY, L10R, P0, PEAK_BALL_LOAD, PRELOAD, STIFFNESSES, K, Quantity, Z
+from raceway.out.quantities import KYY_TILTS_FOLLOW as FOLLOWS
+from raceway.pipeline.equilibrium import pressures, solve_equilibrium
+from raceway.pipeline.quantities import solved_point, stated_numbers
+from raceway.planning.resolve import Problem
+from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+
+#: How parts combine.
+RULE = (
+    "hypotheses, contact and bodies, whose sign is known, add on their side; this sum, numerical and data, on each side the root of "
+    "the sum of squares; parts that are not known are left out"
+)
+#: Parts whose sign is known, with their words on screens.
+_SIGNED = {"hypotheses": "hypotheses", "contact": "exact Hertz", "bodies": "rings and balls elastic"}
+#: Notes on contacts or hypotheses that change nothing.
+_NOTHING = (Estimate.HERTZ_ITSELF, Estimate.BEYOND_HERTZ, Estimate.NOTHING_TURNS, Estimate.HYPOTHESES_STATED)
+#: Share of the interval below which a part is not told; of its smaller side, to which the value is shown; of a side that counts.
+_TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
+
+Range = tuple[float, float]
+
+
+def combined(parts: Mapping[str, ReadTables]) -> Range:
+    """The interval of parts by ``RULE``, relative; 0 lies inside."""
+    known = {name: (part["low"], part["high"]) for name, part in parts.items() if part["low"] is not None}
+    signed = [_with_zero(known.pop(name)) for name in _SIGNED if name in known]
+    return _squares([(sum(low for low, _ in signed), sum(high for _, high in signed)), *known.values()])
+
+
+def _with_zero(change: Iterable[float]) -> Range:
+    ends = 0.0, *change
+    return min(ends), max(ends)
+
+
+def _squares(changes: Iterable[Iterable[float]]) -> Range:
+    """Root of the sum of squares of each side."""
+    sides = [_with_zero(change) for change in changes]
+    return -hypot(*(low for low, _ in sides)), hypot(*(high for _, high in sides))
+
+
+def _part(change: Sequence[float] | None, how: str, **more: object) -> Tables:
+    low, high = change or (None, None)
+    return {"low": low, "high": high, "how": str(how), **more}
+
+
+def uncertainty_table(result: Result) -> Tables:
+    """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
+    table, why, unresolved = dict[str, Tables | None](), dict[str, str](), ", ".join(result.error["unresolved"] or [])
+    lives = result.stated.missing.get("life", "no life is computed")
+    absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
+    scatters, hertz = _at_scatters(result), _under_hertz(result)
+    elastic = elastic_change(result.model, result.equilibrium) if result.bodies is None else {}
+    for quantity in HEADLINE:
+        value, name = quantity.of(result), quantity.name
+        table[name] = None
+        if value is None:
+            why[name] = absent.get(quantity, "supports.tilt is locked")
+        elif not isfinite(value) or not value:
+            why[name] = f"{value:g} has no relative change"
+        elif quantity is K and (unresolved or (result.equivalent_stiffness_error or 0.0) > abs(value)):
+            why[name] = f"not resolved: the error of Z ({unresolved or 'total'}) is as large as K"
+        if name in why:
+            continue
+        # K changes as the radial stiffness does.
+        static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
+        data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
+        known = [{"part": word, **part} for word, part in data if part["low"] is not None]
+        how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
+        parts = {
+            "numerical": _numerical(result, quantity),
+            "hypotheses": _hypotheses(result, name, static),
+            "data": _part(_squares((part["low"], part["high"]) for part in known) if known else None, how, of=known),
+            "contact": _contact(result, quantity, hertz.get(static)),
+            "bodies": _bodies(elastic, KYY.name if quantity in (K, FOLLOWS) else name),
+        }
+        low, high = combined(parts)
+        low = low if quantity in STIFFNESSES else max(low, -1.0)
+        table[name] = {
+            "value": float(value), "unit": quantity.unit, "low": value + low * abs(value), "high": value + high * abs(value),
+            "relative": [low, high], "parts": parts, "rule": RULE,
+        }  # fmt: skip
+    return {**table, "why": why}
+
+
+def stated(quantity: Quantity, result: ReadTables) -> Fact:
+    """Label, value with the digits that its interval deserves, and the interval with its parts, from the content of result.json."""
+    entry, why = result["uncertainty"][quantity.name], result["uncertainty"]["why"].get(quantity.name, "")
+    if entry is None:
+        return quantity.label, "not resolved" if quantity is K else quantity.text(quantity.of(result)), why
+    value, (low, high) = quantity.read(entry["value"]), entry["relative"]
+    least = min(filter(None, (-low, high)), default=0.0)
+    return quantity.label, number_within(value, _SHOWN * least * abs(value), quantity.read_unit), interval(entry)
+
+
+def interval(entry: ReadTables) -> str:
+    """An interval and its parts in a line, the largest first."""
+    (low, high), parts = entry["relative"], entry["parts"]
+    named = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
+    named |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
+    sizes = {words: max(abs(part["low"]), abs(part["high"])) for words, part in named.items() if part["low"] is not None}
+    told = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
+    each = ", ".join(f"{words} {_percents((named[words]['low'], named[words]['high']), '')}" for words in told)
+    unknown = ", ".join(words for words in named if words not in sizes)
+    return f"{_percents((low, high), '+- ')} %: {each}{unknown and f'; not estimated: {unknown}'}"
+
+
+def _percents(change: Range, even: str) -> str:
+    """Both ends in percent without the sign; one number of an even interval or of a single side."""
+    low, high = _with_zero(change)
+    if abs(low + high) < _SIDE * (high - low):
+        return f"{even}{percents(high)[1:-2]}"
+    return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
+
+
+def _numerical(result: Result, quantity: Quantity) -> Tables:
+    error, how = result.error, result.error["how"]
+    if quantity is K or (quantity in (PEAK_BALL_LOAD, P0) and result.simulation is not None):
+        if error["total"] is None:
+            return _part(None, how["total"])
+        calibrated = (error["contact"] or 0.0) if result.model.traits.calibrated else 0.0
+        size = max(error["total"] - calibrated, 0.0) * (Z.of(result) / abs(K.of(result)) if quantity is K else 1.0)
+        return _part((-size, size), "error.total, over K" if quantity is K else "error.total, of the motion")
+    if error["mesh"] is None and result.bodies is not None:
+        return _part(None, how["mesh"])
+    size = TOLERANCE + (error["mesh"] or 0.0)
+    return _part((-size, size), "residual of the equilibrium, error.mesh")
+
+
+def _hypotheses(result: Result, *names: str) -> Tables:
+    """Of the first name that ``error.model`` has."""
+    spread, note = result.model_spread
+    if spread is None:
+        return _part((0.0, 0.0) if note.estimate in _NOTHING else None, note)
+    if not spread["hypotheses"]:
+        return _part((-spread["bound"], spread["bound"]), note)
+    name = next((name for name in names if spread.get(name) is not None), None)
+    return _part(None, "not in error.model") if name is None else _part(spread[name], f"error.model.{name}")
+
+
+def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Tables:
+    size, note = result.error["contact"], result.error["how"]["contact"]
+    estimate = getattr(note, "estimate", None)
+    if estimate in _NOTHING or size is None:
+        return _part((0.0, 0.0) if estimate in _NOTHING else None, note)
+    if estimate is Estimate.AGAINST_HERTZ:
+        return _part(None if hertz is None else (hertz, hertz), "exact Hertz in the equilibrium of rigid rings")
+    if quantity not in STIFFNESSES:
+        return _part(None, "known of stiffnesses alone")
+    # Without overlap a contact is stiffer.
+    return _part((-size, size) if result.model.traits.calibrated else (0.0, size / max(1.0 - size, 1e-9)), note)
+
+
+def _bodies(elastic: Mapping[str, float] | str, name: str) -> Tables:
+    if not elastic:
+        return _part((0.0, 0.0), "elastic as computed")
+    change = None if isinstance(elastic, str) else elastic.get(name)
+    how = (
+        elastic
+        if isinstance(elastic, str)
+        else "walls below the grooves, and balls"
+        if change
+        else "known of stiffnesses alone"
+    )
+    return _part(None if change is None else _with_zero([change]), how)
+
+
+def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Tables]]:
+    geometry = result.geometry
+    if geometry is not None and quantity not in STIFFNESSES:
+        yield "inferred geometry", _part(scatters.get(quantity.name), "inferred numbers at the ends of their uncertainties")
+    elif geometry is not None:
+        for part in geometry["data"]:
+            yield part["part"], _part(part["axial" if quantity is KXX else "radial"], part["why"], remedy=part["remedy"])
+
+
+def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Tables]]:
+    if (band := result.tolerances) is not None:
+        names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
+        found = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
+        ends = [(found[end] - found["value"]) / abs(found["value"]) for end in ("low", "high") if found["value"]]
+        yield "tolerances", _part(ends or None, "95 % to first order" if ends else band["why"] or "no derivative")
+
+
+def _under_hertz(result: Result) -> dict[str, float]:
+    """Changes of numbers at rest by exact Hertz; empty where the law is Hertz's, or what replaces it on elastic bodies."""
+    if getattr(result.error["how"]["contact"], "estimate", None) is not Estimate.AGAINST_HERTZ:
+        return {}
+    own, other = _numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
+    return {name: other[name] / value - 1.0 for name, value in own.items() if name in other}
+
+
+def _at_scatters(result: Result) -> dict[str, Range]:
+    """Changes of numbers at rest by inferred numbers at the ends of their scatter."""
+    inferred, problem = (result.geometry or {}).get("inferred", {}), result.model.problem
+    scatters = {key: fact["scatter"] for key, fact in inferred.items() if fact["scatter"] and "." not in key}
+    # Rings that grow would be solved for at each of them.
+    still = attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, ring_growth=False))
+    base, changes = _rigid_numbers(result.model, still), dict[str, list[Range]]()
+    for key, scatter in scatters.items():
+        number = getattr(problem.bearing, key)
+        whole = isinstance(number, int)
+        step = 1.0 / number if whole else scatter  # a ball more and a ball less
+        moved = [number * (1.0 + by) for by in (-step, step)]
+        ends = [_rigid_numbers(result.model, still, **{key: round(value) if whole else value}) for value in moved]
+        for name in set(base).intersection(*ends):
+            change = _with_zero(scatter / step * (end[name] / base[name] - 1.0) for end in ends)
+            changes.setdefault(name, []).append(change)
+    return {name: _squares(each) for name, each in changes.items() if len(each) == len(scatters)}
+
+
+def _rigid_numbers(model: Model, problem: Problem, **numbers: Any) -> dict[str, float]:
+    """Of rigid rings with Hertz's law and other numbers of [bearing], of rollers with their own law; empty without an equilibrium."""
+    try:
+        problem = attrs.evolve(problem, bearing=attrs.evolve(problem.bearing, **numbers))
+        if problem.traits.line_contacts:
+            other = model_of(problem, model.plan)
+        else:
+            bearing = build(with_hertz(problem), model.plan)
+            other = Model(with_hertz(problem), model.plan, bearing, bearing.system)
+        return _numbers(other, solve_equilibrium(other))
+    except (RacewayError, ValueError, ArithmeticError):  # LinAlgError is a ValueError
+        return {}
+
+
+def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float]:
+    """Headline quantities at rest that are no zeros."""
+    plugins = [one.name for one in fitting_quantities(model.problem) if L10R.name in {number.name for number in one.numbers}]
+    lives = stated_numbers(solved_point(model, equilibrium, None), plugins)
+    k, force = equilibrium.stiffness, equilibrium.contact_force
+    numbers = {KXX.name: k[0, 0], KYY.name: k[1, 1], FOLLOWS.name: tilts_follow(k, model.problem.supports.tilt)}
+    numbers |= {PEAK_BALL_LOAD.name: force.max(), P0.name: pressures(model, force).max()}
+    numbers |= {name: value[0] for name, value in lives.items() if name == L10R.name}
+    return {name: float(value) for name, value in numbers.items() if value is not None and isfinite(value) and value}
