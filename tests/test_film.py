@@ -91,7 +91,15 @@ def test_oils_thin_with_the_temperature_as_their_lines_do():
 
 def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives_at_spindle_speed():
     def running(law):
-        found = run(rw.Scene.from_dict({"bearing": SPINDLE, "contact": law, "kinematics": {"spin_speed_rpm": 18000.0}}))
+        found = run(
+            rw.Scene.from_dict(
+                {
+                    "bearing": SPINDLE,
+                    "contact": law,
+                    "kinematics": {"spin_speed_rpm": 18000.0, "gyroscopic": "none", "ring_growth": False},
+                }
+            )
+        )
         return found.to_dict()["equilibrium"], found.warnings
 
     dry, cold, hot = (running(law) for law in (DRY_LAW, {**OIL, "inlet_heating": "none"}, OIL))

@@ -12,7 +12,7 @@ from raceway.testing import run
 OIL = {"oil": "VG 32", "temperature_c": 60.0}
 TABLES = {
     "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0, "radial": [200.0, 0.0]},
-    "kinematics": {"spin_speed_rpm": 6000.0}, "lubricant": OIL,
+    "kinematics": {"spin_speed_rpm": 6000.0, "gyroscopic": "none", "ring_growth": False}, "lubricant": OIL,
 }  # fmt: skip
 
 

@@ -147,7 +147,7 @@ def response(integrator, share, identifier="fft_1x", **changes):
         "bearing": {"preset": "B7206C"},
         "load": {"axial": 400.0},
         "supports": {"tilt": "locked"},
-        "kinematics": {"spin_speed_rpm": RPM},
+        "kinematics": {"spin_speed_rpm": RPM, "gyroscopic": "none", "ring_growth": False},
         "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": RPM},
         "integrator": {"kind": integrator},
         "identifier": {"kind": identifier},
@@ -161,6 +161,7 @@ KINDS = [
     {},
     {"kinematics": {"ball_inertia": False}},
     {"kinematics": {"gyroscopic": "outer_race"}},
+    {"kinematics": {"gyroscopic": "traction"}},
     {"load": {"radial": [300.0, 0.0]}},
 ]
 

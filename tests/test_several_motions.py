@@ -81,7 +81,7 @@ def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitu
     """Points of the article's study at which nothing grows out of rest: the orbit closes in a turn of the reference ring."""
     tables = article(axial, kind="periodic", tolerance=1e-9)
     tables["excitation"] |= {"speed_rpm": speed, "amplitude": amplitude}
-    tables["kinematics"] = {"ball_inertia": inertia}
+    tables["kinematics"] = {"ball_inertia": inertia, "gyroscopic": "none", "ring_growth": False}
     result = solved(tables)
     assert result.simulation.orbits[0]["found"] == found
     z, multiplier, gap = by_integration(result)
@@ -176,7 +176,7 @@ def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_interval
         "load": {"axial": 0.28, "radial": [-744.5, 209.0]},
         "rotor": {"mass": 0.065, "transverse_inertia": 0.0103},
         "contact": {"kind": "penalty", "damping": 300.0},
-        "kinematics": {"ball_inertia": True},
+        "kinematics": {"gyroscopic": "none", "ring_growth": False},
         "integrator": {"kind": "newmark", "turns": 1, "steps_per_turn": 24, "start": "static"},
         "excitation": {"kind": "bidirectional", "speed_rpm": 219.84, "unbalance": 1.93e-6},
     }  # fmt: skip

@@ -476,7 +476,7 @@ def test_the_command(tmp_path):
 def test_the_map_of_hardening_has_the_trend_of_an_independent_solver():
     # physics: fixed balls with centrifugal force, half the rig's unbalance towards ball 0, no ring growth; the printed
     # ratios have three digits, the printed stiffness three or four: half a digit is 0.3 % of the smallest.
-    tables = {**read_toml(EXAMPLES / "hardening_map.toml"), "kinematics": {"ball_inertia": True}}
+    tables = {**read_toml(EXAMPLES / "hardening_map.toml"), "kinematics": {"gyroscopic": "none", "ring_growth": False}}
     axes = {"supports.tilt": ["locked", "free"], "load.axial": [400, 2000], "excitation.speed_rpm": [10980, 15000]}
     k = front(tables, axes).equivalent_stiffness
     for tilt, load, first, ratio in (

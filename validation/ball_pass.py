@@ -32,7 +32,7 @@ def passing_hz(model: Model) -> float:
 def static_amplitude(tables: dict[str, Any]) -> np.ndarray:
     """(5,) first harmonic of the static displacement over one ball pitch, from 16 positions of the balls."""
     still = {k: v for k, v in tables.items() if k not in ("excitation", "integrator")} | {
-        "kinematics": {"spin_speed_rpm": SPEED}
+        "kinematics": {"spin_speed_rpm": SPEED, "gyroscopic": "none", "ring_growth": False}
     }
     pitch, found = 360.0 / tables["bearing"].get("ball_count", 12), []
     for k in range(16):

@@ -117,7 +117,7 @@ def _scene(
     return {
         "title": "extreme", "bearing": bearing, "supports": {"tilt": tilt},
         "load": {"axial": axial, "radial": [radial * c, radial * s], "moment": [moment * c, moment * s]},
-        "kinematics": {"spin_speed_rpm": speed}, "contact": {"kind": law},
+        "kinematics": {"spin_speed_rpm": speed, "gyroscopic": "none", "ring_growth": False}, "contact": {"kind": law},
     }  # fmt: skip
 
 

@@ -127,6 +127,7 @@ def scene(contact: dict[str, Any], **tables: dict[str, Any]) -> Scene:
         "load": {"axial": 1000.0},
         "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1.0},
         "contact": contact,
+        "kinematics": {"gyroscopic": "none", "ring_growth": False},
         "integrator": {"kind": "newmark", "turns": 12},
     }
     return rw.Scene.from_dict({key: {**said.get(key, {}), **tables.get(key, {})} for key in {**said, **tables}})

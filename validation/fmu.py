@@ -31,15 +31,16 @@ RANGES = {"load.axial": (400.0, 2000.0), "excitation.force": (50.0, 300.0), "exc
 _STATIC: dict[str, Any] = {
     "bearing": {"preset": "B7206C"},
     "load": {"axial": 1000.0},
-    "kinematics": {"spin_speed_rpm": 12000.0},
+    "kinematics": {"spin_speed_rpm": 12000.0, "gyroscopic": "none", "ring_growth": False},
 }
 _SPIN = _STATIC["kinematics"]
-#: Scenes of the force: weightless balls, centrifugal force, gyroscopic moments by both hypotheses, growth, another law, a pair.
+#: Scenes of the force: weightless balls, centrifugal force, gyroscopic moments by all hypotheses, growth, another law, a pair.
 FORCES: dict[str, dict[str, Any]] = {
     "weightless": _STATIC | {"kinematics": _SPIN | {"ball_inertia": False}},
     "centrifugal": _STATIC,
     "outer race": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "outer_race"}},
     "shared": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "shared"}},
+    "traction": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "traction", "ring_growth": "with_shaft"}},
     "growth": _STATIC | {"kinematics": _SPIN | {"ring_growth": True}},
     "penalty": _STATIC | {"contact": {"kind": "penalty"}},
     "DB": _STATIC | {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},

@@ -26,7 +26,7 @@ SCENE: dict[str, Any] = {
     "rotor": {"mass": 2.0, "damping": 200.0},
     "load": {"axial": 400.0},
     "excitation": {"kind": "unidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 40.0},
-    "kinematics": {"ball_inertia": False},
+    "kinematics": {"ball_inertia": False, "gyroscopic": "none", "ring_growth": False},
     "contact": {"damping": 0.0},
 }
 OVER = "excitation.speed_rpm=500:30000"

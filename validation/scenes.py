@@ -25,7 +25,7 @@ def static(axial: float, tilt: str, radial: float = 0.0, spin_rpm: float = 0.0, 
         "bearing": {"preset": "B7206C"},
         "supports": {"tilt": tilt},
         "load": {"axial": axial, "radial": [radial, 0.0]},
-        "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": spin_rpm},
+        "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": spin_rpm, "gyroscopic": "none", "ring_growth": False},
     }
 
 
@@ -42,7 +42,7 @@ def rotating(axial: float, tilt: str, speed_rpm: float, inertia: bool, integrato
             "load_share": SHARE,
         },
         "contact": {"damping": 0.001},
-        "kinematics": {"ball_inertia": inertia},
+        "kinematics": {"ball_inertia": inertia, "gyroscopic": "none", "ring_growth": False},
         "integrator": {"kind": integrator, "turns": 12},
     }  # fmt: skip
 
@@ -78,6 +78,8 @@ def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any
         "kinematics": {
             "ball_inertia": bool(rng.random() < 0.75),
             "spin_speed_rpm": float(rng.uniform(0.0, 1e5)),
+            "gyroscopic": "none",
+            "ring_growth": False,
         },
         "contact": {"kind": law},
     }

@@ -31,6 +31,7 @@ def heavy(mass: float, damping: float = 5000.0, **integrator: Any) -> Tables:
         "rotor": {"mass": mass, "damping": damping},
         "excitation": {"kind": "bidirectional", "speed_rpm": 15000, "amplitude": "constant", "force": 100.0},
         "contact": {"damping": 0.0},
+        "kinematics": {"gyroscopic": "none", "ring_growth": False},
         "integrator": {"kind": "newmark", **integrator},
     }
 
@@ -41,6 +42,7 @@ def article(axial: float, **integrator: Any) -> Tables:
     return {
         "bearing": {"preset": "B7206C"}, "supports": {"tilt": "free"}, "rotor": {"mass": 2.0}, "load": {"axial": axial},
         "excitation": {**force, "reference_speed_rpm": 10980.0}, "contact": {"damping": 0.0},
+        "kinematics": {"gyroscopic": "none", "ring_growth": False},
         "integrator": {"kind": "newmark", **integrator},
     }  # fmt: skip
 

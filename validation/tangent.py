@@ -20,7 +20,7 @@ def cases() -> dict[str, dict[str, Any]]:
     still: dict[str, Any] = {"ball_inertia": False}
 
     def turning(rpm: float) -> dict[str, Any]:
-        return {"ball_inertia": True, "spin_speed_rpm": rpm}
+        return {"ball_inertia": True, "spin_speed_rpm": rpm, "gyroscopic": "none", "ring_growth": False}
 
     def scene(
         bearing: dict[str, Any], tilt: Any, axial: float, radial: list[float], spin: dict[str, Any], **more: Any

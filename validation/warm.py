@@ -20,7 +20,7 @@ def warm_pair(heat: dict[str, object] | None = None, **tables: dict[str, Any]) -
     """A DB pair of B7206C, preloaded rigidly by 300 N, at 12 000 r/min in VG 32."""
     scene: dict[str, dict[str, Any]] = {
         "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0},
-        "kinematics": {"spin_speed_rpm": 12_000.0},
+        "kinematics": {"spin_speed_rpm": 12_000.0, "gyroscopic": "none", "ring_growth": False},
         "lubricant": {"oil": "VG 32"},
         "heat": {"oil_inlet_c": 40.0, "oil_flow": 8e-6, **(heat or {})},
     }
@@ -150,7 +150,7 @@ def jet_bearing(bore: int, rpm: float, flow: float, ambient_c: float = 394.0 - 2
     return {
         "bearing": dict(zip(_KEYS, sizes, strict=True)) | {"conformity_inner": 0.535, "conformity_outer": 0.535},
         "load": {"axial": load},
-        "kinematics": {"spin_speed_rpm": rpm},
+        "kinematics": {"spin_speed_rpm": rpm, "gyroscopic": "none", "ring_growth": False},
         "lubricant": {"viscosity_40": 27.6e-6, "viscosity_100": 5.1e-6, "density": 930.0},
         "heat": {"oil_inlet_c": 394.0 - 273.15, "oil_flow": f"{flow} cm3/min", "ambient_c": ambient_c},
     }

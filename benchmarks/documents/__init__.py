@@ -86,8 +86,8 @@ _NOTES = {
     "bodies": "Deformable parts; elastic bodies [at rest](elastic.md), [in motion](elastic_dynamics.md).",
     "mesh": "Hexahedra ([meshes](mesh.md)): required by elastic bodies, ignored by rigid ones.",
     "lubricant": "The oil of friction, life, heat and of a film law without oil keys; default: the oil of the film law.",
-    "kinematics": "No default of `gyroscopic` and `ring_growth` suits all bearings: where the scene does not set them, their effect on K "
-    "and kyy is reported as [`error.model`](physics.md#hypotheses-left-at-their-defaults).",
+    "kinematics": "`raceway plan` says what 'auto' stands for and why; what the other words would change is "
+    "[`error.model`](physics.md#hypotheses-left-open).",
     "mounting": "Fits and temperatures, which change the preload ([sets](sets.md)).",
     "integrator": "`auto` solves for [the steady orbit](periodic.md) (`periodic`) where the force repeats every turn, and uses `newmark` for "
     "forces of changing speed or size, friction, laws with memory, orbiting balls, forces that are not compiled, where `turns`, "

@@ -121,8 +121,6 @@ def why_not(scene: Scene, moving: bool) -> str:
 
 def why_no_column(scene: Scene, key: str) -> str:
     """Why the numbers at a continuous key can not be a column; empty where they can."""
-    if key.startswith("bearing.") and scene.kinematics.ring_growth:
-        return "the growth of the rings differs by point"
     if why := resolve(scene).body_kind.why_no_columns(key):
         return why
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ

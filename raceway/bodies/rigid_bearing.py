@@ -30,7 +30,10 @@ if TYPE_CHECKING:
     from raceway.core.jit import Kernel
 
 #: Shares of a ball's gyroscopic moment that inner and outer race carry, by hypothesis; 2 together.
-_SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0)}
+_SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0), "traction": (1.0, 1.0)}
+#: What rolling contacts carry at most, over their load: the coefficient of friction of synthetic oils and greases, on which fast
+#: bearings run, in full films (SKF, The SKF model for calculating the frictional moment).
+_TRACTION = 0.04
 
 
 class RigidBearing(Bearing):
@@ -139,6 +142,7 @@ def _scalars(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
 def add_moments(scalars: np.ndarray, problem: Problem, geometry: BallBearing) -> None:
     """The balls' gyroscopic moments, by the scene's hypothesis."""
     scalars[..., [ring.SHARE_INNER, ring.SHARE_OUTER]] = _SHARES[problem.kinematics.gyroscopic]
+    scalars[..., ring.TRACTION] = _TRACTION if problem.kinematics.gyroscopic == "traction" else 0.0
     scalars[..., ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
     moment_of_inertia = geometry.ball_mass(problem.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
     scalars[..., ring.GYROSCOPIC] = moment_of_inertia * problem.spin_speed * geometry.cage_speed(problem.spin_speed)

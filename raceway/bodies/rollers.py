@@ -100,7 +100,7 @@ class CylindricalRollers:
         gyroscopic = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
         refuse(moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, gyroscopic)
         why = "assumes the ring of a ball bearing: set the growth by kinematics.radial_expansion"
-        refuse(moving.ring_growth, "kinematics.ring_growth", True, why)
+        refuse(bool(moving.ring_growth), "kinematics.ring_growth", True, why)
         refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers are in one row: use 'single'")
         why = "a line contact has none: set bearing.radial_clearance only"
         refuse(bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, why)

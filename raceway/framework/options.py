@@ -199,8 +199,8 @@ def finite() -> Rule:
     return _rule("a finite number", lambda v: True)
 
 
-def one_of(*choices: str) -> Rule:
-    """Rule: one of a few words.
+def one_of(*choices: str | bool) -> Rule:
+    """Rule: one of a few words, or true or false where they are among them.
 
     Examples
     --------
@@ -210,11 +210,11 @@ def one_of(*choices: str) -> Rule:
         ...
     ValueError: must be one of 'locked', 'free' (did you mean 'free'?)
     """
-    listed = ", ".join(repr(c) for c in choices)
+    listed = ", ".join(repr(c) if isinstance(c, str) else str(c).lower() for c in choices)
 
     def check(_instance: object, _attribute: object, value: str) -> None:
         if value not in choices:
-            raise ValueError(f"must be one of {listed}{nearest(value, choices)}")
+            raise ValueError(f"must be one of {listed}{nearest(value, [c for c in choices if isinstance(c, str)])}")
 
     return worded(check, f"one of {listed}", {"enum": list(choices)})
 

@@ -2,10 +2,11 @@
 
 Notes
 -----
-The spread is that of K and of the static stiffness over the hypotheses of ``[kinematics]`` that a scene leaves at their defaults.
-No numerical error knows of it: two programs with other hypotheses solve other equations.  Each hypothesis, and all of them
-together, is put into the ring that was run; its equilibrium gives kyy, its steady orbit near the recorded one K.  Both are
-compared with the same solver's values under the scene's own hypotheses, so that errors of the orbits cancel.
+The spread is that of K, static stiffness, ball load and pressure over the hypotheses of ``[kinematics]`` that a scene leaves at
+"auto".  No numerical error knows of it: two programs with other hypotheses solve other equations.  Each hypothesis, and together
+those that change a quantity most to either side, are put into the ring that was run; its equilibrium gives kyy, its steady orbit
+near the recorded one K.  Both are compared with the same solver's values under the scene's own hypotheses, so that errors of the
+orbits cancel.
 
 Nothing is solved where a bound says that it would change nothing: gyroscopic moments change kyy by less than 3 F_c / Q and the
 growth u of the inner raceway by less than u / d (F_c centrifugal force, Q inner load, d inner approach of a loaded ball).  The
@@ -26,17 +27,17 @@ from raceway.bodies.basis import Basis, growth_of
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import add_moments
-from raceway.core.columns import with_values
+from raceway.core.columns import some, with_values
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Record
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, GYROSCOPIC, OWN_REST_AXIAL, OWN_TILT_ARM, REST_AXIAL, TILT_ARM
 from raceway.core.ring.orbit import Orbit, orbit_near
 from raceway.core.ring.system import compiled, surrogate
 from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
-from raceway.out.quantities import KYY, KYY_TILTS_FOLLOW, K
+from raceway.out.quantities import KXX, KYY, KYY_TILTS_FOLLOW, P0, PEAK_BALL_LOAD, K
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.resolve import Problem
@@ -52,9 +53,9 @@ _SAMPLES = 60
 _LAG = 0.01
 #: Axial force of a row over the centrifugal force of its balls below which Hirano saw gross sliding, and below which a warning says so.
 _ROLLING, _SLIDING = 10.0, 1.0
-#: Keys of ``[kinematics]`` that are hypotheses, with the values beside each default.
-_HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("outer_race", "shared"), "ring_growth": (True,)}
-_QUANTITIES = (K.name, KYY.name, KYY_TILTS_FOLLOW.name)
+#: Keys of ``[kinematics]`` that are hypotheses, with what stands beside "auto".
+_HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("none", "outer_race", "shared"), "ring_growth": (False, True)}
+_QUANTITIES = (K.name, KXX.name, KYY.name, KYY_TILTS_FOLLOW.name, PEAK_BALL_LOAD.name, P0.name)
 #: Relative change of a stiffness that is not worth a solution or a sentence.
 NEGLIGIBLE = 1e-3
 #: Times of a turn, an odd number, and residual of orbits that are compared: both cancel in their ratio.
@@ -196,26 +197,55 @@ def model_spread(
     if bound < NEGLIGIBLE:
         return _table([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
-    kinematics, tilt = model.problem.kinematics, model.problem.supports.tilt
-    default = {key: getattr(kinematics, key) for key in values}
+    kinematics, own = model.problem.kinematics, _numbers(model, equilibrium)
     rows: list[tuple[Tables, Tables]] = []
-    for combination in product(*([default[key], *values[key]] for key in values)):
-        changed = {key: value for key, value in zip(values, combination, strict=True) if value != default[key]}
-        if not changed:
-            continue
+
+    def solve(changed: Tables) -> None:
+        nonlocal how
         change: Tables = dict.fromkeys(_QUANTITIES)
         try:
             problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **changed))
             variant, state = _under(model, problem, equilibrium)
-            before, after = ((e.stiffness[1, 1], tilts_follow(e.stiffness, tilt)) for e in (equilibrium, state))
-            for name, a, b in zip(_QUANTITIES[1:], before, after, strict=True):
-                change[name] = None if a is None or b is None else float((b - a) / abs(a))
+            for name, number in _numbers(variant, state).items():
+                before = own[name]
+                change[name] = None if before is None or number is None else (number - before) / abs(before)
             of_secant = np.nan if secant is None else secant(variant, state)
             change[K.name] = of_secant if np.isfinite(of_secant) else None
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
             how += f"; not under {changed}: {str(error).splitlines()[0]}"
         rows.append((changed, change))
+
+    for key, others in values.items():
+        for value in others:
+            solve({key: value})
+    for changed in _extremes(values, rows):
+        solve(changed)
     return _table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
+
+
+def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
+    """Of an equilibrium, by their names."""
+    k, forces = equilibrium.stiffness, equilibrium.contact_force
+    return {
+        KXX.name: float(k[0, 0]), KYY.name: float(k[1, 1]),
+        KYY_TILTS_FOLLOW.name: tilts_follow(k, model.problem.supports.tilt),
+        PEAK_BALL_LOAD.name: float(np.max(forces)), P0.name: float(pressures(model, forces).max()),
+    }  # fmt: skip
+
+
+def _extremes(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]]) -> list[Tables]:
+    """Combinations of hypotheses of several keys that change a quantity most to either side, by what each changes alone."""
+    found: list[Tables] = []
+    for name, sign in product(_QUANTITIES, (-1.0, 1.0)):
+        together: Tables = {}
+        for key in values:
+            alone = [(sign * change[name], one[key]) for one, change in rows if key in one and change[name] is not None]
+            most, value = max(alone, key=lambda pair: pair[0], default=(0.0, None))
+            if most > 0.0:
+                together[key] = value
+        if len(together) > 1 and together not in found:
+            found.append(together)
+    return found
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
@@ -247,7 +277,7 @@ def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list
     """Values of the keys left at their defaults that the scene can run with, and what it cannot; a note where there are none."""
     if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
-    unstated = [key for key in _HYPOTHESES if not problem.says(f"kinematics.{key}")]
+    unstated = [key for key in _HYPOTHESES if getattr(problem.scene.kinematics, key) == "auto"]
     if not unstated:
         return {}, Estimate.HYPOTHESES_STATED()
     if not compiled_ring:
@@ -258,6 +288,8 @@ def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list
     why = ""
     for key in unstated:
         for value in _HYPOTHESES[key]:
+            if value == getattr(problem.kinematics, key) or (value is True and some(problem.mounting.shaft_interference)):
+                continue  # a fit that is given is not left out
             try:
                 refuse_what_cannot_run(attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, **{key: value})))
             except SceneError as error:
@@ -278,8 +310,8 @@ def _bound(
         bound += _MOMENTS * np.divide(table[..., CENTRIFUGAL], inner, out=np.zeros_like(inner), where=loaded).max(axis=-1)
     if "ring_growth" in keys:
         running = problem.running
-        grown = attrs.evolve(running, kinematics=with_values(running.kinematics, ring_growth=True))
-        more, now = growth_of(grown, basis.row), basis.growth
+        either = (with_values(running.kinematics, ring_growth=grows) for grows in (True, False))
+        more, now = (growth_of(attrs.evolve(running, kinematics=one), basis.row) for one in either)
         radial = np.abs(more.common[..., None, 1] + more.by_ball[..., 1] - now.common[..., None, 1] - now.by_ball[..., 1])
         with np.errstate(invalid="ignore"):  # of points without a load
             approach = ellipse.approach(np.where(loaded, inner, least[..., None])).max(axis=-1)
@@ -295,7 +327,9 @@ def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Eq
     scalars, table = ring.scalars.copy(), ring.table.copy()
     scalars[REST_AXIAL : TILT_ARM + 1] += growth.common - model.basis.growth.common
     table[:, OWN_REST_AXIAL : OWN_TILT_ARM + 1] += growth.by_ball - model.basis.growth.by_ball
-    if problem.kinematics.gyroscopic != "none":
+    if problem.kinematics.gyroscopic == "none":
+        scalars[GYROSCOPIC] = 0.0
+    else:
         from raceway.core.ring.kernels.structural import condensed
         from raceway.core.ring.kernels.tangential import rigid_tangential
 

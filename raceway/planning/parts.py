@@ -104,15 +104,12 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
         rubbing = False
         why_not = "equilibria and static stiffness of elastic bodies are frictionless"
     friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
-    hypothesis = problem.kinematics.gyroscopic != "none"
-    still, part = "no spin speed", "gyroscopic moments of the balls"
-    why_not = still if hypothesis else problem.said("kinematics.gyroscopic", "none")
-    moments = parts.decide(
-        hypothesis and problem.spin_speed > 0.0, part, "kinematics.gyroscopic names a hypothesis", why_not
-    )
-    grows, part, key = problem.kinematics.ring_growth, "centrifugal growth of the inner ring", "kinematics.ring_growth"
-    why_not = still if grows else problem.said(key, "false")
-    parts.decide(grows and problem.spin_speed > 0.0, part, f"{key} is true", why_not)
+    turns, still = problem.spin_speed > 0.0, "no spin speed"
+    moments = problem.gyroscopic != "none"
+    part, why = "gyroscopic moments of the balls", problem.why("gyroscopic")
+    moments = parts.decide(moments and turns, part, why, still if moments else why)
+    part, why = "centrifugal growth of the inner ring", problem.why("ring_growth")
+    parts.decide(bool(problem.ring_growth) and turns, part, why, still if problem.ring_growth else why)
     why_not = problem.said("kinematics.orbiting", "false")
     parts.decide(problem.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
     rows = f"bearing.arrangement is {problem.bearing.arrangement if not problem.bearing.row else problem.bearing.signs}"

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar, overload
 
 import attrs
 
-from raceway.core.columns import Number, cos, is_column, largest, log, sin, some, sqrt, where
+from raceway.core.columns import Number, at_row, cos, is_column, largest, log, sin, some, sqrt, where, with_values
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
@@ -33,6 +33,10 @@ _SAMPLES = 72_000
 #: What a record takes at the peak over its own arrays: 3.7 times measured with 12 balls and 400 turns.  Records above the limit are refused [bytes].
 _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
+
+
+#: Why what needs balls of one kind is refused.
+ROWS = "the rows of this set are different bearings"
 
 
 T = TypeVar("T")
@@ -77,7 +81,9 @@ class Problem(SceneTables):
     ----------
     scene : what the user said, for messages and results
     points : (n,) where numbers are columns of n operating points, () of one
+    kinematics : with a hypothesis for each 'auto'
     integrator_why : why planning chose the integrator; empty where the scene says one
+    hypotheses_why : why ``gyroscopic`` and ``ring_growth`` have their values
 
     Notes
     -----
@@ -87,6 +93,7 @@ class Problem(SceneTables):
     scene: Scene
     points: tuple[int, ...] = ()
     integrator_why: str = ""
+    hypotheses_why: Tables = attrs.field(factory=dict, eq=False)
     _derived: dict[str, tuple[Any, str]] = attrs.field(factory=dict, init=False, eq=False, repr=False)
 
     def why(self, quantity: str) -> str:
@@ -155,6 +162,16 @@ class Problem(SceneTables):
         if rpm is not None:
             return rpm * pi / 30.0, f"the speed of excitation '{self.excitation.name}'"
         return 0.0, "no speed is given"
+
+    @Derived
+    def gyroscopic(self) -> tuple[str, str]:
+        """Who carries the balls' gyroscopic moments."""
+        return self.kinematics.gyroscopic, self.hypotheses_why["gyroscopic"]
+
+    @Derived
+    def ring_growth(self) -> tuple[bool | str, str]:
+        """How the inner ring grows with the speed."""
+        return self.kinematics.ring_growth, self.hypotheses_why["ring_growth"]
 
     @Derived
     def time_constant(self) -> tuple[float, str]:
@@ -371,11 +388,67 @@ _TRANSIENT: tuple[Rule[Problem], ...] = (
 )
 
 
+#: Why gyroscopic moments of the balls cannot be computed.
+MOMENTS: tuple[Rule[Problem], ...] = (
+    Rule(
+        "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.kinematics.ball_inertia,
+        "needs the balls' centrifugal force, which presses an unloaded ball to its race: set ball_inertia = true",
+    ),
+    Rule(
+        "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.bearing.equal_rows,
+        f"{ROWS}: moments are computed for balls of one kind only. Set it 'none'",
+    ),
+)  # fmt: skip
+
+#: Why the growth of the inner ring cannot be computed.
+GROWTH: tuple[Rule[Problem], ...] = (
+    Rule("kinematics.ring_growth", lambda p: p.kinematics.ring_growth and p.bearing.bore is None, "needs the bearing's `bore`"),
+    Rule(
+        "mounting.shaft_material.density",
+        lambda p: p.kinematics.ring_growth and p.mounting.shaft_material
+        and not p.says("mounting.shaft_material.density"),
+        "is required by kinematics.ring_growth: the shaft grows with the speed, too",
+    ),
+)  # fmt: skip
+
+
+def _decided(problem: Problem) -> Problem:
+    """The problem with a hypothesis for each key of [kinematics] that is 'auto', and why: what can be computed acts.
+
+    Notes
+    -----
+    With friction contacts stick along the grooves, and would carry moments twice.
+    """
+    fit = "as far as mounting.shaft_interference holds" if some(problem.mounting.shaft_interference) else "as one body"
+    choices: dict[str, tuple[Any, str, tuple[Rule[Problem], ...], Any]] = {
+        "gyroscopic": ("traction", "both races carry them within friction", MOMENTS, "none"),
+        "ring_growth": ("with_shaft", f"ring and shaft grow together, {fit}", GROWTH, False),
+    }
+    chosen, reasons = dict[str, Any](), dict[str, str]()
+    for key, (value, why, rules, off) in choices.items():
+        chosen[key] = now = getattr(problem.kinematics, key)
+        if now == "auto":
+            chosen[key], words = value, ""
+            tried = attrs.evolve(problem, kinematics=with_values(problem.kinematics, **chosen))
+            if not some(problem.spin_speed):
+                words = "nothing turns"
+            elif key == "gyroscopic" and problem.contact.friction > 0.0:
+                words = "contact.friction: contacts that stick along the grooves carry them"
+            else:
+                faults = attrs.evolve(at_row(tried, 0), points=()).body_kind.faults()
+                refused = [fault.message for fault in faults if fault.path == f"kinematics.{key}"]
+                words = next(iter([*(text for _, text in speaking(rules, tried)), *refused]), "")
+            chosen[key] = off if words else value
+        shown = chosen[key] if isinstance(chosen[key], str) else str(chosen[key]).lower()
+        reasons[key] = f"kinematics.{key} is {shown}" + (f" by 'auto': {words or why}" if now == "auto" else "")
+    return attrs.evolve(problem, kinematics=with_values(problem.kinematics, **chosen), hypotheses_why=reasons)
+
+
 def resolve(scene: Scene) -> Problem:
     """What a scene asks for; pure."""
     tables = {table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)}
     tables["contact"], tables["lubricant"] = lubricated(scene.contact, scene.lubricant)
-    problem = Problem(scene=scene, **tables)
+    problem = _decided(Problem(scene=scene, **tables))
     if scene.integrator.kind != AutoIntegrator.name:
         return problem
     why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")

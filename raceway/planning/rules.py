@@ -12,8 +12,8 @@ from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.duties import has_phase, renews, speed_rpm
 from raceway.framework.rules import Rule, mistakes, speaking
-from raceway.planning.resolve import Problem, recorded_per_turn
-from raceway.scene.growth import GROWTH, LOOSE
+from raceway.planning.resolve import GROWTH, MOMENTS, ROWS, Problem, recorded_per_turn
+from raceway.scene.growth import LOOSE, SIZES
 from raceway.scene.unused import unused
 
 
@@ -73,7 +73,6 @@ _DAMPS = (
     "is damping proportional to the contact stiffness, which contact resultants on rigid or condensed bodies support: use those, "
     "or contact.damping in N s/m"
 )
-_ROWS = "the rows of this set are different bearings"
 
 #: What no bodies, or no other part, can compute, before the growth of grooves is looked at.
 _CONTACTS: tuple[Rule[Problem], ...] = (
@@ -98,17 +97,8 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
         lambda p: p.contact.loss_factor is not None and p.excitation is not None and p.excitation.period_s is None,
         "needs an excitation of one frequency: set contact.time_constant",
     ),
-    Rule("kinematics.ring_growth", lambda p: p.kinematics.ring_growth and p.bearing.bore is None, "needs the bearing's `bore`"),
-    Rule(
-        "mounting.shaft_material.density",
-        lambda p: p.kinematics.ring_growth and p.mounting.shaft_material
-        and not p.says("mounting.shaft_material.density"),
-        "is required by kinematics.ring_growth: the shaft grows with the speed, too",
-    ),
-    Rule(
-        "kinematics.gyroscopic", lambda p: p.kinematics.gyroscopic != "none" and not p.kinematics.ball_inertia,
-        "needs the balls' centrifugal force, which presses an unloaded ball to its race: set ball_inertia = true",
-    ),
+    *GROWTH,
+    *MOMENTS,
     Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs a spin speed"),
     *(
         Rule(
@@ -158,19 +148,15 @@ _HEAT: tuple[Rule[Problem], ...] = (
 _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
         "kinematics.orbiting", lambda p: not p.bearing.equal_rows and p.kinematics.orbiting,
-        f"{_ROWS}, whose balls travel at different speeds: set it false",
-    ),
-    Rule(
-        "kinematics.gyroscopic", lambda p: not p.bearing.equal_rows and p.kinematics.gyroscopic != "none",
-        f"{_ROWS}: moments are computed for balls of one kind only. Set it 'none'",
+        f"{ROWS}, whose balls travel at different speeds: set it false",
     ),
     Rule(
         "contact.friction", lambda p: not p.bearing.equal_rows and p.contact.friction > 0.0,
-        f"{_ROWS}: friction is computed for balls of one kind only. Set it 0",
+        f"{ROWS}: friction is computed for balls of one kind only. Set it 0",
     ),
     Rule(
         "excitation.kind", lambda p: not p.bearing.equal_rows and p.spin_changes,
-        f"{_ROWS}: a changing speed is supported for balls of one kind only. Fix it by kinematics.spin_speed_rpm",
+        f"{ROWS}: a changing speed is supported for balls of one kind only. Fix it by kinematics.spin_speed_rpm",
     ),
     Rule(
         "excitation", lambda p: p.excitation is not None and p.excitation.amplitude_n == 0.0,
@@ -219,7 +205,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
 def refuse_what_cannot_run(problem: Problem) -> None:
     """Raise ``SceneError`` with everything that this version, or this combination, cannot do."""
     try:
-        growth = mistakes(GROWTH, problem.running)
+        growth = mistakes(SIZES, problem.running)
     except SceneError as error:  # a body that lacks its thermal expansion
         growth = error.mistakes
     faults = [

@@ -60,8 +60,11 @@ def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
 
 
 @cache
-def _growth(b: Bearing, depth: float) -> float:
+def _growth(b: Bearing, depth: Number) -> Number:
     """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
+    if has_columns(b):
+        rows = (at_row(b, point) for point in range(length(b)))
+        return np.array([_growth.__wrapped__(row, groove_depth(row)) for row in rows])
     young, poisson = b.rings.young, b.rings.poisson
     if b.width is not None:
         from raceway.core.mesh.ring_mesh import RingSection
@@ -195,7 +198,8 @@ class RunningBearing:
         Notes
         -----
         Of a free ring of the exact section, at the free contact angle.  Without a width the ring is taken for a plane-stress annulus
-        from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).
+        from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).  "with_shaft" ring and
+        shaft without a fit are one elastic body: the ring is held back by what speed would take from a fit that holds.
 
         References
         ----------
@@ -203,7 +207,12 @@ class RunningBearing:
         """
         growth = self.kinematics.radial_expansion
         if self.kinematics.ring_growth and b.bore is not None and some(self.spin_speed):
-            growth = growth + b.rings.density * self.spin_speed**2 * _growth(b, groove_depth(b))
+            growth = growth + b.rings.density * self.spin_speed**2 * (_growth.__wrapped__ if has_columns(b) else _growth)(
+                b, groove_depth(b)
+            )
+            if self.kinematics.ring_growth == "with_shaft":
+                loose = where(self.interference_at_standstill(b) > 0.0, 0.0, 1.0)
+                growth = growth - loose * self._fit_lost(b) * self._by_interference(b, 1.0)
         return growth
 
     def inner_fit(self, b: Bearing) -> float:
@@ -267,16 +276,22 @@ class RunningBearing:
         ----------
         Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
         """
-        at_rest, rings = self.interference_at_standstill(b, seat), b.rings
+        at_rest = self.interference_at_standstill(b, seat)
         if seat == "housing" or b.bore is None or not self.kinematics.ring_growth:
             return at_rest
-        bore, hole = 0.5 * b.bore, 0.5 * self.mounting.shaft_bore
+        holds = at_rest > 0.0 if self.kinematics.ring_growth == "with_shaft" else True
+        return at_rest - where(holds, self._fit_lost(b), 0.0)
+
+    def _fit_lost(self, b: Bearing) -> float:
+        """By how much the bore of a free ring grows beyond the shaft at speed, on the diameter [m]."""
+        assert b.bore is not None, "required by ring_growth"
+        rings, bore, hole = b.rings, 0.5 * b.bore, 0.5 * self.mounting.shaft_bore
         land = 0.5 * (b.pitch_diameter - b.ball_diameter) + groove_depth(b)
         ring, core = (
             body.density / (4.0 * body.young) * ((1.0 - body.poisson) * bore**2 + (3.0 + body.poisson) * far**2)
             for body, far in ((rings, land), (self.mounting.shaft_material or rings, hole))
         )
-        return at_rest - 2.0 * self.spin_speed**2 * bore * (ring - core)
+        return 2.0 * self.spin_speed**2 * bore * (ring - core)
 
 
 def _widths(b: RunningBearing, dimension: str) -> list[float]:
@@ -362,7 +377,7 @@ def _opened_words(b: RunningBearing) -> str:
 
 
 #: Fits, and growth that leaves no bearing.
-GROWTH: tuple[Rule[RunningBearing], ...] = (
+SIZES: tuple[Rule[RunningBearing], ...] = (
     *_FITS,
     Rule(_cause, _closed, _closed_words),
     Rule(_cause, _opened, _opened_words),

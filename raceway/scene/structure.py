@@ -109,6 +109,7 @@ _HOOKS: dict[object, Any] = {
     float | str: _number_or_word,
     str | float: _number_or_word,
     int | str: _integer_or_word,
+    bool | str: lambda value, _type=None: value if isinstance(value, str) else _switch(value),
     float | None: _optional(_number),
     int | None: _optional(_integer),
     str | None: _optional(_word),

@@ -227,7 +227,9 @@ class Kinematics:
     orbiting: bool = option(False, help="balls travel at cage speed")
     ball_inertia: bool = option(True, help="centrifugal force of the balls at cage speed")
     gyroscopic: str = option(
-        "none", help="hypothesis of the balls' gyroscopic moment", rule=one_of("none", "outer_race", "shared")
+        "auto",
+        help="who carries the balls' gyroscopic moments; 'traction': both races within friction; 'auto': 'traction' where it can be computed",
+        rule=one_of("auto", "none", "outer_race", "shared", "traction"),
     )
     spin_speed_rpm: float | None = option(
         None,
@@ -236,7 +238,11 @@ class Kinematics:
         rule=optional(between(0.0, 1e9)),
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
-    ring_growth: bool = option(False, help="adds the centrifugal growth of the inner ring")
+    ring_growth: bool | str = option(
+        "auto",
+        help="centrifugal growth of the inner ring: true free of the shaft, 'with_shaft' together with it, beyond a given fit; 'auto': 'with_shaft'",
+        rule=one_of("auto", "with_shaft", True, False),
+    )
     ball_growth: bool = option(False, help="adds the centrifugal growth of the balls")
 
 

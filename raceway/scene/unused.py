@@ -8,7 +8,7 @@ from contextlib import suppress
 import attrs
 
 from raceway.errors import RacewayError
-from raceway.framework.duties import unused_with_bodies
+from raceway.framework.duties import speed_rpm, unused_with_bodies
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
 from raceway.framework.rules import Rule, speaking
@@ -86,6 +86,12 @@ def _slow(s: Scene) -> bool:
     return _recorded(s) and not s.integrator.method.inertial
 
 
+def _turns(s: Scene) -> bool:
+    """Whether the inner ring has a speed."""
+    rpm = s.kinematics.spin_speed_rpm
+    return bool(speed_rpm(s.excitation) if rpm is None else rpm)
+
+
 _INTEGRATION = ("integrator.turns", "integrator.steps_per_turn", "integrator.start")
 _DASHPOTS = ("contact.damping", "contact.time_constant", "contact.loss_factor")
 _ROTOR = ("rotor.mass", "rotor.transverse_inertia", "rotor.polar_inertia", "rotor.damping")
@@ -125,7 +131,7 @@ _RULES: tuple[Rule[Scene], ...] = (
         ("mounting.shaft_bore", "mounting.shaft_material"),
         lambda s: not (
             s.mounting.shaft_interference
-            or s.kinematics.ring_growth
+            or (s.kinematics.ring_growth and (s.kinematics.ring_growth != "auto" or _turns(s)))
             or (s.mounting.shaft_material and s.mounting.inner_temperature)
         ),
         "mounting.shaft_interference is 0",

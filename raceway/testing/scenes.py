@@ -12,8 +12,11 @@ if TYPE_CHECKING:
 
 
 def b7206c(**tables: object) -> Tables:
-    """The tables of a B7206C under 1000 N; each keyword replaces or extends one table."""
-    scene: Tables = {"title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
+    """The tables of a B7206C under 1000 N, without gyroscopic moments and growth at speed; each keyword replaces or extends one table."""
+    scene: Tables = {
+        "title": "test", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0},
+        "kinematics": {"gyroscopic": "none", "ring_growth": False},
+    }  # fmt: skip
     for name, table in tables.items():
         scene[name] = {**scene.get(name, {}), **table} if isinstance(table, dict) else table
     return scene

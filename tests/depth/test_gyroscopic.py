@@ -10,6 +10,7 @@ from raceway import SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tangential import rigid_tangential
 from raceway.core.ring.system import System
+from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 
@@ -42,7 +43,7 @@ def tangent_error(system: System, q: np.ndarray, ball: np.ndarray) -> float | No
 
 @pytest.mark.parametrize("pair", [{}, {"arrangement": "DB", "preload": 200.0}])
 @pytest.mark.parametrize("friction", [0.0, 0.03, 0.5])
-@pytest.mark.parametrize("hypothesis", ["none", "outer_race", "shared"])
+@pytest.mark.parametrize("hypothesis", ["none", "outer_race", "shared", "traction"])
 def test_the_tangent_is_the_derivative(built, hypothesis, friction, pair):
     """1e-6: what differences of fourth order leave of forces that are solved to 1e-10."""
     model = fast(built, hypothesis, contact={"friction": friction}, bearing={"preset": "B7206C", **pair})
@@ -66,8 +67,10 @@ def test_forces_do_not_depend_on_the_first_guess(built, off):
         assert np.abs(change[:3]).max() < 2e-14 * known.contact_force.sum()
 
 
-def test_without_moment_it_is_the_inertial_kernel(built):
-    model = fast(built, "none")
+@pytest.mark.parametrize("contact", [{}, {"kind": "film", "oil": "VG 32", "temperature_c": 40.0}])
+def test_without_moment_it_is_the_inertial_kernel(built, contact):
+    model = fast(built, "none", contact=contact)
+    solve_equilibrium(model)  # a film's thickness is built in
     plain = model.system
     tangential = attrs.evolve(plain, kernel=rigid_tangential, base_kernel=plain.kernel)
     q, ball, _ = plain.solve_equilibrium(model.guess)

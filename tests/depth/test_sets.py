@@ -25,7 +25,7 @@ SAME = 1e-8
 def scene(arrangement="TBT", preload=200.0, bearing=None, **tables):
     given = {"preset": "B7206E", "arrangement": arrangement, "row_distance": DISTANCE, "preload": preload, **(bearing or {})}
     given = {key: value for key, value in given.items() if value is not None}
-    kinematics = {"ball_inertia": False, **tables.pop("kinematics", {})}
+    kinematics = {"ball_inertia": False, "gyroscopic": "none", "ring_growth": False, **tables.pop("kinematics", {})}
     return scene_from_dict({"title": "set", "bearing": given, "kinematics": kinematics, **tables})
 
 

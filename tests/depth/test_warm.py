@@ -262,7 +262,7 @@ def test_growth_of_a_ball():
 
 
 def test_growing_balls_press_a_set():
-    kinematics = {"spin_speed_rpm": 40000.0}
+    kinematics = {"spin_speed_rpm": 40000.0, "ring_growth": False}
     (slow, a), (fast, b) = (settled(scene(kinematics={**kinematics, "ball_growth": on})) for on in (False, True))
     assert preload_table(fast, b)["running_n"] > preload_table(slow, a)["running_n"] == pytest.approx(300.0, rel=1e-8)
 

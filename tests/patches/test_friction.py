@@ -177,20 +177,24 @@ def test_gyroscopic_moments_turn_contacts_as_they_do_with_resultants():
     assert off_tangent(case.system, moved, found.ball) < 1e-3
 
 
-@pytest.mark.parametrize("load", [500.0, 5.0])
-def test_the_moment_of_a_ball_has_exact_derivatives(load):
+@pytest.mark.parametrize(("load", "traction"), [(500.0, 0.0), (5.0, 0.0), (500.0, 0.3), (50.0, 0.3)])
+def test_the_moment_of_a_ball_has_exact_derivatives(load, traction):
     """Of central differences of 1e-9 m in 2e-4 m, 1e-6; at the smaller load the inner contact holds no more than that load."""
-    turned = Gyroscopic(1.0, 0.2, (1.0, 1.0), 9.525e-3, 4.97e-3)
+    turned = Gyroscopic(1.0, 0.2, (1.0, 1.0), 9.525e-3, 4.97e-3, traction)
     places = 2e-4 * np.array([-np.sin(0.3), -np.cos(0.3), np.sin(0.25), np.cos(0.25)])
     contact = 1e6 * np.array([[0.2, 0.1], [0.1, 0.9]])
 
     def of(moved):
-        force = load * np.array([np.sin(0.3), np.cos(0.3)]) - contact @ (moved - places)[:2]
-        pressed = SimpleNamespace(force=force, traction_state=None, stiffness=contact, along=np.zeros((2, 2)))
-        return turned.of(moved[:2], moved[2:], pressed)
+        apart = [load * np.array([np.sin(a), np.cos(a)]) for a in (0.3, 0.25)]
+        pressed = [force - contact @ change for force, change in zip(apart, (moved - places).reshape(2, 2), strict=True)]
+        states = [
+            SimpleNamespace(force=one, traction_state=None, stiffness=contact, along=np.zeros((2, 2))) for one in pressed
+        ]
+        return turned.of(moved[:2], moved[2:], states)
 
     now, step = of(places), 1e-9 * np.eye(4)
     assert (abs(now.couple) == pytest.approx(4.97e-3 * load, rel=1e-12)) == (load == 5.0)
+    assert traction == 0.0 or abs(now.couple) < 4.97e-3 * traction * load
     found = -np.column_stack([(of(places + one).force - of(places - one).force) / 2e-9 for one in step])
     assert np.abs(found - now.stiffness).max() < 1e-6 * np.abs(now.stiffness).max()
 

@@ -19,11 +19,13 @@ a force that falls with their place, ``AppliedLoads``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import attrs
 import numpy as np
 
 from raceway.core.patches.pressure import Contact, ContactState, SlipState
-from raceway.core.ring.kernels.tangential import gyroscopic_moment
+from raceway.core.ring.kernels.tangential import gyroscopic_moment, traction_within
 from raceway.errors import ConvergenceError
 
 #: Step of the difference quotients of the moment [rad], see there.
@@ -52,12 +54,13 @@ class Gyroscopic:
     Attributes
     ----------
     scale : J times the speeds of ring and cage [N m];  ratio : D / d_m;  shares : of inner and outer race, 2 in all
-    diameter, groove : of the ball, and the inner groove's radius [m]
+    diameter, groove : of the ball, and the inner groove's radius [m];  traction : largest coefficient of both contacts; 0: none
 
     Notes
     -----
     ``raceway.core.ring.kernels.tangential`` (``_add_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
-    function of both contact angles; the inner race takes no more than its normal force, the outer one the rest.
+    function of both contact angles; the inner race takes no more than its normal force, the outer one the rest, or both what
+    ``traction_within`` leaves.
     """
 
     scale: float
@@ -65,9 +68,10 @@ class Gyroscopic:
     shares: tuple[float, float]
     diameter: float
     groove: float
+    traction: float = 0.0
 
-    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: ContactState) -> _Turned:
-        """At places D (2,) of the ball in both grooves; pressed : the inner contact."""
+    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: Sequence[ContactState]) -> _Turned:
+        """At places D (2,) of the ball in both grooves; pressed : the inner and the outer contact."""
         si, so = float(np.hypot(*inner)), float(np.hypot(*outer))
         ni, no = -inner / si, outer / so
         ti, to = np.array([ni[1], -ni[0]]), np.array([no[1], -no[0]])
@@ -84,14 +88,22 @@ class Gyroscopic:
         grows = slope @ angle
         pull = [share * moment / self.diameter for share in self.shares]
         by_place = [share / self.diameter * grows for share in self.shares]
-        normal = pressed.force if pressed.traction_state is None else pressed.normal
-        size = float(np.hypot(*normal))
-        if abs(pull[0]) > size:
+        size, grow = np.zeros(2), np.zeros((2, 4))  # normal forces, and their derivatives by both places
+        for race, one in enumerate(pressed):
+            normal = one.force if one.traction_state is None else one.normal
+            size[race] = np.hypot(*normal)
+            if size[race] > 0.0:
+                grow[race, 2 * race : 2 * race + 2] = -(normal / size[race]) @ (one.stiffness - one.along)
+        if self.traction > 0.0:
+            force, by_asked, by_normal = traction_within(pull[0], size[0], self.traction)
+            fades = by_asked * by_place[0] + by_normal * grow[0]
+            rest, by_asked, by_normal = traction_within(2.0 * moment / self.diameter - force, size[1], self.traction)
+            pull = [force, rest]
+            by_place = [fades, by_asked * (2.0 / self.diameter * grows - fades) + by_normal * grow[1]]
+        elif abs(pull[0]) > size[0]:
             sign = float(np.sign(moment))
-            fades = np.zeros(4)
-            if size > 0.0:
-                fades[:2] = -sign * (normal / size) @ (pressed.stiffness - pressed.along)
-            pull = [sign * size, 2.0 * moment / self.diameter - sign * size]
+            fades = sign * grow[0]
+            pull = [sign * size[0], 2.0 * moment / self.diameter - sign * size[0]]
             by_place = [fades, 2.0 / self.diameter * grows - fades]
         stiffness = np.zeros((4, 4))
         stiffness[:2] = np.outer(ti, by_place[0]) - pull[0] * np.outer(ni, angle[0])
@@ -221,8 +233,8 @@ class Balls:
                 by_place[k, 2 * k : 2 * k + 2] = state.couple_by_place
         if applied.gyroscopic is not None and by_place is not None:
             crossed = np.zeros_like(self.coupling)
-            for k, state in enumerate(contact_states[:z]):
-                more = applied.gyroscopic.of(relative[k], relative[z + k], state)
+            for k in range(z):
+                more = applied.gyroscopic.of(relative[k], relative[z + k], contact_states[k::z])
                 at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
                 answer[[k, z + k]] += more.force.reshape(2, 2)
                 crossed[np.ix_(at, at)] = more.stiffness

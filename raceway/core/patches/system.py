@@ -289,7 +289,7 @@ class PatchSystem(SteppedRing):
         groove = self.pool.patches[0].race.groove
         return Gyroscopic(
             float(s[layout.GYROSCOPIC]), float(s[layout.BALL_OVER_PITCH]), (float(s[layout.SHARE_INNER]), float(s[layout.SHARE_OUTER])), float(s[layout.DIAMETER]),
-            groove,
+            groove, float(s[layout.TRACTION]),
         )  # fmt: skip
 
     @property

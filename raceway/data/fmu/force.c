@@ -5,7 +5,8 @@
 /* Columns of at_rest and by_square: raceway.core.ring.kernels.layout's of a ball, then those of all balls. */
 enum { COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT, OWN_REST_AXIAL, OWN_REST_RADIAL, OWN_OFFSET_INNER,
        OWN_OFFSET_OUTER, OWN_TILT_ARM, REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE, FRICTION, STICK,
-       SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER };
+       SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER, TIME_CONSTANT,
+       TRACTION };
 enum { X, Y, Z, TILT_Y, TILT_Z, SPEED, CAGE_ANGLE };
 
 typedef struct { double a, r; } Vector;
@@ -78,21 +79,39 @@ static double moment(Vector i, Vector o, double size, double *by_inner, double *
     return m;
 }
 
+/* Traction: asked / sqrt(1 + (asked / (TRACTION force))^2), with its derivatives. */
+static double traction(double asked, double force, double *by_asked, double *by_force)
+{
+    double limit = at_rest[0][TRACTION], size = hypot(asked, limit * force), a = size > 0.0 ? asked / size : 0.0, m = size > 0.0 ? limit * force / size : 0.0;
+    *by_asked = m * m * m;
+    *by_force = limit * a * a * a;
+    return limit * force * a;
+}
+
 static void add_moment(double size, Contact *inner, Contact *outer)
 {
     double by_i, by_o, m = moment(inner->n, outer->n, size, &by_i, &by_o), diameter = at_rest[0][DIAMETER];
-    double share_i = at_rest[0][SHARE_INNER] / diameter, share_o = at_rest[0][SHARE_OUTER] / diameter;
-    inner->h = -share_i * m;
-    if (fabs(inner->h) > inner->force) { /* no more than the normal force; the outer race carries the rest */
+    double share_i = at_rest[0][SHARE_INNER] / diameter, share_o = at_rest[0][SHARE_OUTER] / diameter, carried = share_i * m, rest = share_o * m;
+    if (at_rest[0][TRACTION] > 0.0) {
+        double i_asked, i_force, o_asked, o_force;
+        carried = traction(carried, inner->force, &i_asked, &i_force);
+        rest = traction(2.0 / diameter * m - carried, outer->force, &o_asked, &o_force);
+        share_i *= i_asked;
+        share_o = o_asked * (2.0 / diameter - share_i);
+        inner->by_length = -i_force * inner->stiffness;
+        outer->by_length = -o_force * outer->stiffness;
+        outer->by_inner = o_asked * i_force * inner->stiffness;
+    } else if (fabs(carried) > inner->force) { /* no more than the normal force; the outer race carries the rest */
         double sign = m > 0.0 ? 1.0 : -1.0;
-        inner->h = -sign * inner->force;
+        carried = sign * inner->force;
         inner->by_length = -sign * inner->stiffness;
         outer->by_inner = sign * inner->stiffness;
         share_i = 0.0;
         share_o = 2.0 / diameter;
-        outer->h = sign * inner->force;
+        rest = share_o * m - carried;
     }
-    outer->h -= share_o * m;
+    inner->h = -carried;
+    outer->h = -rest;
     inner->by_angle = -share_i * by_i;
     inner->by_other = -share_i * by_o;
     outer->by_angle = -share_o * by_o;

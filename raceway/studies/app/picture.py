@@ -163,14 +163,14 @@ def _chosen(result: Result, title: str, names: Sequence[str]) -> list[str]:
 
 
 def _has(result: Result, name: str) -> bool:
-    scene = result.model.scene
+    scene, problem = result.model.scene, result.model.problem
     if name == C.name and result.equivalent_damping is not None:  # the screen says that it is not resolved
         return abs(result.equivalent_damping) > (result.equivalent_damping_error or 0.0)
     if name in _OF_MOTIONS:
         return scene.excitation is not None
     if name == "ball_load":
         # With gyroscopic moments traction takes part of a row's force.
-        return len(scene.bearing.rows) > 1 and scene.kinematics.gyroscopic == "none"
+        return len(scene.bearing.rows) > 1 and problem.kinematics.gyroscopic == "none"
     if name == "kyy_tilts_follow":
         return scene.supports.tilt == "free"
     return name in KNOWN or name in result.quantities

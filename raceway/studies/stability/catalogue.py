@@ -22,7 +22,7 @@ BASE: Tables = {
     "excitation": {
         "kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5, "reference_speed_rpm": 10980.0,
     },
-    "integrator": {"kind": "newmark", "turns": 12},
+    "kinematics": {"gyroscopic": "none", "ring_growth": False}, "integrator": {"kind": "newmark", "turns": 12},
 }  # fmt: skip
 #: Nothing that loses energy.
 UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}

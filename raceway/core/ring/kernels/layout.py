@@ -22,12 +22,13 @@ from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
 #: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
-#: J * spin * cage speed [N m], ball diameter [m].  TIME_CONSTANT: of the contacts' damping [s].
+#: J * spin * cage speed [N m], ball diameter [m].  TIME_CONSTANT: of the contacts' damping [s].  TRACTION: largest traction
+#: coefficient by which contacts carry the moment; 0: an outer contact carries any.
 (
     REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE,
-    FRICTION, STICK, SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER, TIME_CONSTANT,
-) = range(15)  # fmt: skip
-SCALARS = 15
+    FRICTION, STICK, SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER, TIME_CONSTANT, TRACTION,
+) = range(16)  # fmt: skip
+SCALARS = 16
 #: Columns of ``table``, one row a ball: direction of the azimuth at time zero, centrifugal force [N], share of the
 #: approach that the outer race takes under Hertz, Hertz factor of the outer race [N/m^1.5], side, lever [m], shift [m].
 COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT = range(8)

@@ -31,6 +31,7 @@ from raceway.core.ring.kernels.layout import (
     less_row,
     move_centres,
     normal_forces,
+    offsets_of,
     place,
     put_tensor,
     row_times_adjugate,
@@ -104,10 +105,10 @@ PATIENCE = 60
 def _first_guess(k, q, scalars, table, ball, work):
     """Begin with ball k; False where nothing presses it on either race: it then lies midway, without forces."""
     z = table.shape[0]
-    li, lo = scalars[ring.OFFSET_INNER], scalars[ring.OFFSET_OUTER]
+    li, lo = offsets_of(k, scalars, table)
     ea, er, shift = work[CENTRE, k], work[CENTRE, z + k], work[rows.SHIFT, z + k]
     turn = q[3] * work[DIRECTION, z + k] - q[4] * work[DIRECTION, k]
-    turned = (li + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
+    turned = (scalars[ring.OFFSET_INNER] + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
     length = np.sqrt(ea * ea + er * er)
     room = li + lo + work[rows.SHIFT, k] + shift
     work[TURNED, z + k] = turned
@@ -119,7 +120,8 @@ def _first_guess(k, q, scalars, table, ball, work):
     if table[k, ring.CENTRIFUGAL] == 0.0 and length <= room:
         scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
         ball[k, 0], ball[k, 1] = scale * ea, scale * er
-        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = li * angle - turned, lo * angle
+        at_i, at_o = scalars[ring.OFFSET_INNER] * angle, scalars[ring.OFFSET_OUTER] * angle
+        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - turned, at_o
         work[STATE, z + k] = LOOSE
         return False
     if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
@@ -136,13 +138,13 @@ def _seat_outside(k, scalars, table, ball, work):
     """Put ball k where its centrifugal force alone holds it, on the outer race, and forget its steps."""
     z = table.shape[0]
     depth = (table[k, ring.CENTRIFUGAL] / table[k, ring.OUTER_FACTOR]) ** (2.0 / 3.0)
-    ball[k, 0], ball[k, 1] = 0.0, scalars[ring.OFFSET_OUTER] + depth
+    ball[k, 0], ball[k, 1] = 0.0, offsets_of(k, scalars, table)[1] + depth
     work[SLOPE, k], work[MERIT, z + k] = 0.0, np.inf
     work[STEP, k], work[STEP, z + k] = 0.0, 0.0
 
 
-@jit(void(int64, VECTOR, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def _approach(k, scalars, ball, ball_gain, ball_history, work):
+@jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
+def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
     """Directions, lengths, gaps and gap rates of both contacts of ball k."""
     z = ball.shape[0]
     pa, pr = ball[k, 0], ball[k, 1]
@@ -153,8 +155,8 @@ def _approach(k, scalars, ball, ball_gain, ball_history, work):
     own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
     rate_i = -(ni_a * (work[VELOCITY, k] - own_a) + ni_r * (work[VELOCITY, z + k] - own_r))
     rate_o = -(no_a * own_a + no_r * own_r)
-    gap_i = scalars[ring.OFFSET_INNER] - si + work[rows.SHIFT, k]
-    gap_o = scalars[ring.OFFSET_OUTER] - so + work[rows.SHIFT, z + k]
+    li, lo = offsets_of(k, scalars, table)
+    gap_i, gap_o = li - si + work[rows.SHIFT, k], lo - so + work[rows.SHIFT, z + k]
     rate_i, rate_o = rate_i + work[rows.SHIFT_RATE, k], rate_o + work[rows.SHIFT_RATE, z + k]
     work[LENGTH, k], work[LENGTH, z + k] = si, so
     work[INNER, k], work[INNER, z + k] = ni_a, ni_r
@@ -295,6 +297,25 @@ def gyroscopic_moment(inner, outer, ratio, scale):
     return _moment(inner, _rolling(outer, ratio), ratio, scale)
 
 
+class _Traction(NamedTuple):
+    """Traction of a contact [N], its derivatives by what is asked of it and by the contact's normal force."""
+
+    force: float
+    by_asked: float
+    by_normal: float
+
+
+@jit(types.NamedUniTuple(float64, 3, _Traction)(float64, float64, float64))
+def traction_within(asked, normal, limit):
+    """asked / sqrt(1 + (asked / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
+    most = limit * normal
+    size = np.sqrt(asked * asked + most * most)
+    if not size > 0.0:
+        return _Traction(0.0, 0.0, 0.0)
+    a, m = asked / size, most / size
+    return _Traction(most * a, m**3, limit * a**3)
+
+
 @jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
 def _add_gyroscopic(k, contacts, scalars, work):
     """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
@@ -303,7 +324,8 @@ def _add_gyroscopic(k, contacts, scalars, work):
     -----
     T = share * M / D with M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m); the ball's spin w_R follows
     from rolling on both races. M follows the contact angles a, with derivatives. The inner race carries no more than its
-    normal force, the outer one the rest: so it fades continuously where the inner contact opens.
+    normal force, the outer one the rest: so it fades continuously where the inner contact opens.  With TRACTION both carry
+    what ``traction_within`` leaves: the inner race of its share, the outer one of the rest.
 
     References
     ----------
@@ -311,7 +333,7 @@ def _add_gyroscopic(k, contacts, scalars, work):
     """
     z = work.shape[1] // 2
     diameter, ratio, scale = scalars[ring.DIAMETER], scalars[ring.BALL_OVER_PITCH], scalars[ring.GYROSCOPIC]
-    groove = scalars[ring.OFFSET_INNER] + 0.5 * diameter
+    groove, limit = scalars[ring.OFFSET_INNER] + 0.5 * diameter, scalars[ring.TRACTION]
     force, stiffness = contacts[0].force, contacts[0].stiffness
     inner, outer = np.arctan2(contacts[0].axial, contacts[0].radial), np.arctan2(contacts[1].axial, contacts[1].radial)
     share_i, share_o = scalars[ring.SHARE_INNER] / diameter, scalars[ring.SHARE_OUTER] / diameter
@@ -320,22 +342,34 @@ def _add_gyroscopic(k, contacts, scalars, work):
     by_i = (_moment(inner + step, here, ratio, scale) - _moment(inner - step, here, ratio, scale)) / (2.0 * step)
     by_o = _moment(inner, _rolling(outer + step, ratio), ratio, scale)
     by_o = (by_o - _moment(inner, _rolling(outer - step, ratio), ratio, scale)) / (2.0 * step)
-    carried, grows = share_i * moment, 0.0
-    if abs(carried) > force:
+    carried, rest, grows, passed = share_i * moment, share_o * moment, 0.0, 0.0
+    if limit > 0.0:
+        # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.
+        force -= work[rows.FORCE_BY_RATE, k] * work[rows.GAP_RATE, k]
+        outer_force = contacts[1].force - work[rows.FORCE_BY_RATE, z + k] * work[rows.GAP_RATE, z + k]
+        at_i = traction_within(carried, max(force, 0.0), limit)
+        at_o = traction_within(2.0 / diameter * moment - at_i.force, max(outer_force, 0.0), limit)
+        carried, rest, share_i = at_i.force, at_o.force, share_i * at_i.by_asked
+        share_o = at_o.by_asked * (2.0 / diameter - share_i)
+        grows = at_i.by_normal * -work[rows.FORCE_BY_GAP, k]
+        passed, own = at_o.by_asked * grows, at_o.by_normal * -work[rows.FORCE_BY_GAP, z + k]
+        work[BY_LENGTH, z + k] -= own
+        work[BY_SHIFT, z + k] += own
+    elif abs(carried) > force:
         # No more than the normal force; the outer race takes the rest.
         sign = 1.0 if moment > 0.0 else -1.0
-        carried, grows = sign * force, sign * stiffness
+        carried, grows, passed = sign * force, sign * stiffness, sign * stiffness
         share_i, share_o = 0.0, 2.0 / diameter
-        work[TANGENTIAL, z + k] += carried
+        rest = share_o * moment - carried
     work[TANGENTIAL, k] -= carried
     work[BY_LENGTH, k] -= grows
     work[BY_SHIFT, k] += grows
     work[COUPLE_BY_SHIFT, k] -= groove * grows
     work[BY_ANGLE, k] -= share_i * by_i
-    work[TANGENTIAL, z + k] -= share_o * moment
+    work[TANGENTIAL, z + k] -= rest
     work[BY_ANGLE, z + k] -= share_o * by_o
     work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
-    work[OUTER_BY_INNER_LENGTH, k] = grows
+    work[OUTER_BY_INNER_LENGTH, k] = passed
     work[COUPLE, k] += groove * carried
     work[COUPLE_BY_LENGTH, z + k] += groove * grows
     work[COUPLE_BY_ANGLE, k] += groove * share_i * by_i
@@ -496,6 +530,7 @@ def _add_settled(k, ball_gain, seat, work, f, K, C):
     force_by_turn, couple_by_centre = less_column(b.by_turn, t, b.by_turn), less_row(by_e, u, b.x)
     couple_by_turn = work[COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
     add_couple(seat, couple, force_by_turn, couple_by_centre, couple_by_turn, f, K)
+    add_couple(seat, 0.0, NOTHING, less_row(NOTHING, u, b.m), 0.0, f, C)
     by_centre, by_speed = less(b.e, t, b.x), less(b.m, t, b.m)
     if work.shape[0] > rows.WORK_ROWS:
         work[rows.FORCE, k], work[rows.FORCE, z + k] = force
@@ -569,7 +604,7 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
                 _seat_outside(k, scalars, table, ball, work)
             # Directions of balls that have settled are those before their last step, as their forces are.
             if work[STATE, z + k] != SETTLED:
-                _approach(k, scalars, ball, ball_gain, ball_history, work)
+                _approach(k, scalars, table, ball, ball_gain, ball_history, work)
         normal_forces(contacts, scalars, work)
         for k in range(z):
             if work[STATE, z + k] == MOVES:
