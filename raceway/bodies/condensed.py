@@ -63,18 +63,6 @@ def section_cost(problem: Problem) -> _SectionCost:
     return _SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
 
 
-def _section_faults(problem: Problem) -> list[Mistake]:
-    """Elements that no memory holds."""
-    cost = section_cost(problem)
-    if cost.bytes <= _BYTES_LIMIT:
-        return []
-    why = (
-        f"would take {cost.bytes / 2**30:.1f} GiB for some {cost.nodes} nodes of a ring's section, above "
-        f"{_BYTES_LIMIT / 2**30:.0f} GiB: use larger elements, or fewer nodes_per_semi_axis"
-    )
-    return [Mistake("mesh.element_size", getattr(problem.mesh, "element_size", None), why)]
-
-
 def _seat_faults(problem: Problem) -> list[Mistake]:
     """Seats so soft that they hold nothing."""
     faults = []
@@ -219,7 +207,16 @@ class Condensed:
         faults += _seat_faults(problem)
         if unmeshed or problem.contact.discretisation not in problem.contact.law.discretisations:
             return faults
-        return faults + ((mistakes(_PATCHES, problem) if _nodal(problem) else []) or _section_faults(problem))
+        if _nodal(problem) and (patches := mistakes(_PATCHES, problem)):
+            return faults + patches
+        cost = section_cost(problem)
+        if cost.bytes > _BYTES_LIMIT:
+            why = (
+                f"would take {cost.bytes / 2**30:.1f} GiB for some {cost.nodes} nodes of a ring's section, above "
+                f"{_BYTES_LIMIT / 2**30:.0f} GiB: use larger elements, or fewer nodes_per_semi_axis"
+            )
+            faults.append(Mistake("mesh.element_size", getattr(problem.mesh, "element_size", None), why))
+        return faults
 
     def traits(self, problem: Problem) -> Traits:
         """Compiled, but for surface points; Hertz's law is calibrated on those."""

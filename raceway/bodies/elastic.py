@@ -210,20 +210,6 @@ _RULES: tuple[Rule[Problem], ...] = (
 )  # fmt: skip
 
 
-def _memory_faults(problem: Problem) -> list[Mistake]:
-    """Meshes whose matrices this process cannot hold."""
-    cost = _elastic_cost(problem)
-    most = _SHARE * allowed_bytes()
-    if cost is None or cost.bytes <= most:
-        return []
-    why = (
-        f"gives {cost.cells} elements, whose matrices would take about {cost.bytes / 2**30:.1f} GiB, above "
-        f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): use larger elements or fewer "
-        "nodes_per_semi_axis, or bodies.kind = 'condensed'"
-    )
-    return [Mistake("mesh.kind", problem.mesh.name, why)]
-
-
 def words(cost: _ElasticCost) -> str:
     """Size of the bodies in a sentence."""
     return f"{cost.cells} hexahedra, {cost.unknowns / 1e3:.0f} thousand unknowns, about {cost.bytes / 2**30:.2g} GiB"
@@ -271,7 +257,17 @@ class Elastic:
         faults += [Mistake(f"mounting.{key}", value, _SHAPES) for key, value in problem.mounting.changes.items()]
         points = [] if problem.contact.discretisation == "resultant" else unrefined(problem, "pressures at surface points")
         unmeshed = points or mesh_faults(problem)
-        return faults + (unmeshed or ([] if faults else _memory_faults(problem)))
+        if faults or unmeshed:
+            return faults + unmeshed
+        cost, most = _elastic_cost(problem), _SHARE * allowed_bytes()
+        if cost is None or cost.bytes <= most:
+            return []
+        why = (
+            f"gives {cost.cells} elements, whose matrices would take about {cost.bytes / 2**30:.1f} GiB, above "
+            f"{most / 2**30:.1f} GiB ({100 * _SHARE:.0f} % of the memory that this process may take): use larger elements or "
+            "fewer nodes_per_semi_axis, or bodies.kind = 'condensed'"
+        )
+        return [Mistake("mesh.kind", problem.mesh.name, why)]
 
     def traits(self, problem: Problem) -> Traits:
         """Stepped from Python; a run is too dear to be made twice."""

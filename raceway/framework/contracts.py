@@ -560,9 +560,5 @@ def broken_duties(kind: str, plugin: object) -> list[str]:
         faults.append("has no class attribute `name` (a string)")
     if not attrs.has(plugin):
         faults.append("is not an attrs class (decorate it with @attrs.frozen)")
-    faults += [f"has no `{duty}`" for duty in KINDS[kind][1] if not hasattr(plugin, duty) and not _is_field(plugin, duty)]
-    return faults
-
-
-def _is_field(plugin: type, name: str) -> bool:
-    return attrs.has(plugin) and name in attrs.fields_dict(plugin)
+    options = attrs.fields_dict(plugin) if attrs.has(plugin) else {}
+    return faults + [f"has no `{duty}`" for duty in KINDS[kind][1] if not hasattr(plugin, duty) and duty not in options]

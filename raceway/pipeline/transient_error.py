@@ -243,9 +243,13 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
     if not motion.start.repeats:
         kinds = tuple(kind for kind in kinds if kind != "orbit")  # searched for in vain
     failure: ConvergenceError | StabilityError | None = None
+    problem = motion.model.problem
+    if ramp_turns(problem.excitation) > 0.0:
+        problem = attrs.evolve(problem, excitation=attrs.evolve(problem.excitation, ramp_turns=0.0))
     for kind in kinds:
+        started = attrs.evolve(problem, integrator=attrs.evolve(problem.integrator, start=kind))
         try:
-            restarted = simulate(_started_by(motion.model, kind), motion.equilibrium, on_progress, run.steps)
+            restarted = simulate(attrs.evolve(motion.model, problem=started), motion.equilibrium, on_progress, run.steps)
         except (ConvergenceError, StabilityError) as error:
             failure = error
             continue
@@ -253,15 +257,6 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
             value = Run.of(restarted).value
             return abs(run.value - value) / min(abs(run.value), abs(value)), kind
     raise failure or ConvergenceError("no orbit was found to start on")
-
-
-def _started_by(model: Model, kind: str) -> Model:
-    """The same scene with another start."""
-    problem, excitation = model.problem, model.problem.excitation
-    if ramp_turns(excitation) > 0.0:
-        excitation = attrs.evolve(excitation, ramp_turns=0.0)
-    problem = attrs.evolve(problem, excitation=excitation, integrator=attrs.evolve(problem.integrator, start=kind))
-    return attrs.evolve(model, problem=problem)
 
 
 def start_warnings(model: Model, error: Tables) -> list[str]:

@@ -472,15 +472,11 @@ def uncertainty(
             scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
         )
     if plan:
-        return _derivatives_planned(as_scene(scene, plugins=plugins), tuple(keys))
+        read = as_scene(scene, plugins=plugins)
+        once, count = make_plan(read), len(tuple(keys)) or len(continuous_keys(read))
+        seconds = once.predicted_once_s + _DERIVATIVES * max(once.predicted_wall_s - once.predicted_once_s, _RUN_S)
+        return Workload(read.title, count, seconds, looped=count, noun="derivatives")
     return sensitivities(scene, keys, tolerances=tolerances, progress=progress, plugins=plugins)
-
-
-def _derivatives_planned(scene: Scene, keys: tuple[str, ...]) -> Workload:
-    """By so many keys, as of some runs."""
-    plan, count = make_plan(scene), len(keys) or len(continuous_keys(scene))
-    seconds = plan.predicted_once_s + _DERIVATIVES * max(plan.predicted_wall_s - plan.predicted_once_s, _RUN_S)
-    return Workload(scene.title, count, seconds, looped=count, noun="derivatives")
 
 
 def _samples_planned(scene: Scene, tolerances: Mapping[str, str] | Iterable[str], samples: int, processes: int) -> Workload:

@@ -61,11 +61,6 @@ def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
     }
 
 
-def _used_by(required: ReadTables) -> list[tuple[str, str]]:
-    """(kind, name) of the plug-ins of an identity."""
-    return [(kind, name) for kind, _, name in (text.partition(":") for text in required["plugins"])]
-
-
 def differences(required: ReadTables, present: ReadTables) -> list[str]:
     """In words what is present instead of what is required; empty where nothing differs."""
     words = []
@@ -117,7 +112,8 @@ class Work:
         mark = (json.dumps(self.required, sort_keys=True), *self.plugins)
         if mark not in _FAULTS:
             try:
-                present = identity(registry_of(self.plugins), _used_by(self.required))
+                used = [(kind, name) for kind, _, name in (text.partition(":") for text in self.required["plugins"])]
+                present = identity(registry_of(self.plugins), used)
                 _FAULTS[mark] = "; ".join(differences(self.required, present)) or None
             except PluginError as why:
                 _FAULTS[mark] = str(why)

@@ -260,7 +260,11 @@ class Function:
             raise SceneError.at("inputs", None, f"do not broadcast: {sizes}") from None
         if 0 in shape:
             raise SceneError.at("inputs", None, f"are empty: their common shape is {shape}")
-        self._refuse_size(math.prod(shape))
+        z = self.scene.bearing.balls_in_all
+        sizes = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
+        entries = len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs)
+        advice = "compute them block by block, for instance by xarray.apply_ufunc over dask arrays"
+        refuse_bytes(math.prod(shape), entries, advice)
         return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}
 
     def _labelled(self, values: Mapping[str, ArrayLike]) -> xarray.Dataset:
@@ -437,12 +441,6 @@ class Function:
             time = f"{n} points would take about {duration(seconds)}, one run after another"
             raise RacewayError(f"{time}, because {self.why_slow}: {advice}")
 
-    def _refuse_size(self, n: int) -> None:
-        z = self.scene.bearing.balls_in_all
-        sizes = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
-        entries = len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs)
-        refuse_bytes(n, entries, "compute them block by block, for instance by xarray.apply_ufunc over dask arrays")
-
 
 def refuse_bytes(n: int, entries: int, advice: str) -> None:
     """Refuse points with so many numbers each that they do not fit into the memory that is available.
@@ -527,33 +525,24 @@ def function(
     """
     read = as_scene(scene, plugins=plugins)
     keys, names = tuple(inputs), tuple(_name(output) for output in outputs)
-    _refuse_inputs(read, keys)
-    _refuse_missing(read, names)
+    if not keys:
+        raise SceneError.at("inputs", None, "are empty: a function has at least one, such as 'load.axial'")
+    if doubled := [key for key in keys if keys.count(key) > 1]:
+        raise SceneError.at(doubled[0], None, "is an input twice")
+    for key in keys:
+        key_of(read, key)
+        if read.heat is not None and key.endswith(("_temperature", ".temperature_c")):
+            raise SceneError.at(key, None, "is computed by [heat] and cannot be an input")
+    stated, problem = plugin_quantities(default_registry()), resolve(read)
+    for name in (name for name in names if name in stated):
+        if why := why_no_quantities(getattr(read.quantities, stated[name][0]), problem):
+            raise SceneError.at("outputs", name, f"is not a number of this scene: {why}")
     result = Function(read, keys, names, tolerance, force, threads or usable_cores())
     if result.moving and read.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {next(n for n in names if n in MOVING)} is of a motion")
     if "kyy_tilts_follow" in names and read.supports.tilt == "locked":
         raise SceneError.at("supports.tilt", "locked", "kyy_tilts_follow needs tilts that follow")
     return result
-
-
-def _refuse_inputs(scene: Scene, keys: tuple[str, ...]) -> None:
-    if not keys:
-        raise SceneError.at("inputs", None, "are empty: a function has at least one, such as 'load.axial'")
-    if doubled := [key for key in keys if keys.count(key) > 1]:
-        raise SceneError.at(doubled[0], None, "is an input twice")
-    for key in keys:
-        key_of(scene, key)
-        if scene.heat is not None and key.endswith(("_temperature", ".temperature_c")):
-            raise SceneError.at(key, None, "is computed by [heat] and cannot be an input")
-
-
-def _refuse_missing(scene: Scene, names: Iterable[str]) -> None:
-    """Refuse numbers of plug-ins that a scene does not have."""
-    stated, problem = plugin_quantities(default_registry()), resolve(scene)
-    for name in (name for name in names if name in stated):
-        if why := why_no_quantities(getattr(scene.quantities, stated[name][0]), problem):
-            raise SceneError.at("outputs", name, f"is not a number of this scene: {why}")
 
 
 def _name(output: str) -> str:

@@ -534,13 +534,21 @@ def layout(
     other_axes = [key for key in axes if key != x]
     if kind != "curves":
         y = y or next(iter(sorted((key for key in other_axes if key in numeric), key=lambda key: -len(axes[key]))), None)
-        _refuse_flat(kind, x, y, numeric)
+        if y is None:
+            raise SceneError.at("--kind", kind, f"takes two axes with numbers, and only {x} varies: choose --kind curves")
+        for option, key in (("--x", x), ("--y", y)):
+            if key not in numeric:
+                raise SceneError.at(option, key, f"has words as values, a {kind} needs numbers: choose --kind curves")
     else:
         apart = [key for key in other_axes if len(axes[key]) <= _MOST_COLOURS]  # can be told apart by their colours
         y = y or max(apart or other_axes, key=lambda key: len(axes[key]), default=None)
     over = [key for key in other_axes if key != y]
     panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
-    _refuse_rest(axes, [key for key in over if key != panels], kind)
+    if rest := [key for key in over if key != panels]:
+        words = "varies, too ({}), and {} cannot show it: choose one with --at {}={}"
+        raise SceneError(
+            [Mistake(key, None, words.format(listed(axes[key]), kind, key, shown(axes[key][0]))) for key in rest]
+        )
     if kind == "surface" and LIST in data.dims:
         raise RacewayError("the points of this sweep fill no grid, which a surface needs: choose --kind map or curves")
     fixed = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
@@ -617,22 +625,3 @@ def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> Non
         mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
     if mistakes:
         raise SceneError(mistakes)
-
-
-def _refuse_flat(kind: str, x: str, y: str | None, numeric: list[str]) -> None:
-    if y is None:
-        raise SceneError.at("--kind", kind, f"takes two axes with numbers, and only {x} varies: choose --kind curves")
-    for option, key in (("--x", x), ("--y", y)):
-        if key not in numeric:
-            raise SceneError.at(option, key, f"has words as values, a {kind} needs numbers: choose --kind curves")
-
-
-def _refuse_rest(axes: Tables, over: list[str], kind: str) -> None:
-    if over:
-        raise SceneError(
-            [
-                Mistake(key, None, f"varies, too ({listed(axes[key])}), and {kind} cannot show it: choose one with "
-                        f"--at {key}={shown(axes[key][0])}")
-                for key in over
-            ]
-        )  # fmt: skip

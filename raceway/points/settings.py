@@ -135,7 +135,10 @@ def setting_at(
         return Setting(family, values, model, changed, None, reason=short(str(error)))
     if needs_motion(scene) and not scene.integrator.method.inertial:
         model["inertia"] = False
-    return Setting(family, values, model, changed, scene, _physics(scene), plan.predicted_work_s)
+    inertial = not needs_motion(scene) or scene.integrator.method.inertial
+    content = {name: part for name, part in scene.to_dict().items() if name not in (*_NUMERICAL, "title")}
+    physics = json.dumps([content, inertial], sort_keys=True, default=str)
+    return Setting(family, values, model, changed, scene, physics, plan.predicted_work_s)
 
 
 def needs_motion(scene: Scene) -> bool:
@@ -148,12 +151,6 @@ def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> st
     physics = setting_at(tables, "", {}, registry).physics
     candidates = [setting.physics for setting in settings if setting.scene is not None]
     return physics if physics in candidates or not candidates else candidates[0]
-
-
-def _physics(scene: Scene) -> str:
-    inertial = not needs_motion(scene) or scene.integrator.method.inertial
-    content = {name: part for name, part in scene.to_dict().items() if name not in (*_NUMERICAL, "title")}
-    return json.dumps([content, inertial], sort_keys=True, default=str)
 
 
 def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:

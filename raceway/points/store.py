@@ -77,7 +77,10 @@ class Store:
         self._connection = connection
         with told(path):
             records = dict(connection.execute("SELECT name, value FROM facts").fetchall())
-        self.facts: Tables = _read_facts(path, records)
+        try:
+            self.facts: Tables = {name: json.loads(text) for name, text in records.items()}
+        except (ValueError, TypeError):
+            raise _damaged(path) from None
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
@@ -282,13 +285,6 @@ def facts_digest(texts: Mapping[str, str]) -> str:
     """Of the facts of a store, as JSON by name."""
     entries = sorted((name, text) for name, text in texts.items() if name != "digest")
     return hashlib.blake2b(repr(entries).encode(), digest_size=16).hexdigest()
-
-
-def _read_facts(folder: Path, texts: Mapping[str, str]) -> Tables:
-    try:
-        return {name: json.loads(text) for name, text in texts.items()}
-    except (ValueError, TypeError):
-        raise _damaged(folder) from None
 
 
 def _damaged(folder: Path, how: str = "its scene and design differ from those written") -> RacewayError:

@@ -216,11 +216,15 @@ def prepare(
         member("quantities", name, ENDS)
     registry = registry_of(files)
     tables = plain_tables(scene, registry=registry)
-    design = design_in_units(_design_of(axes), tables, registry)
+    listed = axes if isinstance(axes, Design) else grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
+    design = design_in_units(listed, tables, registry)
     try:
         surveyed = survey(tables, design, registry)
     except SceneError as error:
-        raise _with_static_remedy(error) from None
+        # Who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had.
+        more = (f". {_FROM_ZERO}" if each.path == SPEED and each.value == 0 else "" for each in error.mistakes)
+        told = [attrs.evolve(each, message=each.message + words) for each, words in zip(error.mistakes, more, strict=True)]
+        raise SceneError(told) from None
     for note in surveyed.notes:
         warnings.warn(note, stacklevel=2)
     # Intervals are known to runs alone.
@@ -469,24 +473,6 @@ def sweep(
             if (failed := all_failed(filled)) is not None:
                 raise failed
             return dataset(filled, registry_with(plugins))
-
-
-def _with_static_remedy(error: SceneError) -> SceneError:
-    """The same mistakes; who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had."""
-    mistakes = [
-        attrs.evolve(mistake, message=f"{mistake.message}. {_FROM_ZERO}")
-        if mistake.path == SPEED and mistake.value == 0
-        else mistake
-        for mistake in error.mistakes
-    ]
-    return SceneError(mistakes)
-
-
-def _design_of(axes: Axes) -> Design:
-    """The points of a mapping of axes, or of a list of points."""
-    if isinstance(axes, Design):
-        return axes
-    return grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
 
 
 def executor_of(name: str | Executor, options_given: ReadTables, registry: Registry) -> Executor:

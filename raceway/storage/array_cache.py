@@ -230,7 +230,9 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
     scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
     try:
         make_folder(path.parent)
-        _refuse_full_disk(path.parent, sum(array.nbytes for array in arrays.values()))
+        size, free = sum(array.nbytes for array in arrays.values()), shutil.disk_usage(path.parent).free
+        if free < (1.0 + _ROOM) * size:
+            raise OSError(errno.ENOSPC, f"{size / 2**30:.2g} GiB to write, {free / 2**30:.2g} GiB free on the disk")
         with scratch.open("wb") as file:
             file.write(line + b" " * (-(len(line) + 1) % _ALIGNED) + b"\n")
             for part in _padded(arrays):
@@ -242,12 +244,6 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
         _warn_unwritable(str(path.parent), why.strerror or str(why))
         return
     _trim(path)
-
-
-def _refuse_full_disk(folder: Path, size: int) -> None:
-    free = shutil.disk_usage(folder).free
-    if free < (1.0 + _ROOM) * size:
-        raise OSError(errno.ENOSPC, f"{size / 2**30:.2g} GiB to write, {free / 2**30:.2g} GiB free on the disk")
 
 
 def _trim(newest: Path) -> None:

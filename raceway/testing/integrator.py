@@ -150,7 +150,20 @@ class IntegratorSuite(Suite):
         lambda method: "" if method.steady else "not steady",
     )
     def test_steady_motion(self, method: Integrator) -> str:
-        return f"{_steady_linear(method)}; {_steady_contact(method)}"
+        system = linear_system()
+        record = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
+        amplitudes = _closed_form(system)
+        off = record.displacement - (np.exp(1j * SPEED * record.time)[:, None] * amplitudes).real
+        linear = _within(np.abs(off).max() / np.abs(amplitudes).max(), _stated_error(record), "the closed form")
+        # A mass pushed to and fro on a Hertzian contact, against an integration that begins at the record's end.
+        resting = _resting(contact_system())
+        speed = 0.4 * np.sqrt(1.5 * PRELOAD / resting[0] / float(contact_system().mass[0, 0]))
+        system = attrs.evolve(contact_system(), force=along_x, force_params=np.array([0.5 * PRELOAD, speed]))
+        record = integrate(method, system, motion(system, resting, np.zeros(5)), Schedule(2.0 * np.pi / speed / 36, 36, 1))
+        q, _ = exact(system, record.final, record.time)
+        # A turn passes the error on, once: twice the stated error lies between the two.
+        apart = np.abs(q - record.displacement).max() / np.ptp(q[:, 0])
+        return f"{linear}; {_within(apart, _stated_error(record), 'an integration to 1e-11')}"
 
     @duty(
         "each sample is an equilibrium, where the method has no inertia",
@@ -226,7 +239,12 @@ class IntegratorSuite(Suite):
     @duty("2 N steps equal N steps and N more from Record.final; `steady`: the same motion from any start")
     def test_restart(self, method: Integrator) -> str:
         if method.steady:
-            return _steady_from_any_start(method)
+            system = linear_system()
+            moved = motion(system, np.array([0.0, 1e-6, -2e-6, 0.0, 0.0]), np.array([0.0, 3e-3, 1e-3, 0.0, 0.0]))
+            first = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
+            second = integrate(method, system, moved, Schedule(_TURN / 36, 36, 2))
+            off = _apart(np.tile(first.displacement, (2, 1)), second.displacement)
+            return _within(off, _stated_error(first) + _stated_error(second), "the motion from another start")
         for system in (linear_system(), contact_system()):
             start = _start(method, system)
             half, full = (Schedule(_TURN / 90, 90, turns) for turns in (1, 2))
@@ -242,7 +260,14 @@ class IntegratorSuite(Suite):
     @duty("a law's memory is committed once with every accepted step, never with a trial; `steady`: or refused")
     def test_memory(self, method: Integrator) -> str:
         if method.steady:
-            return _steady_with_memory(method)
+            start = motion(contact_system(), 1e-6 * _X, np.zeros(5))
+            try:
+                record = integrate(method, counting_system(), start, Schedule(_TURN / 36, 36, 1))
+            except RacewayError as why:
+                return f"refused: {why}"
+            commits = bool(np.all(np.diff(record.contact_force[:, 1]) > 0.0))
+            require(commits, "the law's memory is ignored: refuse it or commit it")
+            return ""
         system = counting_system()
         record = integrate(method, system, _start(method, contact_system()), Schedule(PERIOD / 60, 60, 2))
         commits = record.contact_force[:, 1]
@@ -333,48 +358,6 @@ def _stated_error(record: Record) -> float:
     error = record.counts.get("error")
     require(isinstance(error, float) and np.isfinite(error) and error >= 0.0, f"counts['error'] = {error!r} is no error")
     return float(error)  # type: ignore[arg-type]
-
-
-def _steady_linear(method: Integrator) -> str:
-    """Springs, dashpots and a gyroscopic term: the closed form within the stated error."""
-    system = linear_system()
-    record = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
-    amplitudes = _closed_form(system)
-    off = record.displacement - (np.exp(1j * SPEED * record.time)[:, None] * amplitudes).real
-    return _within(np.abs(off).max() / np.abs(amplitudes).max(), _stated_error(record), "the closed form")
-
-
-def _steady_contact(method: Integrator) -> str:
-    """A mass pushed to and fro on a Hertzian contact: the record against an integration that begins at its end."""
-    resting = _resting(contact_system())
-    speed = 0.4 * np.sqrt(1.5 * PRELOAD / resting[0] / float(contact_system().mass[0, 0]))
-    system = attrs.evolve(contact_system(), force=along_x, force_params=np.array([0.5 * PRELOAD, speed]))
-    record = integrate(method, system, motion(system, resting, np.zeros(5)), Schedule(2.0 * np.pi / speed / 36, 36, 1))
-    q, _ = exact(system, record.final, record.time)
-    size = np.ptp(q[:, 0]) / 2.0
-    # A turn passes the error on, once: twice the stated error lies between the two.
-    return _within(0.5 * np.abs(q - record.displacement).max() / size, _stated_error(record), "an integration to 1e-11")
-
-
-def _steady_from_any_start(method: Integrator) -> str:
-    """Another start and another number of turns give the same motion."""
-    system = linear_system()
-    moved = motion(system, np.array([0.0, 1e-6, -2e-6, 0.0, 0.0]), np.array([0.0, 3e-3, 1e-3, 0.0, 0.0]))
-    first = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
-    second = integrate(method, system, moved, Schedule(_TURN / 36, 36, 2))
-    off = _apart(np.tile(first.displacement, (2, 1)), second.displacement)
-    return _within(off, _stated_error(first) + _stated_error(second), "the motion from another start")
-
-
-def _steady_with_memory(method: Integrator) -> str:
-    """A law with memory is refused with a message, or its memory is committed; never ignored."""
-    start = motion(contact_system(), 1e-6 * _X, np.zeros(5))
-    try:
-        record = integrate(method, counting_system(), start, Schedule(_TURN / 36, 36, 1))
-    except RacewayError as why:
-        return f"refused: {why}"
-    require(bool(np.all(np.diff(record.contact_force[:, 1]) > 0.0)), "the law's memory is ignored: refuse it or commit it")
-    return ""
 
 
 def _closed_form(system: System) -> np.ndarray:

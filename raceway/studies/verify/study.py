@@ -328,7 +328,9 @@ class _Verification(Answer):
     def worst(self) -> tuple[Row, ...]:
         """Of each case the row that comes closest to its tolerance, or misses it by most."""
         cases = dict.fromkeys(row.case for row in self.rows)
-        return tuple(max((row for row in self.rows if row.case == case), key=_strain) for case in cases)
+        strain = [float("inf") if r.error is None or not r.tolerance else r.error / r.tolerance for r in self.rows]
+        rows = sorted(zip(strain, self.rows, strict=True), key=lambda pair: -pair[0])
+        return tuple(next(row for _, row in rows if row.case == case) for case in cases)
 
     def to_dict(self) -> Tables:
         return {"passed": self.passed, "kept": self.kept, "rows": [attrs.asdict(row) for row in self.rows]}
@@ -353,10 +355,6 @@ class _Verification(Answer):
             for row in rows
         ]
         yield Words(f"within their tolerance: {', '.join(self._counts())}", "green" if self.passed else "red")
-
-
-def _strain(row: Row) -> float:
-    return float("inf") if row.error is None or not row.tolerance else row.error / row.tolerance
 
 
 def verify(
