@@ -261,8 +261,8 @@ class Function:
         if 0 in shape:
             raise SceneError.at("inputs", None, f"are empty: their common shape is {shape}")
         z = self.scene.bearing.balls_in_all
-        sizes = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
-        entries = len(self.inputs) + 2 + sum(sizes.get(name, 1) for name in self.outputs)
+        many = {"displacement": 5, "stiffness": 25, "ball_load": 2 * z, "contact_angle": 2 * z}
+        entries = len(self.inputs) + 2 + sum(many.get(name, 1) for name in self.outputs)
         advice = "compute them block by block, for instance by xarray.apply_ufunc over dask arrays"
         refuse_bytes(math.prod(shape), entries, advice)
         return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}

@@ -265,8 +265,8 @@ class IntegratorSuite(Suite):
                 record = integrate(method, counting_system(), start, Schedule(_TURN / 36, 36, 1))
             except RacewayError as why:
                 return f"refused: {why}"
-            commits = bool(np.all(np.diff(record.contact_force[:, 1]) > 0.0))
-            require(commits, "the law's memory is ignored: refuse it or commit it")
+            committed = bool(np.all(np.diff(record.contact_force[:, 1]) > 0.0))
+            require(committed, "the law's memory is ignored: refuse it or commit it")
             return ""
         system = counting_system()
         record = integrate(method, system, _start(method, contact_system()), Schedule(PERIOD / 60, 60, 2))
