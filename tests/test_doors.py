@@ -217,6 +217,8 @@ class BytesPath:
         (lambda: rw.run(SCENE, out=Unlucky()), "`out`"),
         (lambda: rw.run(BytesPath()), "no such file"),
         (lambda: rw.make_plan(Unlucky()), "a Scene"),
+        (lambda: rw.run({**SCENE, "load": {"axial": Unlucky()}}), "no Unlucky"),
+        (lambda: rw.run(Unlucky()), "no Unlucky"),
         (lambda: rw.sweep(SCENE, dict), "`axes`"),
         (lambda: rw.fit({"axial [N]": [10**400]}, SCENE, "load.axial"), "not a number"),
         (lambda: rw.sensitivities(SCENE, ["load.axial"])["load.radial"], "must be one of 'load.axial'"),
@@ -276,6 +278,16 @@ def test_annotations_that_are_no_text_are_read_alike():
     far.__annotations__ = {"metres": Annotated[float, positive(), "of another program"], "feet": float | None}
     with pytest.raises(rw.SceneError, match="`metres` = -1: must be a finite number, greater than 0"):
         rw.door(far)(-1)
+
+
+def test_aliases_of_markers_are_read_at_every_function_that_has_them():
+    fronts = [one for name in rw.__all__ if inspect.isfunction(one := getattr(rw, name))]
+    told = [one for one in fronts if "progress" in inspect.signature(one).parameters]
+    assert len(told) > 8
+    for one in told:
+        needed = [SCENE for p in inspect.signature(one).parameters.values() if p.default is p.empty]
+        with pytest.raises(rw.SceneError, match="`progress` = 3|`over`"):  # which is read before
+            one(*needed, progress=3)
 
 
 def test_no_signature_of_the_package_shows_a_marker():

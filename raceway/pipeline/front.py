@@ -11,13 +11,12 @@ import attrs
 from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
-from raceway.out.progress import telling
+from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import KYY, KYY_TILTS_FOLLOW
 from raceway.scene.inputs import SceneSource, as_scene, plain_tables
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
-    from raceway.out.progress import ShowProgress
     from raceway.pipeline.result import Result
 
 #: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.

@@ -17,7 +17,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
-from raceway.out.progress import telling
+from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
 from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
@@ -42,8 +42,6 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from raceway.out.progress import ShowProgress
 
 
 @attrs.frozen(eq=False)

@@ -18,7 +18,7 @@ from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
-from raceway.out.progress import telling
+from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import quantity_of, read_in
 from raceway.out.table import sections
 from raceway.pipeline.equilibrium import solve_equilibrium
@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.out.progress import ShowProgress
 
 
 @attrs.frozen(eq=False)

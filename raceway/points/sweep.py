@@ -22,7 +22,7 @@ from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, re
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
-from raceway.out.progress import telling
+from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import COLUMNS, ENDS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     import xarray
 
     from raceway.framework.contracts import Executor
-    from raceway.out.progress import ShowProgress
 
 
 #: Predicted time [s] of runs beyond which a sweep has to be forced.

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import attrs
 
-from raceway.errors import SceneError
+from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATH, TEXTS, door
 from raceway.framework.registry import REGISTRY, Registry, default_registry, registry_with
 from raceway.scene.units import unit_of
@@ -141,7 +141,7 @@ def as_given(source: object) -> Given:
     if isinstance(source, str) and _is_text(source):
         return Given(tidy(_parse_toml(source, "scene")))
     if isinstance(source, str | os.PathLike):
-        path = Path(os.fsdecode(source))
+        path = Path(tidy(source))
         if isinstance(source, str) and not path.suffix and not os.path.exists(path):
             raise SceneError.at("scene", source, "is neither a file nor the TOML text of a scene")
         if os.path.isdir(path):
@@ -228,19 +228,21 @@ def tidy(value: object, depth: int = 0) -> Any:
         raise SceneError.at(
             "scene", None, f"has lists or tables that are nested more than {_DEEPEST} deep: no key of a scene is"
         )
-    if isinstance(value, Mapping):
-        return {str(key): tidy(inner, depth + 1) for key, inner in value.items()}
-    if isinstance(value, list | tuple | range):
-        return [tidy(inner, depth + 1) for inner in value]
-    if isinstance(value, os.PathLike):
-        return os.fsdecode(value)
-    if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
-        return _quantity(value)
-    if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
-        return value.tolist()
     try:
+        if isinstance(value, Mapping):
+            return {str(key): tidy(inner, depth + 1) for key, inner in value.items()}
+        if isinstance(value, list | tuple | range):
+            return [tidy(inner, depth + 1) for inner in value]
+        if isinstance(value, os.PathLike):
+            return os.fsdecode(value)
+        if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
+            return _quantity(value)
+        if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
+            return value.tolist()
         return copy.deepcopy(value)
-    except TypeError:
+    except RacewayError:
+        raise
+    except Exception:  # whatever a foreign object makes of being asked
         kind = type(value).__name__
         raise SceneError.at("scene", value, f"holds text, numbers, lists and tables, no {kind}") from None
 

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import SceneError
+from raceway.framework.doors import door
 from raceway.framework.shown import Fact, number
 from raceway.out.answer import Answer, Part
 from raceway.out.table import sections
@@ -101,10 +102,12 @@ class Inferred(Answer):
         keys = "ball_count", "ball_diameter", "pitch_diameter", "conformity_inner", "conformity_outer"
         return {key: getattr(self, key) for key in keys}
 
+    @door
     def worst(self, quantity: str) -> float | None:
         """Largest relative error of "dynamic rating", "static rating" or "pair stiffness"; None where none is printed."""
         return max((abs(check.error) for check in self.checks if check.quantity == quantity), default=None)
 
+    @door
     def bearing(self, contact_angle_deg: float | None = None) -> Tables:
         """The table [bearing] of a scene; a deep-groove bearing with the middle of clearance class CN.
 
