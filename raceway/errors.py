@@ -80,11 +80,12 @@ class Mistake:
     message: str
 
     def __str__(self) -> str:
-        shown = "" if self.value is None else f" = {_short(self.value)}"
+        shown = "" if self.value is None else f" = {short(self.value)}"
         return f"`{self.path}`{shown}: {self.message}"
 
 
-def _short(value: object) -> str:
+def short(value: object) -> str:
+    """In at most 60 characters."""
     try:
         text = repr(value)
     except Exception:  # of a foreign object

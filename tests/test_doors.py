@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
+import json
 import pickle
 import runpy
 import sqlite3
@@ -190,6 +191,16 @@ class Unlucky:
         raise OSError("closed")
 
 
+class Closed:
+    def __getattr__(self, _name):
+        raise OSError("closed")
+
+
+def test_a_check_of_what_no_file_can_hold_is_json():
+    for value in (float("inf"), 10**400, Unlucky()):
+        json.dumps(rw.check({**SCENE, "load": {"axial": value}}).to_dict(), allow_nan=False)
+
+
 def nested(depth):
     found = {}
     for _ in range(depth):
@@ -219,6 +230,7 @@ class BytesPath:
         (lambda: rw.make_plan(Unlucky()), "a Scene"),
         (lambda: rw.run({**SCENE, "load": {"axial": Unlucky()}}), "no Unlucky"),
         (lambda: rw.run(Unlucky()), "no Unlucky"),
+        (lambda: rw.export_ross(Closed()), "Closed is no sweep"),
         (lambda: rw.sweep(SCENE, dict), "`axes`"),
         (lambda: rw.fit({"axial [N]": [10**400]}, SCENE, "load.axial"), "not a number"),
         (lambda: rw.sensitivities(SCENE, ["load.axial"])["load.radial"], "must be one of 'load.axial'"),

@@ -51,6 +51,13 @@ def test_at_rest_hot_surroundings_are_told():
         rw.run(scene)
 
 
+def test_rollers_without_friction_have_no_heat():
+    scene = rw.load_scene("examples/cylindrical_rollers.toml").to_dict()
+    more = {"lubricant": {"oil": "VG 46"}, "heat": {"oil_inlet_c": 40.0, "oil_flow": 8e-6}}
+    scene["bearing"]["outer_diameter"] = 0.062
+    assert "friction of rollers" in str(rw.check({**scene, **more}).mistakes)
+
+
 def test_seals_heat_both_rings():
     """In halves; what leaves each ring is half of its contacts' heat and half of the seals'."""
     result = rw.run(warm_pair(quantities={"friction": {"seal_torque": 0.1}})).to_dict()

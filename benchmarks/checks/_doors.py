@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib import pyplot
 
 import raceway as rw
 from benchmarks.checks._scenes import GARBAGE, Chance, Tables, example, scene, scene_keys
-from raceway.errors import RacewayError, _short
+from raceway.errors import RacewayError, short
 
 
 def _raises(self: object, *_: object, **__: object) -> Any:
@@ -150,8 +151,10 @@ def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
         return name, "refused", [] if good else [["traceback", name, f"{error!r}, exit code {error.exit_code}"]]
     except Exception as error:
         word = "nan" if "JSON compliant" in str(error) else "traceback"
-        told = ", ".join(f"{place}={_short(value)}" for place, value in given.items())
+        told = ", ".join(f"{place}={short(value)}" for place, value in given.items())
         return name, "broken", [[word, name, f"{name}({told}): {traceback.format_exc()[-900:]}"]]
+    finally:
+        pyplot.close("all")
     return name, "answered", []
 
 

@@ -1,4 +1,4 @@
-"""Extreme scenes that have an answer: what is said of an error that is not estimated, and of a Z that is smaller than its error."""
+"""Extreme scenes, of sets, rollers and heat, too: what is raised, and said of errors that are not estimated or larger than Z."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from itertools import islice
 from rich.console import Console
 
 from benchmarks.checks import Row, below, near
-from benchmarks.checks._scenes import Chance, Tables
+from benchmarks.checks._fuzz import refuse_nan
+from benchmarks.checks._scenes import Chance, Tables, example
 from raceway.errors import RacewayError
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
@@ -19,17 +20,23 @@ from raceway.planning.plan import make_plan
 from raceway.scene.reading import scene_from_dict
 
 #: Runs that finish, and the most steps and predicted processor time [s] of those that are tried.
-RUNS, _STEPS, _SECONDS = 300, 3000, 3.0
+RUNS, _STEPS, _SECONDS = 500, 3000, 3.0
 _PARTS = ("total", "time_step", "transient", "identification", "mesh", "contact")
 _OF_Z = ("equivalent stiffness K", "equivalent damping C", "|Z|")
 _COMMAND = "python -m benchmarks.checks extremes"
 
 
 def rows() -> list[Row]:
-    """Rows of 300 runs."""
+    """Rows of 500 runs."""
     silent, shown, hidden, unsaid, null, large = [], [], [], [], 0, 0
-    for seed, _, result in islice(finished(), RUNS):
+    raw: list[str] = []
+    for seed, _, result in islice(finished(raw), RUNS):
         error, warnings = result.error, result.warnings
+        try:
+            refuse_nan(result)
+        except (AssertionError, ValueError) as why:
+            raw.append(f"scene {seed}: {why}")
+        silent += [seed] if any(error[part] is None and not error["how"].get(part) for part in _PARTS) else []
         if error["total"] is None:
             null += 1
             # With its reason: more than that it is not known.
@@ -44,8 +51,9 @@ def rows() -> list[Row]:
             hidden.append(seed)
     told = f"{null} with a null total, {large} with a part of 1 or more"
     return [
+        below("exceptions that are no message, and NaN in results", len(raw), 0, _COMMAND, "; ".join(raw[:3])),
         below(
-            f"null totals without a warning and its reason, of {RUNS} extreme runs",
+            f"null totals without a warning and its reason, null parts without one, of {RUNS} extreme runs",
             len(silent),
             0,
             _COMMAND,
@@ -107,11 +115,31 @@ def extreme(chance: Chance) -> Tables:
         first = force["speed_rpm"]
         speeds = [first, first * chance.one(1.001, 1.03, 1.2, 3.0)]
         tables["identifier"] = {"kind": "impedance_fit", "speeds_rpm": speeds}
+    if chance.happens(0.3):
+        tables["bearing"] = {
+            "preset": chance.one("B7206C", "7008A5"), "arrangement": chance.one("DB", "DF", "TBT", "QBC"), "bore": 0.03, "width": 0.016,
+            "preload": chance.decades(1.0, 1e5), "preload_kind": chance.one("rigid", "spring"),
+        }  # fmt: skip
+    elif chance.happens(0.4):
+        rollers = example("cylindrical_rollers")
+        tables |= {name: rollers[name] for name in ("bearing", "bodies", "supports")}
+        tables["bearing"] |= {"radial_clearance": chance.decades(1e-7, 1e-3), "ball_count": chance.one(3, 13)}
+        tables |= {
+            "load": {"radial": [axial, chance.one(0.0, axial)]},
+            "contact": {"kind": "line", "damping": chance.one(0.0, 300.0)},
+        }
+    if chance.happens(0.4):
+        tables["bearing"] |= {"bore": 0.03, "outer_diameter": 0.062, "width": 0.016}
+        tables["lubricant"] = {"oil": chance.one("VG 10", "VG 46", "VG 220")}
+        tables["heat"] = {
+            "oil_inlet_c": chance.between(0.0, 130.0), "oil_flow": chance.one("infinite", chance.decades(1e-9, 1e-2)),
+            "ambient_c": chance.between(-50.0, 500.0), chance.one("inner_balls", "outer_oil"): chance.one("auto", "infinite", 1e-9, 1e9, 1e300),
+        }  # fmt: skip
     return tables
 
 
-def finished(first: int = 0) -> Iterator[tuple[int, Tables, Result]]:
-    """Seed, tables and result of every scene that is cheap enough and has an answer."""
+def finished(raw: list[str], first: int = 0) -> Iterator[tuple[int, Tables, Result]]:
+    """Seed, tables and result of every scene that is cheap enough and has an answer; what is raised and no message goes to ``raw``."""
     seed = first
     while True:
         tables = extreme(Chance(seed))
@@ -124,3 +152,5 @@ def finished(first: int = 0) -> Iterator[tuple[int, Tables, Result]]:
             yield seed - 1, tables, run(scene)
         except RacewayError:
             continue
+        except Exception as error:
+            raw.append(f"scene {seed - 1}: {error!r}")

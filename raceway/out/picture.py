@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from raceway.errors import RacewayError, SceneError, extra
+from raceway.errors import RacewayError, extra
+from raceway.framework.doors import door, reader
 from raceway.out.wrapping import lines_of
 from raceway.storage.files import write_whole
 
@@ -48,7 +49,11 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Axes:
+_AXES = reader("axes of matplotlib", lambda v: hasattr(v, "plot") and hasattr(v, "figure"))
+
+
+@door
+def given_axes(ax: Annotated[Axes | None, _AXES], width: float = 6.4, height: float = 4.8) -> Axes:
     """The axes that a caller gave, or new ones of a figure [inch] that notebooks and ``pyplot.show`` display.
 
     Raises
@@ -56,10 +61,8 @@ def given_axes(axes: Axes | None, width: float = 6.4, height: float = 4.8) -> Ax
     RacewayError
         Where matplotlib is not installed, or of what are no axes.
     """
-    if axes is not None:
-        if not (hasattr(axes, "plot") and hasattr(axes, "figure")):
-            raise SceneError.at("ax", axes, "must be axes of matplotlib")
-        return axes
+    if ax is not None:
+        return ax
     try:
         from matplotlib import pyplot
     except ImportError:

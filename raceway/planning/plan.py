@@ -5,13 +5,14 @@ The model builder obeys the plan; it decides nothing of this by itself.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
 import attrs
 
-from raceway.errors import Mistake, SceneError
+from raceway.errors import Mistake, SceneError, short
 from raceway.framework.doors import PATHS, TEXTS, door
 from raceway.framework.shown import Fact, Shown, duration
 from raceway.planning.cost import START_S, slowness
@@ -69,6 +70,7 @@ class ScenePlan(Shown):
     mesh: Tables | None = None
     at_least: bool = False
 
+    @door
     def keeps(self, name: str) -> bool:
         """Whether a part is included, by its name."""
         return any(part.part == name for part in self.kept)
@@ -229,7 +231,17 @@ class Check(Shown):
 
     def to_dict(self) -> Tables:
         """Mistakes and warnings as plain tables."""
-        return {"errors": [attrs.asdict(mistake) for mistake in self.mistakes], "warnings": list(self.warnings)}
+        mistakes = [attrs.asdict(each) | {"value": _plain(each.value)} for each in self.mistakes]
+        return {"errors": mistakes, "warnings": list(self.warnings)}
+
+
+def _plain(value: object) -> object:
+    """A user's value as it stands, or as text where JSON has none."""
+    try:
+        json.dumps(value, allow_nan=False)
+    except Exception:  # whatever a foreign object makes of being asked
+        return short(value)
+    return value
 
 
 @door

@@ -119,6 +119,7 @@ _HEAT: tuple[Rule[Problem], ...] = (
     Rule(
         "heat", lambda p: p.heat is not None and p.lubricant is None, "needs the oil's viscosity: give a table [lubricant]",
     ),
+    Rule("heat", lambda p: p.heat is not None and p.traits.line_contacts, "friction of rollers, its source, is not computed: delete it"),
     *(
         Rule(
             f"mounting.{node}_temperature",

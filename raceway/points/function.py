@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from raceway.bodies.columns import Excitations, build_columns, column_problem, law_keys, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import PATHS, TEXTS, Reader, door
+from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door
 from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import at_least, nearest
 from raceway.framework.registry import default_registry
@@ -48,7 +48,7 @@ BLOCK = (8192, 2048)
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
 _LIMIT_S = 120.0
 _ADVICE = "give fewer points, or force = True. `raceway sweep` distributes such points among processes and resumes"
-_POINT = Reader("numbers by their keys", lambda v: {key: float(number) for key, number in v.items()})
+_POINT = Reader("numbers by their keys", lambda v: {TEXT.read(key): float(number) for key, number in v.items()})
 #: Share of the memory that is left which inputs and outputs may take.
 _MEMORY = 0.8
 #: Rows without the reason of a run of their own, which is asked for a few only.
@@ -227,6 +227,8 @@ class Function:
         SceneError
             A number that is refused.
         """
+        for key in point:
+            key_of(self.scene, key)
         return scene_from_dict(self._changed(point).to_dict(), default_registry())
 
     def _changed(self, point: Mapping[str, float]) -> Scene:

@@ -149,6 +149,7 @@ class Precision(Answer):
                 best = error
         return fastest
 
+    @door
     def cheapest(self, physics: str) -> dict[str, int | None]:
         """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
         rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -391,8 +392,9 @@ def _dataset(data: Dataset | str | Path) -> Dataset:
     if isinstance(data, str | Path):
         with open_store(data) as store:
             return store.to_xarray()
-    if hasattr(data, "data_vars") and "scene" in data.attrs:
-        return data
+    with suppress(Exception):  # whatever a foreign object makes of being asked
+        if hasattr(data, "data_vars") and "scene" in data.attrs:
+            return data
     raise RacewayError(f"{type(data).__name__} is no sweep: give what raceway.sweep returned, or the folder of its store")
 
 
