@@ -13,10 +13,9 @@ the machine (``machine=True``: processor times and their ratios) the reason is l
 from __future__ import annotations
 
 import ast
-import json
 import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -186,11 +185,3 @@ class _Reports:
             held = sum(not row["misses"] for row in rows)
             terminalreporter.write_line(f"report {name}: {held} of {len(rows)} claims hold, {seconds:.1f} s")
         files.refresh()
-
-
-def claims_of(folder: Path) -> Iterator[tuple[str, Claim]]:
-    """Claims in the reports on disk, with the report's name."""
-    for path in sorted(folder.glob("*.json")):
-        for row in json.loads(path.read_text(encoding="utf-8"))["rows"]:
-            if "basis" in row:
-                yield path.stem, Claim(**row)

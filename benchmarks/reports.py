@@ -51,7 +51,7 @@ CHOSEN = {
             "2900 of 29 160 extreme scenes (1 mN to 1 MN, conformity 0.501 to 0.9, 1 kN m): neither solved nor a motion left free",
             "extreme scenes without an answer, of 2900",
         ),
-    ),
+    )
 }
 _BLOCK = re.compile(r"(<!-- evidence:([a-z0-9_]+) -->\n)(.*?)(<!-- /evidence -->)", re.DOTALL)
 

@@ -112,14 +112,7 @@ QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema",
 SLOW = {"study article", "fit, signals"}
 #: What a screen must name, whatever its words.
 TOLD = {
-    "run": (
-        "tangent kxx, kyy",
-        "numerical error of K",
-        "|Z|",
-        "equivalent stiffness K",
-        "equivalent damping C",
-        "orbit",
-    ),
+    "run": ("tangent kxx, kyy", "numerical error of K", "|Z|", "equivalent stiffness K", "equivalent damping C", "orbit"),
     "run, static": ("static scene", "kyy tilts follow"),
     "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
     "compare": ("bidirectional",),
@@ -417,10 +410,7 @@ def test_a_value_of_a_wrong_type_is_refused_by_every_option(name, seen, folder, 
 
 
 #: How a command is told to work in two processes.
-TWO = {
-    "sweep": ("--executor", "processes", "--workers", "2"),
-    "band": ("--processes", "2"),
-}
+TWO = {"sweep": ("--executor", "processes", "--workers", "2"), "band": ("--processes", "2")}
 
 
 @pytest.mark.parametrize("name", TWO)

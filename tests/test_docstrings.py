@@ -2,18 +2,58 @@
 
 from __future__ import annotations
 
+import ast
 import builtins
 import re
 import subprocess
 from collections import Counter
 from pathlib import Path
 
+import attrs
 import pytest
 
 import raceway
-from validation.size import ROOT, sources
 
-MODULES = sources()
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@attrs.frozen
+class Source:
+    """A module: its path below the package's folder, text and syntax tree."""
+
+    path: Path
+    text: str
+    tree: ast.Module
+
+    @property
+    def docstrings(self) -> list[str]:
+        """Of the module, its classes and functions."""
+        nodes = [
+            node
+            for node in ast.walk(self.tree)
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
+        ]
+        return [text for node in nodes if (text := ast.get_docstring(node, clean=False))]
+
+    @property
+    def words(self) -> set[str]:
+        """Names in the code, of the module itself too, and words of strings that are no docstrings."""
+        words, documents = set(self.path.with_suffix("").parts), set(self.docstrings)
+        for node in ast.walk(self.tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                words |= set() if node.value in documents else set(re.findall(r"\w+", node.value))
+            else:
+                names = [getattr(node, field, None) for field in ("id", "attr", "arg", "name")]
+                words |= {word for name in names if isinstance(name, str) for word in name.split(".")}
+        return words
+
+
+def source(path: Path) -> Source:
+    text = path.read_text(encoding="utf-8")
+    return Source(path.relative_to(ROOT / "raceway"), text, ast.parse(text))
+
+
+MODULES = [source(path) for path in sorted((ROOT / "raceway").rglob("*.py"))]
 WORDS = {module.path.as_posix(): module.words for module in MODULES}
 #: In a docstring: ``word``, ``module.name``.
 NAME = re.compile(r"``([A-Za-z_]\w*(?:\.\w+)*)``")

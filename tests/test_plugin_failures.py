@@ -47,10 +47,7 @@ BROKEN = {
         LAW.format(name="single", cls="Single").replace("return [Single]", "return Single"),
         "which is not a list of classes",
     ),
-    "instance": (
-        LAW.format(name="made", cls="Made").replace("[Made]", "[Made()]"),
-        "is not a class",
-    ),
+    "instance": (LAW.format(name="made", cls="Made").replace("[Made]", "[Made()]"), "is not a class"),
     "duties": (
         "import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n"
         + "@hookimpl\ndef raceway_contact_laws(): return [Half]",

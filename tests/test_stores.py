@@ -106,11 +106,7 @@ def test_entries_of_arrays_have_their_own_unit():
         ({SPEED: SPEEDS, LOAD: [400.0]}, {"x": LOAD}, "has the one value 400 here"),
         ({SPEED: SPEEDS, LOAD: MANY}, {"x": LOAD, "y": LOAD}, "is the axis of --x already"),
         ({SPEED: SPEEDS}, {"kind": "map"}, "takes two axes with numbers, and only excitation.speed_rpm varies"),
-        (
-            {SPEED: SPEEDS, "supports.tilt": ["free", "locked"]},
-            {"kind": "map", "y": "supports.tilt"},
-            "has words as values",
-        ),
+        ({SPEED: SPEEDS, "supports.tilt": ["free", "locked"]}, {"kind": "map", "y": "supports.tilt"}, "has words as values"),
         ({SPEED: SPEEDS, LOAD: MANY, "contact.damping": MANY[:7]}, {"kind": "curves"}, "choose one with --at"),
         ({SPEED: SPEEDS[:1]}, {}, "nothing varies in this part of the sweep"),
     ],

@@ -15,10 +15,7 @@ from raceway.framework.contracts import KINDS
 from raceway.testing.scaffold import new_plugin
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-PACKAGES = {
-    "third_party_law": "raceway-hunt-crossley",
-    "third_party_excitation": "raceway-two-frequency",
-}
+PACKAGES = {"third_party_law": "raceway-hunt-crossley", "third_party_excitation": "raceway-two-frequency"}
 
 
 @pytest.fixture(scope="module")

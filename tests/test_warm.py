@@ -268,10 +268,7 @@ def test_impossible_numbers_are_refused(heat, key, words):
 
 @pytest.mark.parametrize(
     ("tables", "key"),
-    [
-        ({"mounting": {"inner_temperature": 20.0}}, "mounting.inner_temperature"),
-        ({"lubricant": None}, "heat"),
-    ],
+    [({"mounting": {"inner_temperature": 20.0}}, "mounting.inner_temperature"), ({"lubricant": None}, "heat")],
 )
 def test_what_contradicts_or_lacks_is_named(tables, key):
     scene = warm_pair()

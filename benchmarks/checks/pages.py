@@ -16,10 +16,7 @@ from validation.browser.pages import PAGES as CHEAP
 TITLE = "Pages in headless chromium: whole, readable, without a network"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"
 #: Words of the command, its page.
-PAGES = {
-    "view": (("view", "examples/b7206.toml", "--html"), "view.html"),
-    "map": (("study", "map"), "map.html"),
-}
+PAGES = {"view": (("view", "examples/b7206.toml", "--html"), "view.html"), "map": (("study", "map"), "map.html")}
 #: Pages as the tests make them: the article's around invented curves, the rig's of one speed and load; what is looked at.
 SMALL = {"study article": "article, invented curves", "study rig": "rig, one point"}
 #: Pictures of ``raceway view`` that its document shows.

@@ -14,13 +14,7 @@ TITLE = "Words: length of the documents, terms that the field does not know"
 COMMAND = "python -m benchmarks.checks words"
 ROOT = Path(__file__).parents[2]
 #: Pages whose length follows from the program or from measurements.
-_NOT_FOR_USERS = (
-    "CHANGELOG.md",
-    "CONTRIBUTING.md",
-    "docs/command_line.md",
-    "docs/scene.md",
-    "docs/glossary.md",
-)
+_NOT_FOR_USERS = ("CHANGELOG.md", "CONTRIBUTING.md", "docs/command_line.md", "docs/scene.md", "docs/glossary.md")
 #: Terms of the field stand in CONTRIBUTING.md "Words".  Names of parameters and attributes are none: ``kept : folder``, ``fact.scatter``.
 PRIVATE = re.compile(
     r"""\b(is|are|be|been|being)\ told\b | \btells?\b | \bsettles?d?\b | (?<!\.)\bscatter\b(?!\ plot|\ :|\)) | \ba\ line\ a\ (point|row|run)\b

@@ -305,10 +305,7 @@ def test_a_set_that_lost_its_preload_says_what_took_it():
     ("bodies", "words"),
     [
         ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "give kinematics.radial_expansion instead"),
-        (
-            {"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}},
-            "changes the surfaces of the points",
-        ),
+        ({"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}}, "changes the surfaces of the points"),
     ],
 )
 def test_bodies_of_fixed_shape_refuse_temperatures(bodies, words):

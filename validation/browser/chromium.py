@@ -90,13 +90,7 @@ class Browser:
         options = webdriver.ChromeOptions()
         options.binary_location = binary
         # No sandbox: as root there is none.  SwiftShader: WebGL without a graphics card.
-        for word in (
-            "headless=new",
-            "no-sandbox",
-            "disable-dev-shm-usage",
-            "disable-gpu",
-            "enable-unsafe-swiftshader",
-        ):
+        for word in ("headless=new", "no-sandbox", "disable-dev-shm-usage", "disable-gpu", "enable-unsafe-swiftshader"):
             options.add_argument(f"--{word}")
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         self.driver: Any = webdriver.Chrome(options=options, service=Service(driver))
