@@ -36,11 +36,7 @@ figure, axes = plt.subplots(1, 2, sharey=True, layout="constrained", figsize=(8.
 for plot, index in zip(axes, (count // 6, count - 1), strict=True):
     colours = plot.pcolormesh(speeds, loads, 1e-6 * answer["kyy"][:, :, index], vmin=0, vmax=500)
     limit = plot.contour(
-        speeds,
-        loads,
-        1e-9 * answer["p0"][:, :, index],
-        levels=[1.0, 1.2, 1.4],
-        colors="white",
+        speeds, loads, 1e-9 * answer["p0"][:, :, index], levels=[1.0, 1.2, 1.4], colors="white"
     )
     plot.clabel(limit, fmt="%g GPa")
     plot.set(xlabel="speed [r/min]", title=f"{angles[index]:.0f} deg")

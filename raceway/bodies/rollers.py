@@ -83,10 +83,7 @@ class CylindricalRollers:
         )
         refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
         refuse(
-            problem.load.axial != 0.0,
-            "load.axial",
-            problem.load.axial,
-            "cylindrical rollers carry no axial load: delete it",
+            problem.load.axial != 0.0, "load.axial", problem.load.axial, "cylindrical rollers carry no axial load: delete it"
         )
         why = "is not a law of line contacts: use 'line'"
         refuse(not line_contact(contact.law), "contact.kind", contact.kind, why)

@@ -114,9 +114,7 @@ ANSWERS: tuple[Command | Later, ...] = (
         '    --tolerance bearing.contact_angle_deg="±1 deg" --samples 512',
         {
             "tolerances": Option(
-                "tolerance",
-                "A.B=TEXT",
-                "'±10 %', '±1 deg', '+2 µm -1 µm', class=P4, balls=G5 [the scene's tolerances]",
+                "tolerance", "A.B=TEXT", "'±10 %', '±1 deg', '+2 µm -1 µm', class=P4, balls=G5 [the scene's tolerances]"
             ),
             "keys": Option("by", "A.B", "Derivatives by this key only [every number of the scene]"),
             "samples": Option(metavar="N"),

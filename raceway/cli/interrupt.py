@@ -60,11 +60,7 @@ _ORDER_S = 5.0
 _CALLBACKS, _FINALIZER, _WEAK = "_raw_object_cache", "__del__", "weakref.py"
 _IMPORTS = ("<frozen importlib._bootstrap>", "cb")
 #: What ends a command in order, and what Python does about it when nobody asked for anything else.
-_ENDING = {
-    signal.SIGINT: signal.default_int_handler,
-    signal.SIGTERM: signal.SIG_DFL,
-    signal.SIGHUP: signal.SIG_DFL,
-}
+_ENDING = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL}
 #: The first one that arrived in this command, and whether that was said.
 _first: int | None = None
 _told = False

@@ -55,10 +55,7 @@ class Penalty:
         None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=optional(positive())
     )
     calibrate_at: float | None = option(
-        None,
-        unit="N",
-        help="ball load at which the approach equals Hertz's (nodal: 1 % of it)",
-        rule=optional(positive()),
+        None, unit="N", help="ball load at which the approach equals Hertz's (nodal: 1 % of it)", rule=optional(positive())
     )
 
     @classmethod

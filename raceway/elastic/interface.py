@@ -104,14 +104,7 @@ class _Balls:
     alone : (e,) of a ball that touches nothing: without a mass the springs of ``loose`` stay, or nothing would hold it
     """
 
-    def __init__(
-        self,
-        loose: Loose,
-        rows: np.ndarray,
-        stiffness: np.ndarray,
-        response: np.ndarray,
-        inert: bool,
-    ) -> None:
+    def __init__(self, loose: Loose, rows: np.ndarray, stiffness: np.ndarray, response: np.ndarray, inert: bool) -> None:
         self.loose, self.response = loose, response
         places = loose.unknowns
         size, held, caged = len(places), loose.motions.shape[1], len(rows)

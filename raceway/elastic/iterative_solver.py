@@ -337,10 +337,7 @@ class LinearSolver:
         for k in np.flatnonzero(a.frame_free):
             start = np.concatenate([np.eye(m)[k], self._ride[:, k]])
             more, used = _conjugate_gradients(
-                lambda w: apply(np.concatenate([np.zeros(m), w]))[m:],
-                -apply(start)[m:],
-                multigrid,
-                _FOLLOW_TOLERANCE,
+                lambda w: apply(np.concatenate([np.zeros(m), w]))[m:], -apply(start)[m:], multigrid, _FOLLOW_TOLERANCE
             )
             self._follow[:, k] += more
             self.iterations += used

@@ -345,14 +345,7 @@ class CondensedSolver:
         return np.stack(columns, axis=1)
 
     def increment(
-        self,
-        c_k: float,
-        c_c: float,
-        c_m: float,
-        right: np.ndarray,
-        u: np.ndarray,
-        v: np.ndarray | None,
-        dt: float,
+        self, c_k: float, c_c: float, c_m: float, right: np.ndarray, u: np.ndarray, v: np.ndarray | None, dt: float
     ) -> np.ndarray:
         """(size,) increment by which forces change by ``right``: those of the contacts themselves, not their tangents.
 

@@ -521,22 +521,13 @@ class Study(attrs.AttrsInstance, Protocol):
 
 #: kind -> (registration hook, what a class of that kind must have)
 KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
-    "contact_law": (
-        "raceway_contact_laws",
-        ("discretisations", "state_size", "dissipative", "build", "kernel"),
-    ),
-    "excitation": (
-        "raceway_excitations",
-        ("frequency_hz", "period_s", "amplitude_n", "sense", "parameters", "kernel"),
-    ),
+    "contact_law": ("raceway_contact_laws", ("discretisations", "state_size", "dissipative", "build", "kernel")),
+    "excitation": ("raceway_excitations", ("frequency_hz", "period_s", "amplitude_n", "sense", "parameters", "kernel")),
     "integrator": ("raceway_integrators", ("order", "implicit", "inertial", "dissipative", "steady", "scheme")),
     "identifier": ("raceway_identifiers", ("needs", "definition", "identify")),
     "mesher": ("raceway_meshers", ("mesh",)),
     "format": ("raceway_formats", ("suffixes",)),
-    "bodies": (
-        "raceway_bodies",
-        ("faults", "traits", "stable_step", "decide", "cost", "build"),
-    ),
+    "bodies": ("raceway_bodies", ("faults", "traits", "stable_step", "decide", "cost", "build")),
     "quantity": ("raceway_quantities", ("numbers", "why_not", "compute")),
     "executor": ("raceway_executors", ("compute",)),
     "study": ("raceway_studies", ("help", "command")),

@@ -47,14 +47,8 @@ class Estimate(Enum):
         "time step and transient with their phases, at least half the larger; plus identification, mesh and calibration",
         "sum of the parts below",
     )
-    SUM_OF_LAST_WINDOW = (
-        f"{SUM[0]}; of the last window alone, at {{rpm:.6g}} r/min",
-        f"{SUM[1]} at {{rpm:.6g}} r/min",
-    )
-    MESH_UNKNOWN = (
-        "not estimated: the error of the mesh is unknown and the largest",
-        "the error of the mesh is unknown",
-    )
+    SUM_OF_LAST_WINDOW = (f"{SUM[0]}; of the last window alone, at {{rpm:.6g}} r/min", f"{SUM[1]} at {{rpm:.6g}} r/min")
+    MESH_UNKNOWN = ("not estimated: the error of the mesh is unknown and the largest", "the error of the mesh is unknown")
     TURNS_DIFFER = (
         "not estimated: no steady motion was found, and the turns that are used do not repeat",
         "the turns do not repeat",
@@ -64,14 +58,8 @@ class Estimate(Enum):
     STATIC_SCENE = ("the scene is static: nothing is identified",)
 
     # The time step.
-    NO_TIME_STEP = (
-        "no time step; residual of the equilibrium",
-        "no time step: residual of the equilibrium",
-    )
-    OF_INTEGRATOR = (
-        "the method's own estimate, of the displacement over its amplitude",
-        "the integrator's own estimate",
-    )
+    NO_TIME_STEP = ("no time step; residual of the equilibrium", "no time step: residual of the equilibrium")
+    OF_INTEGRATOR = ("the method's own estimate, of the displacement over its amplitude", "the integrator's own estimate")
     SECOND_RUN = ("run with {change}, order {order}", "second run, {change}")
     SECOND_RUN_COSTS = (
         "not estimated: a second run of all nodes would cost as much as the first",
@@ -83,10 +71,7 @@ class Estimate(Enum):
     )
     SECOND_RUN_FAILED = ("the run with {steps} steps per turn failed: {why}", "the run with {steps} steps per turn failed")
     SECOND_RUN_WITHOUT_Z = ("the run with {steps} steps per turn gives no dynamic stiffness",)
-    RESIDUAL = (
-        "residual of each equilibrium; more of them change less",
-        "residual of each equilibrium",
-    )
+    RESIDUAL = ("residual of each equilibrium; more of them change less", "residual of each equilibrium")
     SECOND_SERIES = (
         "series of {count} instead of {steps} equilibria per turn: harmonics beyond them",
         "second series, {count} instead of {steps} equilibria per turn",
@@ -104,19 +89,13 @@ class Estimate(Enum):
     NO_MOTION = ("no motion is recorded",)
     STEADY = ("one turn of the steady motion: nothing dies out", "none: it is the steady motion")
     EQUILIBRIA = ("a series of equilibria: nothing dies out", "none: equilibria have no transient")
-    FROM_STEADY = (
-        "distance from the steady motion, less the part of the time step",
-        "distance from the steady motion",
-    )
+    FROM_STEADY = ("distance from the steady motion, less the part of the time step", "distance from the steady motion")
     STEADY_BEYOND_PLAN = (
         "the search for the steady motion was {why}",
         "the search for the steady motion was stopped far beyond the plan",
     )
     STEADY_SPEEDS_UNKNOWN = ("a steady motion of each speed could not be solved for",)
-    TURN_BY_TURN = (
-        "largest deviation of a single turn from all turns that are used",
-        "spread of single turns",
-    )
+    TURN_BY_TURN = ("largest deviation of a single turn from all turns that are used", "spread of single turns")
     SINGLE_TURN = ("a single turn contains no measure of a transient",)
     LEAKAGE = (
         "free vibration: its leakage, a plain against Hann's window over all turns that are used, and its shift of Z",
@@ -169,10 +148,7 @@ class Estimate(Enum):
     )
     FEWER_POINTS_FAILED = ("no equilibrium with half as many points: {why}", "no equilibrium with half as many points")
     FEWEST_POINTS = ("no fewer points to compare with",)
-    RIPPLE = (
-        "ripple: radial stiffness at one place of the points over its mean over all places{change}",
-        "ripple",
-    )
+    RIPPLE = ("ripple: radial stiffness at one place of the points over its mean over all places{change}", "ripple")
 
     # The contacts and their law.
     UNLOADED = ("no contact carries anything",)
@@ -182,10 +158,7 @@ class Estimate(Enum):
         "compliance",
         "what the calibration of the contacts leaves",
     )
-    CALIBRATED_ON_MESH = (
-        f"{CALIBRATED[0]}, with half the spread over depths of what is taken off the mesh",
-        CALIBRATED[1],
-    )
+    CALIBRATED_ON_MESH = (f"{CALIBRATED[0]}, with half the spread over depths of what is taken off the mesh", CALIBRATED[1])
     NOT_CALIBRATED = (
         "compliances are matched at depth: no contact at surface points was found to calibrate them on",
         "compliances are matched at depth",

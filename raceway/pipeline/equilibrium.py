@@ -87,10 +87,7 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     names = [COORDINATES[free[k]] for k in np.argsort(-motion, kind="stable") if motion[k] > 0.3 * motion.max()]
     held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
     why = lost_preload(model) or f"Hold it ({held}) or load more balls."
-    raise ConvergenceError(
-        f"the equilibrium is singular: no stiffness against {' with '.join(names)}. {why}",
-        {"q": q},
-    )
+    raise ConvergenceError(f"the equilibrium is singular: no stiffness against {' with '.join(names)}. {why}", {"q": q})
 
 
 def _seating(model: Model, inner: np.ndarray) -> list[str]:

@@ -137,12 +137,7 @@ def steady_plan(scene: Scene) -> ScenePlan:
 
 
 def _run(
-    scene: Scene,
-    registry: Registry,
-    on_progress: OnProgress | None,
-    near: Result | None,
-    patience: float,
-    stay: bool,
+    scene: Scene, registry: Registry, on_progress: OnProgress | None, near: Result | None, patience: float, stay: bool
 ) -> Result:
     started, processor = working_clock(), working_process_time()
     plan = steady_plan(scene)

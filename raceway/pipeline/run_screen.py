@@ -114,12 +114,7 @@ class Screen(NamedTuple):
 
 def screen(result: ReadTables) -> Screen:
     """Of one run, from the content of result.json."""
-    rows = [
-        *_answer_rows(result),
-        *equilibrium_rows(result),
-        *quantity_rows(result),
-        *_tolerances(result),
-    ]
+    rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result), *_tolerances(result)]
     rows = _only_resolved(rows, result["error"])
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])

@@ -78,12 +78,7 @@ class Warmth:
     runaway: np.ndarray
 
 
-def warm(
-    scene: Scene,
-    columns: Mapping[str, np.ndarray],
-    plan: ScenePlan,
-    factors: Sequence[np.ndarray] = (),
-) -> Warmth:
+def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, factors: Sequence[np.ndarray] = ()) -> Warmth:
     """Steady temperatures of a scene with [heat] at points.
 
     Parameters

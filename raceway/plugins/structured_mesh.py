@@ -44,10 +44,7 @@ class Structured:
         rule=word_or(between(3, 1_000_000), "auto", "graded"),
     )
     ball_load: float | None = option(
-        None,
-        unit="N",
-        help="ball load of the refined ellipses; default: the scene's, else 300",
-        rule=optional(positive()),
+        None, unit="N", help="ball load of the refined ellipses; default: the scene's, else 300", rule=optional(positive())
     )
 
     def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:

@@ -305,10 +305,7 @@ def draw(layout: _Layout) -> Figure:
             handles, labels, loc="outside right center", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
         )
     heading = name if words in ("", name) else f"{name}: {words}"
-    figure.suptitle(
-        wrapped("\n".join((heading, layout.title, layout.remark)), 84),
-        fontsize=11.5,
-    )
+    figure.suptitle(wrapped("\n".join((heading, layout.title, layout.remark)), 84), fontsize=11.5)
     return figure
 
 

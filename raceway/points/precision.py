@@ -300,10 +300,7 @@ class Precision(Answer):
             )
             for index, row in enumerate(self.judged)
         ]
-        return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [
-            *facts,
-            *rows,
-        ]
+        return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [*facts, *rows]
 
     def table(self) -> list[dict[str, str]]:
         """One line a row, as short text for a screen."""
@@ -480,13 +477,7 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Ta
         "reused": False,
     }
     if setting.scene is None:
-        lost: Tables = {
-            "status": "refused",
-            "reason": setting.reason,
-            "quantities": {},
-            "own_error": None,
-            "cost": None,
-        }
+        lost: Tables = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
         return {**head, **lost}
     method = resolve(setting.scene).integrator.method
     if needs_motion(setting.scene) and method.inertial:

@@ -112,11 +112,7 @@ class Sensitivities(Answer):
             (row.key.path, f"{row.influence[first]:+.3g} %" if row.influence else "", f"{row.derivatives[first]:.4g}")
             for row in self.rows
         ]
-        head: Fact = (
-            first,
-            number(self.values[first], quantity_of(first).unit),
-            "its change by 1 % of a key; derivative",
-        )
+        head: Fact = (first, number(self.values[first], quantity_of(first).unit), "its change by 1 % of a key; derivative")
         return self.title, [head, *facts]
 
     def to_dict(self) -> Tables:

@@ -365,10 +365,7 @@ def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
     if not reasons:
         difference, reasons = "other quantities", sorted(stored.facts["quantities"].keys() ^ facts["quantities"].keys())
     if not reasons and stored.facts["files"] != facts["files"]:
-        difference, reasons = (
-            "changed files of the scene",
-            sorted({*stored.facts["files"], *facts["files"]}),
-        )
+        difference, reasons = ("changed files of the scene", sorted({*stored.facts["files"], *facts["files"]}))
     if not reasons:
         difference, reasons = "another version", differences(stored.facts["identity"], facts["identity"])
     if reasons:

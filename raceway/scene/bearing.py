@@ -9,17 +9,7 @@ import attrs
 
 from raceway.core.columns import acos, cos, has_columns, radians, sin, some, with_values
 from raceway.errors import MeshError, SceneError
-from raceway.framework.options import (
-    at_least,
-    between,
-    finite,
-    inside,
-    length,
-    one_of,
-    option,
-    optional,
-    positive,
-)
+from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.sets import GEOMETRY, RATINGS, Row, arrangement, check_set, places_of, signs_of, travel
 
@@ -98,10 +88,7 @@ class Bearing:
         help="pairs back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by makers' names",
         rule=arrangement(),
     )
-    row: tuple[Row, ...] = option(
-        (),
-        help="one row: position, direction, preload and keys that differ from [bearing]",
-    )
+    row: tuple[Row, ...] = option((), help="one row: position, direction, preload and keys that differ from [bearing]")
     preload: float = option(
         0.0,
         unit="N",

@@ -221,9 +221,7 @@ class Lubricant(Oil):
     """The oil of all that a bearing's lubricant decides: films, friction, life, heat."""
 
     traction_limit: float = option(
-        0.05,
-        help="largest traction coefficient; 0.05 mineral, 0.04 synthetic oils (SKF)",
-        rule=between(0.0, 0.3),
+        0.05, help="largest traction coefficient; 0.05 mineral, 0.04 synthetic oils (SKF)", rule=between(0.0, 0.3)
     )
     eyring_stress: float = option(5e6, unit="Pa", help="onset of shear thinning", rule=positive())
     oil_fraction: float | str = option(

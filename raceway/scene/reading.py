@@ -13,9 +13,7 @@ import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.doors import door, reader
-from raceway.framework.options import (
-    nearest,
-)
+from raceway.framework.options import nearest
 from raceway.framework.registry import REGISTRY, Registry, default_registry
 from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.inputs import Given

@@ -148,12 +148,7 @@ def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray
         6.0 * (x - x**2) / length,
         3.0 * x**2 - 2.0 * x + phi * x,
     ]
-    bend = [
-        6.0 * (2.0 * x - 1.0) / length,
-        6.0 * x - 4.0 - phi,
-        6.0 * (1.0 - 2.0 * x) / length,
-        6.0 * x - 2.0 + phi,
-    ]
+    bend = [6.0 * (2.0 * x - 1.0) / length, 6.0 * x - 4.0 - phi, 6.0 * (1.0 - 2.0 * x) / length, 6.0 * x - 2.0 + phi]
     return share * np.array(w), share * np.array(slope) / length, share * np.array(turn), share * np.array(bend) / length
 
 

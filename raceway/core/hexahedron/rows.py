@@ -208,10 +208,7 @@ def _assemble_blocks(
 
 
 def assemble(
-    cells: NDArray[np.uint32],
-    count: int,
-    components: int,
-    element_matrices: Callable[[slice], Floats],
+    cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
 ) -> csr_matrix:
     """Sum of element matrices.
 

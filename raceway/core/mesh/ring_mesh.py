@@ -411,10 +411,7 @@ class RingShape:
     def surface(self, angles: np.ndarray) -> np.ndarray:
         """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
         return np.column_stack(
-            [
-                self.centre_x + self.groove * np.sin(angles),
-                self.centre_r + self.sign * self.groove * np.cos(angles),
-            ]
+            [self.centre_x + self.groove * np.sin(angles), self.centre_r + self.sign * self.groove * np.cos(angles)]
         )
 
 

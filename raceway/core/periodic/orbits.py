@@ -408,10 +408,7 @@ def _moved(level, turning, numbers):
     return step, size
 
 
-@jit(
-    types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, int64[::1]),
-    allocates=True,
-)
+@jit(types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, int64[::1]), allocates=True)
 def _solve(kernels, turning, numbers, level, work, dofs):
     """Status, last step over the motion, and the motion's size [m], of the orbit with a level's samples."""
     dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
@@ -549,10 +546,7 @@ def _numbers(linear, points, states, turning, p, weight):
     )  # fmt: skip
 
 
-@jit(
-    types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX),
-    allocates=True,
-)
+@jit(types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX), allocates=True)
 def _orbit(kernels, linear, turning, numbers, K, ball, work):
     """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
     spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
@@ -620,10 +614,7 @@ def orbits(kernels, linear, points, states, turning, out):
                 out.status[p] = NOT_SOLVED
 
 
-@jit(
-    types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]),
-    allocates=True,
-)
+@jit(types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]), allocates=True)
 def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
     """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
     n, d, before = level.u.shape[0], dofs.size, 0.0

@@ -332,11 +332,7 @@ class Revolution:
         return np.flatnonzero(~self._held)
 
     def compliance(
-        self,
-        load_dofs: np.ndarray,
-        observed_dofs: np.ndarray,
-        offsets: np.ndarray | None = None,
-        harmonics: str = "sampled",
+        self, load_dofs: np.ndarray, observed_dofs: np.ndarray, offsets: np.ndarray | None = None, harmonics: str = "sampled"
     ) -> np.ndarray:
         """Displacements under unit forces, at the offsets that are asked for.
 

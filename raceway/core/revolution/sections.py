@@ -93,12 +93,7 @@ _LEANS = (1.0, 0.5, 0.0)
 
 
 def graded_profile(
-    shape: RingShape,
-    arc_step: float,
-    window: tuple[float, float],
-    depth_step: float,
-    bulk: float,
-    growth: float = GROWTH,
+    shape: RingShape, arc_step: float, window: tuple[float, float], depth_step: float, bulk: float, growth: float = GROWTH
 ) -> Profile:
     """A section that is fine around a contact.
 

@@ -131,12 +131,7 @@ def differentiation(count: int, period: float) -> np.ndarray:
 
 
 def steady_orbit(
-    system: Ring,
-    period: float,
-    start: np.ndarray,
-    samples: int = 65,
-    inertial: bool = True,
-    tolerance: float = 1e-8,
+    system: Ring, period: float, start: np.ndarray, samples: int = 65, inertial: bool = True, tolerance: float = 1e-8
 ) -> Orbit:
     """The periodic motion near a first guess.
 

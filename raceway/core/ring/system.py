@@ -12,15 +12,7 @@ from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
 from raceway.core.ring.viscous_stiffness import viscous_stiffness
-from raceway.core.signatures import (
-    Balls,
-    Constants,
-    Contacts,
-    Forces,
-    Linear,
-    Response,
-    StaticState,
-)
+from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, StaticState
 from raceway.errors import ConvergenceError
 
 #: Rounding of a force over stiffness and distance of ball and groove centres; 0.4 to 0.7 of 2.2e-16 were measured.
@@ -288,8 +280,7 @@ class System(Ring):
         if not np.isfinite(report[RESIDUAL]):
             remainder = "the forces exceed the range of floating-point arithmetic: check the units of loads and materials"
         raise ConvergenceError(
-            f"no static equilibrium found after {total} iterations: {cause}, {remainder}",
-            {"q": q_now, "ball": ball_now},
+            f"no static equilibrium found after {total} iterations: {cause}, {remainder}", {"q": q_now, "ball": ball_now}
         )
 
 

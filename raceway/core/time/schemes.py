@@ -48,11 +48,7 @@ def missing_driver(scheme: Scheme, compiled: bool) -> str:
 
 
 def integrate(
-    integrator: Any,
-    system: Ring | SteppedSystem,
-    start: Motion,
-    schedule: Schedule,
-    on_chunk: OnChunk | None = None,
+    integrator: Any, system: Ring | SteppedSystem, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None
 ) -> Record:
     """Take all steps of a schedule by the driver that the system asks for.
 

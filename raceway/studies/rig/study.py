@@ -445,7 +445,7 @@ def _page(study: _RigStudy, drawn: dict[str, Figure]) -> Page:
         "Detrend, denoise, whole-turn Fourier transform, F = m e w²/2, less the shaft's deflection as printed, "
         "m e w² a (3 L² - 16 a²) / (192 E I), over 1 - r². The run-out stays in, as the article subtracts none. A simply supported "
         "beam bends by m e w² a (3 L² - 4 a²) / (48 E I), which is the printed formula for an L of twice the span; the bearing's "
-        "force is amplified, too, because the bow moves the disc outwards.",
+        "force is amplified, too, because the bow moves the disc outwards."
     )
     names = [_point_name(row) for row in rows]
     ratios = zip(*(row["printed"] for row in rows), strict=True)

@@ -13,11 +13,7 @@ import attrs
 from raceway.storage.tables import Tables
 
 #: Where the numbers of a case come from: what a document tells numbers of a source from.
-BASES = {
-    "published": "published numbers",
-    "closed form": "numbers of closed forms",
-    "own": "internal comparisons",
-}
+BASES = {"published": "published numbers", "closed form": "numbers of closed forms", "own": "internal comparisons"}
 
 
 @attrs.frozen

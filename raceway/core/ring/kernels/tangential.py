@@ -633,11 +633,7 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
         if force[k] == 0.0 and by_gap[k] == 0.0:
             continue
         seat = Seat(
-            work[DIRECTION, k],
-            work[DIRECTION, z + k],
-            scalars[ring.TILT_ARM],
-            table[k, ring.SIDE],
-            table[k, ring.LEVER],
+            work[DIRECTION, k], work[DIRECTION, z + k], scalars[ring.TILT_ARM], table[k, ring.SIDE], table[k, ring.LEVER]
         )
         if not _add_settled(k, ball_gain, seat, work, f, K, C):
             return 1
