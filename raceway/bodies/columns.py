@@ -235,7 +235,20 @@ class ColumnBearing:
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
         speed = excitations.speed
-        out = _empty_orbits(n, z, 2 * int(self.linear.free.sum()) * disturbed, times)
+        disturbances = 2 * int(self.linear.free.sum()) * disturbed
+        lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
+        forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.zeros((n, times, 2 * z))
+        counts = np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64)
+        out = Orbits(
+            *lines,
+            np.full(n, np.nan),
+            np.zeros(n),
+            np.zeros(n),
+            *forces,
+            *counts,
+            np.zeros(n),
+            np.zeros((n, disturbances, disturbances)),
+        )
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
@@ -447,20 +460,4 @@ def _empty_states(n: int, z: int, columns: int) -> States:
         np.empty((n, 5, 5)),
         np.zeros((n, 2 * z)),
         np.empty(n, dtype=np.int64),
-    )
-
-
-def _empty_orbits(n: int, z: int, disturbances: int, times: int) -> Orbits:
-    lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
-    forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.zeros((n, times, 2 * z))
-    counts = np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64)
-    return Orbits(
-        *lines,
-        np.full(n, np.nan),
-        np.zeros(n),
-        np.zeros(n),
-        *forces,
-        *counts,
-        np.zeros(n),
-        np.zeros((n, disturbances, disturbances)),
     )

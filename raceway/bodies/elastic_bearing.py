@@ -55,7 +55,22 @@ def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
     check_sets(mesher_of(problem), meshes, problem.supports)
     bodies = ElasticBearing(meshes, setup)
     if resultants:
-        _refuse_stiff_law(problem, basis, bodies)
+        # A law that has less compliance than the mesh under its contacts.
+        contact = bodies.system.contact
+        assert isinstance(contact, ResultantContact)
+        n, load = len(contact.local), _ENOUGH * basis.ball_load
+        gap = np.full(n, -float(basis.inner.approach(load)))
+        force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
+        contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
+        if (-d_gap * contact.local).max() >= 1.0:
+            remedy = "Take a smaller load" if is_hertzian(problem.contact.law) else "Use 'hertz' or a softer law"
+            raise SceneError.at(
+                "contact.kind",
+                problem.contact.kind,
+                f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
+                f"{1e9 * contact.local.max():.3g} nm/N alone: no compliance remains for the law. {remedy}, or take "
+                "contact.discretisation = 'nodal'",
+            )
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
     held_by = problem.load.axial if problem.supports.axial == "displacement" else None
     system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
@@ -76,25 +91,6 @@ def _angles(problem: Problem, plan: ScenePlan, rigid: System, guess: np.ndarray)
         inner, outer = inner - ball[:, :2], ball[:, :2]
     loaded = np.concatenate([np.arctan2(way[:, 0], way[:, 1]) for way in (inner, outer)])
     return np.where(rigid.evaluate(q, ball=ball).contact_force > 0.0, loaded, angles)
-
-
-def _refuse_stiff_law(problem: Problem, basis: Basis, bodies: ElasticBearing) -> None:
-    """A law that has less compliance than the mesh under its contacts."""
-    contact = bodies.system.contact
-    assert isinstance(contact, ResultantContact)
-    n, load = len(contact.local), _ENOUGH * basis.ball_load
-    gap = np.full(n, -float(basis.inner.approach(load)))
-    force, d_gap, d_rate = np.empty(n), np.empty(n), np.empty(n)
-    contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
-    if (-d_gap * contact.local).max() >= 1.0:
-        remedy = "Take a smaller load" if is_hertzian(problem.contact.law) else "Use 'hertz' or a softer law"
-        raise SceneError.at(
-            "contact.kind",
-            problem.contact.kind,
-            f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
-            f"{1e9 * contact.local.max():.3g} nm/N alone: no compliance remains for the law. {remedy}, or take "
-            "contact.discretisation = 'nodal'",
-        )
 
 
 def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:

@@ -6,7 +6,6 @@ give; *running*, speed and temperatures do, too.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
@@ -18,7 +17,7 @@ from raceway.bodies.basis import Basis, first_guess, growth_of
 from raceway.bodies.running import renew
 from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import ChangingSpeed, Evaluation, Growth, Ring
+from raceway.core.ring.ring import Evaluation, Growth, Ring
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
@@ -57,7 +56,20 @@ def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     if renews(problem.contact.law) and isinstance(system, System):
         guess = renew(problem, basis, system, guess, seek)
     if seek is not None and system.spin is not None:
-        system.spin = _follow_speed(problem, system, guess, seek)
+        # The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds.
+        from scipy.interpolate import CubicSpline
+
+        assert system.spin is not None
+        spin = attrs.evolve(system.spin, shift=None)
+        duration = problem.turns / problem.excitation.frequency_hz
+        met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
+        speeds = np.linspace(met.min(), met.max(), _SPEEDS)
+        shifts = []
+        for speed in speeds:
+            steady = spin.constants(system, float(speed))
+            seek(steady, guess)
+            shifts.append(steady.table[steady.sliding, ring.SHIFT][0])
+        system.spin = attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
     return guess if seek is None else seek(system, guess)
 
 
@@ -101,25 +113,6 @@ def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
     if facing:
         table[:, [ring.SIDE, ring.LEVER, ring.SHIFT]] = 1.0, 0.0, 0.0
     return system.of_balls(balls, table)
-
-
-def _follow_speed(
-    problem: Problem, system: Ring, guess: np.ndarray, seek: Callable[[Ring, np.ndarray], np.ndarray]
-) -> ChangingSpeed:
-    """The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds."""
-    from scipy.interpolate import CubicSpline
-
-    assert system.spin is not None
-    spin = attrs.evolve(system.spin, shift=None)
-    duration = problem.turns / problem.excitation.frequency_hz
-    met = spin.speed(np.linspace(0.0, duration, _SAMPLES))
-    speeds = np.linspace(met.min(), met.max(), _SPEEDS)
-    shifts = []
-    for speed in speeds:
-        steady = spin.constants(system, float(speed))
-        seek(steady, guess)
-        shifts.append(steady.table[steady.sliding, ring.SHIFT][0])
-    return attrs.evolve(spin, shift=CubicSpline(speeds, shifts))
 
 
 def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, guess: np.ndarray) -> np.ndarray:

@@ -168,29 +168,25 @@ def end(code: int) -> NoReturn:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, leave)
     if _first is not None:
-        _end_quietly(code)
+        # What libraries still do is done, for a while, but what they complain of in a process that was stopped is not news.
+        with suppress(OSError, ValueError):
+            sys.stdout.flush()
+        with suppress(OSError, ValueError):
+            sys.stderr.flush()
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        late = threading.Timer(_LEAVING_S, os._exit, (code,))
+        late.daemon = True
+        late.start()
+        atexit._run_exitfuncs()
+        # Not sys.exit: where an interruption passed through a C library, Python would end by another Ctrl-C of its own.
+        os._exit(code)
     # As Python ends, but for taking itself apart: meanwhile it answers no signal, and the process would die of one.  This waits for threads, as the interpreter does when it ends; there is no public name for that, and typeshed knows no other.
     threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):  # a reader that has gone; closed
             stream.flush()
-    os._exit(code)
-
-
-def _end_quietly(code: int) -> NoReturn:
-    """What libraries still do is done, for a while, but what they complain of in a process that was stopped is not news."""
-    with suppress(OSError, ValueError):
-        sys.stdout.flush()
-    with suppress(OSError, ValueError):
-        sys.stderr.flush()
-    with suppress(OSError):
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    late = threading.Timer(_LEAVING_S, os._exit, (code,))
-    late.daemon = True
-    late.start()
-    atexit._run_exitfuncs()
-    # Not sys.exit: where an interruption passed through a C library, Python would end by another Ctrl-C of its own.
     os._exit(code)
 
 

@@ -157,7 +157,19 @@ class ResultantContact(Contact):
         super().__init__(centres, ones, ones.astype(int), surfaces, law)
         self.local = np.array([t.local for t in touches])
         self._carried, self._approach = np.zeros(len(touches)), np.zeros(len(touches))
-        self.move = _moves(touches, nodes)
+        # (3 n, 3 nodes) sparse displacement of balls against races.
+        from scipy.sparse import coo_array
+
+        rows, columns, values = [], [], []
+        for k, touch in enumerate(touches):
+            for sign, side in ((1.0, touch.ball), (-1.0, touch.race)):
+                rows.append(np.broadcast_to(3 * k + np.arange(3)[:, None, None], side.share.shape).ravel())
+                columns.append(np.broadcast_to((3 * side.nodes)[:, None] + np.arange(3), side.share.shape).ravel())
+                values.append(sign * side.share.ravel())
+        join = np.concatenate
+        move = coo_array((join(values), (join(rows), join(columns))), shape=(3 * len(touches), 3 * nodes)).tocsr()
+        move.eliminate_zeros()
+        self.move = move
         self._mobility: np.ndarray | None = None
         self._last = self._last_gap()
 
@@ -228,22 +240,6 @@ class ResultantContact(Contact):
     def energy(self) -> float:
         """Energy stored by the law at the last gaps, less the local energy of the meshes [J]."""
         return super().energy() - 0.5 * float(self.local @ self._carried**2)
-
-
-def _moves(touches: list[Touch], nodes: int) -> csr_matrix:
-    """(3 n, 3 nodes) sparse displacement of balls against races."""
-    from scipy.sparse import coo_array
-
-    rows, columns, values = [], [], []
-    for k, touch in enumerate(touches):
-        for sign, side in ((1.0, touch.ball), (-1.0, touch.race)):
-            rows.append(np.broadcast_to(3 * k + np.arange(3)[:, None, None], side.share.shape).ravel())
-            columns.append(np.broadcast_to((3 * side.nodes)[:, None] + np.arange(3), side.share.shape).ravel())
-            values.append(sign * side.share.ravel())
-    join = np.concatenate
-    move = coo_array((join(values), (join(rows), join(columns))), shape=(3 * len(touches), 3 * nodes)).tocsr()
-    move.eliminate_zeros()
-    return move
 
 
 #: Depths between which the fields are compared, over the body's reach, and how many.

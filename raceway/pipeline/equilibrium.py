@@ -37,7 +37,12 @@ def solve_equilibrium(
         None found, or a motion that nothing holds (named).
     """
     system = model.system
-    _refuse_no_load(model)
+    loaded = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
+    if not loaded and model.system.free[0] > 0.0:
+        raise ConvergenceError(
+            "no load acts on the bearing: all motions are free and the stiffness is undefined. Set `load.axial`, or hold "
+            'the ring with supports.axial = "displacement" under an axial load.'
+        )
     _foresee_free_motion(model)
     q, ball, iterations = model.bearing.solve_equilibrium(near, on_progress)
     still = system.without(CAGE)
@@ -52,15 +57,6 @@ def solve_equilibrium(
     equilibrium = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
     law = report_of(model, equilibrium)
     return equilibrium if law is None else attrs.evolve(equilibrium, warnings=(*law.warnings, *warnings))
-
-
-def _refuse_no_load(model: Model) -> None:
-    loaded = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
-    if not loaded and model.system.free[0] > 0.0:
-        raise ConvergenceError(
-            "no load acts on the bearing: all motions are free and the stiffness is undefined. Set `load.axial`, or hold "
-            'the ring with supports.axial = "displacement" under an axial load.'
-        )
 
 
 def _foresee_free_motion(model: Model) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from raceway.out.answer import Part
@@ -65,13 +64,6 @@ def _answer_rows(result: ReadTables) -> list[Row]:
     ]
 
 
-def _only_resolved(rows: Sequence[Row], error: ReadTables) -> list[Row]:
-    """The rows without the numbers that a part of the error of Z is as large as, or larger."""
-    parts = error.get("unresolved")
-    why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
-    return [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
-
-
 def _damping_rows(result: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
     band, origin = result["identification"]["band"], result["identification"]["damping_origin"]
@@ -115,7 +107,11 @@ class Screen(NamedTuple):
 def screen(result: ReadTables) -> Screen:
     """Of one run, from the content of result.json."""
     rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result), *_tolerances(result)]
-    rows = _only_resolved(rows, result["error"])
+    # The rows without the numbers that a part of the error of Z is as large as, or larger.
+    error = result["error"]
+    parts = error.get("unresolved")
+    why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
+    rows = [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]

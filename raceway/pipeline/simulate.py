@@ -12,7 +12,6 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
-from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
 from raceway.core.signals import stiffness, synchronous_phasor
 from raceway.core.time.schemes import integrate
@@ -176,33 +175,29 @@ def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) ->
         excitation = steady
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
-        return _searched_start(model, system, excitation.period_s, equilibrium.displacement, watch)
+        ring = compiled(system)
+        if ring is None or not model.problem.searches_orbits:
+            return Start("orbit", steady_orbit(system, excitation.period_s, equilibrium.displacement))
+        from raceway.core.periodic.steady import starting_orbit
+
+        search = starting_orbit(ring, excitation.period_s, equilibrium.displacement, watch)
+        if search is None:
+            return Start("orbit", steady_orbit(system, excitation.period_s, equilibrium.displacement))
+        if not search.orbits:
+            return Start("orbit", search.orbit)
+        # Orbits of another motion than that of the scene are stated in warnings only.
+        differences = {
+            "without friction": model.problem.contact.friction > 0.0,
+            "with balls that do not orbit": model.problem.kinematics.orbiting,
+            "at its first speed": model.excitation.period_s is None,
+        }
+        prefix = ", ".join(words for words, differs in differences.items() if differs)
+        orbits, warnings = tuple(search.orbits), search.warnings
+        if prefix:
+            orbits, warnings = (), tuple(f"{prefix}: {text}" for text in warnings)
+        return Start("orbit", search.orbit, orbits, search.orbits[0]["stable"], warnings)
     except ConvergenceError as why:
         return Start("ramp", repeats=False, warnings=(f"{why}: started with a ramp instead",))
-
-
-def _searched_start(model: Model, system: Ring, period: float, q: np.ndarray, watch: Watch | None) -> Start:
-    ring = compiled(system)
-    if ring is None or not model.problem.searches_orbits:
-        return Start("orbit", steady_orbit(system, period, q))
-    from raceway.core.periodic.steady import starting_orbit
-
-    search = starting_orbit(ring, period, q, watch)
-    if search is None:
-        return Start("orbit", steady_orbit(system, period, q))
-    if not search.orbits:
-        return Start("orbit", search.orbit)
-    # Orbits of another motion than that of the scene are stated in warnings only.
-    differences = {
-        "without friction": model.problem.contact.friction > 0.0,
-        "with balls that do not orbit": model.problem.kinematics.orbiting,
-        "at its first speed": model.excitation.period_s is None,
-    }
-    prefix = ", ".join(words for words, differs in differences.items() if differs)
-    orbits, warnings = tuple(search.orbits), search.warnings
-    if prefix:
-        orbits, warnings = (), tuple(f"{prefix}: {text}" for text in warnings)
-    return Start("orbit", search.orbit, orbits, search.orbits[0]["stable"], warnings)
 
 
 def _step_warnings(

@@ -94,7 +94,17 @@ def _draw(content: ReadTables) -> Figure:
     rows = figure.subplots(len(heights) * blocks, columns, squeeze=False, height_ratios=heights * blocks)
     for k, (name, entry) in enumerate(quantities.items()):
         block, column = divmod(k, columns)
-        _draw_histogram(rows[len(heights) * block, column], name, entry)
+        axes = rows[len(heights) * block, column]
+        (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
+        edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
+        axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+        for end, label in ((low, "95 % of samples"), (high, None)):
+            axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
+        axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
+        axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
+        axes.set_xlabel(unit, fontsize=9)
+        axes.tick_params(labelsize=8)
+        axes.locator_params(axis="x", nbins=4)
         rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
         if with_indices:
             _indices(rows[2 * block + 1, column], entry, keys, named=column == 0)
@@ -106,19 +116,6 @@ def _draw(content: ReadTables) -> Figure:
     figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
     figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
-
-
-def _draw_histogram(axes: Axes, name: str, entry: ReadTables) -> None:
-    (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
-    edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
-    axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
-    for end, label in ((low, "95 % of samples"), (high, None)):
-        axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
-    axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
-    axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
-    axes.set_xlabel(unit, fontsize=9)
-    axes.tick_params(labelsize=8)
-    axes.locator_params(axis="x", nbins=4)
 
 
 def _indices(axes: Axes, entry: ReadTables, keys: list[str], named: bool) -> None:

@@ -273,7 +273,14 @@ def find_reference(group: list[Setting], runner: Runner, changes: ReadTables | N
     sizes = sorted({float(size) for s in group if (size := getattr(_mesh(s), "element_size", None)) is not None})
     first = next((s for s in group if getattr(_mesh(s), "element_size", None) == (sizes[0] if sizes else None)), group[0])
     if changes:
-        return _given(first, changes, runner)
+        words = ", ".join(f"{key} = {value}" for key, value in changes.items())
+        row = runner.at(first, changes)
+        if row is None:
+            return Reference({}, {}, f"the given reference ({words}) could not be run")
+        error = row["own_error"]
+        bound = float("inf") if error is None else error
+        note = "which it has no estimate of" if error is None else "as it estimates itself"
+        return Reference(row["quantities"], _all(row["quantities"], bound), f"given: {words}; its error {note}")
     reference = _of_one_mesh(first, group, runner)
     if len(sizes) < 2 or not reference.values:
         return reference
@@ -290,17 +297,6 @@ def find_reference(group: list[Setting], runner: Runner, changes: ReadTables | N
 
 def _mesh(setting: Setting) -> Mesher | None:
     return None if setting.scene is None else setting.scene.mesh
-
-
-def _given(first: Setting, changes: ReadTables, runner: Runner) -> Reference:
-    words = ", ".join(f"{key} = {value}" for key, value in changes.items())
-    row = runner.at(first, changes)
-    if row is None:
-        return Reference({}, {}, f"the given reference ({words}) could not be run")
-    error = row["own_error"]
-    bound = float("inf") if error is None else error
-    note = "which it has no estimate of" if error is None else "as it estimates itself"
-    return Reference(row["quantities"], _all(row["quantities"], bound), f"given: {words}; its error {note}")
 
 
 def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: ReadTables | None = None) -> Reference:

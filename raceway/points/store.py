@@ -233,21 +233,17 @@ def written(path: str | Path | None, facts: ReadTables | None = None, keys: Coll
             if store.fault is not None:
                 warnings.warn(str(store.fault), stacklevel=3)
         finally:
-            _leave(folder, connection, new)
-
-
-def _leave(folder: Path, connection: sqlite3.Connection, new: bool) -> None:
-    """Close a store that was written; one that was begun and got nowhere is taken away."""
-    with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
-        empty = new and not _holds_rows(connection)
-        connection.execute("PRAGMA journal_mode = DELETE")
-        connection.close()
-        if empty:
-            with suppress(OSError):
-                (folder / POINTS).unlink(missing_ok=True)
-                (folder / _LOCK).unlink(missing_ok=True)
-                folder.rmdir()
-    connection.close()
+            # Close a store that was written; one that was begun and got nowhere is taken away.
+            with suppress(sqlite3.Error):  # what is wrong with the disk was said when it was written to
+                empty = new and not _holds_rows(connection)
+                connection.execute("PRAGMA journal_mode = DELETE")
+                connection.close()
+                if empty:
+                    with suppress(OSError):
+                        (folder / POINTS).unlink(missing_ok=True)
+                        (folder / _LOCK).unlink(missing_ok=True)
+                        folder.rmdir()
+            connection.close()
 
 
 def exists(folder: Path) -> bool:

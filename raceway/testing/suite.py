@@ -341,7 +341,11 @@ def _serve(work: Callable[[], object], writer: int) -> None:
         faulthandler.disable()
         os.setpgid(0, 0)
         os.dup2(2, 1)  # what is printed here is no part of an answer in JSON
-        _limit_memory()
+        with open("/proc/self/statm", encoding="ascii") as file:
+            limit = int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE") + LIMIT_BYTES
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         try:
             answer = pickle.dumps((True, work()))
         except Exception as why:  # handed over
@@ -353,14 +357,6 @@ def _serve(work: Callable[[], object], writer: int) -> None:
         code = why.code if isinstance(why.code, int) else 1
     finally:
         os._exit(code)
-
-
-def _limit_memory() -> None:
-    with open("/proc/self/statm", encoding="ascii") as file:
-        limit = int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE") + LIMIT_BYTES
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _collected(reader: int) -> tuple[bytes, bool]:

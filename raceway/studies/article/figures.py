@@ -146,22 +146,6 @@ def _colours(count: int) -> list[_Colour]:
     return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
-def _end_labels(axes: Axes, x: float, labels: list[tuple[float, str, _Colour]]) -> None:
-    """Names at the right ends of curves, pushed apart where they would cover each other."""
-    finite = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
-    low, high = axes.get_ylim()
-    gap = 0.062 * (high - low)
-    heights: list[float] = []
-    for y, *_ in finite:
-        heights.append(max(y, heights[-1] + gap) if heights else y)
-    top = high + 0.5 * gap
-    for k in reversed(range(len(heights))):  # what was pushed out at the top pushes back
-        heights[k] = top = min(heights[k], top - gap)
-    for height, (_, text, colour) in zip(heights, finite, strict=True):
-        axes.annotate(text, (x, height), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
-                      annotation_clip=False)  # fmt: skip
-
-
 def drawings(study: Article) -> list[Picture]:
     """All figures in the order of the page: 9 to 12 for each kind of bodies, then what they have in common."""
     curves, bodies = study.curves, study.curves.design.bodies
@@ -256,7 +240,19 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
         axes.set_xlim(0.0, 1.2)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
         labels = [(float(line.y[-1]), name, line.colour) for name, line in zip(names, lines[::2], strict=True)]
-        _end_labels(axes, 1.0, labels)
+        # Names at the right ends of curves, pushed apart where they would cover each other.
+        finite = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
+        low, high = axes.get_ylim()
+        gap = 0.062 * (high - low)
+        heights: list[float] = []
+        for y, *_ in finite:
+            heights.append(max(y, heights[-1] + gap) if heights else y)
+        top = high + 0.5 * gap
+        for k in reversed(range(len(heights))):  # what was pushed out at the top pushes back
+            heights[k] = top = min(heights[k], top - gap)
+        for height, (_, text, colour) in zip(heights, finite, strict=True):
+            axes.annotate(text, (1.0, height), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
+                          annotation_clip=False)  # fmt: skip
 
     words = f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {_ends(names)}"
     return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 0, words, "Dashed: weightless balls.", ends)

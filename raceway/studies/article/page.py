@@ -43,19 +43,7 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
     footer = f"Made by `{study.command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
     out = Page("The article’s claims, computed again", study.title, footer)
-    _opening(out, content, study.curves.design.scene_load)
-    _friction(out, content, drawn)
-    _verdicts(out, content)
-    _setting(out, content)
-    _figures(out, content, drawn, study.curves.design.scene_load)
-    _static(out, content)
-    _trends(out, content)
-    _rig(out, content)
-    _faults(out, content, [row for rows in study.scan.values() for row in rows])
-    return out
-
-
-def _opening(out: Page, content: ReadTables, load: float) -> None:
+    load = study.curves.design.scene_load
     verdicts = content["verdicts"]
     counts = Counter(verdict["kind"] for verdict in verdicts)
     parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, words) in KINDS.items() if counts[kind])
@@ -80,6 +68,15 @@ def _opening(out: Page, content: ReadTables, load: float) -> None:
         )
     out.listing(points)
     _swaps(out, content, load)
+    _friction(out, content, drawn)
+    _verdicts(out, content)
+    _setting(out, content)
+    _figures(out, content, drawn, study.curves.design.scene_load)
+    _static(out, content)
+    _trends(out, content)
+    _rig(out, content)
+    _faults(out, content, [row for rows in study.scan.values() for row in rows])
+    return out
 
 
 def _friction_in_short(content: ReadTables) -> str:

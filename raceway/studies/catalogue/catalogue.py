@@ -50,7 +50,25 @@ def _section(name: str, bearing: Bearing) -> Figure:
         axes.set_aspect("equal")
         axes.axis("off")
     _draw_bearing(full, bearing)
-    _draw_ball_in_grooves(close, bearing)
+    # One ball with its diameter, the line of contact and the grooves.
+    b = bearing
+    _ball(close, b)
+    r, radius = 0.5 * _MM * b.pitch_diameter, 0.5 * _MM * b.ball_diameter
+    # A positive axial load seats the inner ring along +x: its contact lies at -x below the ball.
+    along = np.array([np.sin(b.contact_angle), np.cos(b.contact_angle)])
+    ends = np.array([0.0, r]) + np.outer([-1.45, 1.45], along) * radius
+    close.plot(*ends.T, color=_MARK, lw=1.0, ls="-.")
+    close.plot([0.0, 0.0], [r - 1.45 * radius, r + 1.45 * radius], color=_INK, lw=0.6, ls="-.")
+    close.annotate(
+        "", (-radius, r), (radius, r), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8, "shrinkA": 0, "shrinkB": 0}
+    )
+    close.text(0.0, r, f"{_MM * b.ball_diameter:.5g}", fontsize=9, ha="center", va="bottom")
+    words = (
+        f"{b.ball_count} balls of {_MM * b.ball_diameter:.5g}\ncontact angle {np.degrees(b.contact_angle):.4g} deg\n"
+        f"grooves {b.conformity_inner:.4g} D inner, {b.conformity_outer:.4g} D outer"
+    )
+    close.text(0.5, -0.02, words, transform=close.transAxes, fontsize=9, ha="center", va="top", color=_INK)
+    close.text(ends[1, 0], ends[1, 1], f" {np.degrees(b.contact_angle):.4g} deg", fontsize=9, color=_MARK)
     figure.suptitle(f"{name}, dimensions in mm")
     return figure
 
@@ -90,27 +108,6 @@ def _draw_bearing(axes: Axes, b: Bearing) -> None:
     top = 0.5 * _MM * outer + 0.5 * step
     axes.annotate("", (-half, top), (half, top), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8})
     axes.text(0.0, top, f"B {_MM * width:.5g}", fontsize=8, ha="center", va="bottom")
-
-
-def _draw_ball_in_grooves(axes: Axes, b: Bearing) -> None:
-    """One ball with its diameter, the line of contact and the grooves."""
-    _ball(axes, b)
-    r, radius = 0.5 * _MM * b.pitch_diameter, 0.5 * _MM * b.ball_diameter
-    # A positive axial load seats the inner ring along +x: its contact lies at -x below the ball.
-    along = np.array([np.sin(b.contact_angle), np.cos(b.contact_angle)])
-    ends = np.array([0.0, r]) + np.outer([-1.45, 1.45], along) * radius
-    axes.plot(*ends.T, color=_MARK, lw=1.0, ls="-.")
-    axes.plot([0.0, 0.0], [r - 1.45 * radius, r + 1.45 * radius], color=_INK, lw=0.6, ls="-.")
-    axes.annotate(
-        "", (-radius, r), (radius, r), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8, "shrinkA": 0, "shrinkB": 0}
-    )
-    axes.text(0.0, r, f"{_MM * b.ball_diameter:.5g}", fontsize=9, ha="center", va="bottom")
-    words = (
-        f"{b.ball_count} balls of {_MM * b.ball_diameter:.5g}\ncontact angle {np.degrees(b.contact_angle):.4g} deg\n"
-        f"grooves {b.conformity_inner:.4g} D inner, {b.conformity_outer:.4g} D outer"
-    )
-    axes.text(0.5, -0.02, words, transform=axes.transAxes, fontsize=9, ha="center", va="top", color=_INK)
-    axes.text(ends[1, 0], ends[1, 1], f" {np.degrees(b.contact_angle):.4g} deg", fontsize=9, color=_MARK)
 
 
 _LENGTHS = {

@@ -110,18 +110,7 @@ def _by_pulses(recording: Recording, key: np.ndarray) -> Rotation:
             f"{recording.speed.mean() * 30.0 / pi:.6g}: pulses between samples are missed, or there are several per turn. "
             "Sample faster, or omit one of the columns"
         )
-    spline = _smooth_angle(times)
-    # The smooth angle begins and ends its full turns a little beside the pulses; far beyond them it means nothing.
-    margin = 0.25 * float(np.median(lengths))
-    part = recording.part((recording.time >= times[0] - margin) & (recording.time < times[-1] + margin))
-    angle = spline(part.time)
-    inside = (angle >= 0.0) & (angle < 2.0 * pi * turns)
-    part, angle = part.part(inside), angle[inside]
-    return Rotation(part, angle, spline(part.time, 1), turns, True, _angle_error(recording.time, pulses, spline))
-
-
-def _smooth_angle(times: np.ndarray) -> PPoly:
-    """The angle over time [rad]: cubic splines with a knot every few turns, through pulses that samples and noise scatter."""
+    # The angle over time [rad]: cubic splines with a knot every few turns, through pulses that samples and noise scatter.
     from scipy.interpolate import make_lsq_spline
 
     count = len(times)
@@ -129,7 +118,14 @@ def _smooth_angle(times: np.ndarray) -> PPoly:
     pieces = max((count - 1) // _TURNS_PER_KNOT, 1)
     inner = np.interp(np.linspace(0, count - 1, pieces + 1)[1:-1], np.arange(count), times)
     knots = np.concatenate([[times[0]] * (degree + 1), inner, [times[-1]] * (degree + 1)])
-    return make_lsq_spline(times, 2.0 * pi * np.arange(count), knots, degree)
+    spline = make_lsq_spline(times, 2.0 * pi * np.arange(count), knots, degree)
+    # The smooth angle begins and ends its full turns a little beside the pulses; far beyond them it means nothing.
+    margin = 0.25 * float(np.median(lengths))
+    part = recording.part((recording.time >= times[0] - margin) & (recording.time < times[-1] + margin))
+    angle = spline(part.time)
+    inside = (angle >= 0.0) & (angle < 2.0 * pi * turns)
+    part, angle = part.part(inside), angle[inside]
+    return Rotation(part, angle, spline(part.time, 1), turns, True, _angle_error(recording.time, pulses, spline))
 
 
 def _angle_error(time: np.ndarray, pulses: _Pulses, spline: PPoly) -> float:

@@ -75,9 +75,27 @@ def synchronous(rotation: Rotation) -> Synchronous:
         raise RacewayError("the sensor shows no synchronous motion: y and z are nearly constant. Check its connection")
     aligned = rotation
     if not rotation.marked:
-        aligned = _aligned(rotation, forward)
+        # Angles without a pulse, shifted so that the blocks' components (m,) have no phase: an integrated speed wanders.
+        edges = np.round(np.linspace(0, rotation.turns, len(forward) + 1))
+        middles = pi * (edges[:-1] + edges[1:])
+        phase = np.unwrap(np.angle(forward))
+        shift = np.interp(rotation.angle, middles, phase)
+        for low, end in ((0, rotation.angle < middles[0]), (-2, rotation.angle > middles[-1])):
+            slope = (phase[low + 1] - phase[low]) / (middles[low + 1] - middles[low])
+            shift[end] = phase[low] + slope * (rotation.angle[end] - middles[low])
+        angle = rotation.angle + shift - shift[0]
+        aligned = attrs.evolve(rotation, angle=angle, turns=max(int((angle[-1] + 1e-6) / (2.0 * pi)), 1))
         forward, backward, speeds, residual = _blocks(aligned)
-    value, error = _at_mean(forward, speeds)
+    # Component at the mean speed and its standard error.
+    relative = speeds / speeds.mean() - 1.0
+    span = float(np.ptp(relative))
+    degree = 0 if span < _STRAIGHT or len(forward) < 4 else 1 if span < _CURVED or len(forward) < 8 else 2
+    basis = np.vander(relative, degree + 1, increasing=True)
+    solution, *_ = np.linalg.lstsq(basis, forward, rcond=None)
+    residuals = forward - basis @ solution
+    freedom = max(len(forward) - degree - 1, 1)
+    variance = float(np.vdot(residuals, residuals).real) / freedom * np.linalg.inv(basis.T @ basis)[0, 0]
+    value, error = complex(solution[0]), float(np.sqrt(variance))
     if len(forward) > 1:  # white noise within the blocks; the spread of a few blocks alone may be small by chance
         error = max(error, residual / np.sqrt(len(aligned.angle)))
     return Synchronous(
@@ -120,32 +138,6 @@ def _blocks(rotation: Rotation) -> tuple[np.ndarray, np.ndarray, np.ndarray, flo
         t = rotation.recording.time[block]
         speeds.append((p[-1] - p[0]) / (t[-1] - t[0]))
     return np.array(forward), np.array(backward), np.array(speeds), float(np.sqrt(squares / len(signal)))
-
-
-def _at_mean(forward: np.ndarray, speeds: np.ndarray) -> tuple[complex, float]:
-    """Component at the mean speed and its standard error."""
-    relative = speeds / speeds.mean() - 1.0
-    span = float(np.ptp(relative))
-    degree = 0 if span < _STRAIGHT or len(forward) < 4 else 1 if span < _CURVED or len(forward) < 8 else 2
-    basis = np.vander(relative, degree + 1, increasing=True)
-    solution, *_ = np.linalg.lstsq(basis, forward, rcond=None)
-    residuals = forward - basis @ solution
-    freedom = max(len(forward) - degree - 1, 1)
-    variance = float(np.vdot(residuals, residuals).real) / freedom * np.linalg.inv(basis.T @ basis)[0, 0]
-    return complex(solution[0]), float(np.sqrt(variance))
-
-
-def _aligned(rotation: Rotation, forward: np.ndarray) -> Rotation:
-    """Angles without a pulse, shifted so that the blocks' components (m,) have no phase: an integrated speed wanders."""
-    edges = np.round(np.linspace(0, rotation.turns, len(forward) + 1))
-    middles = pi * (edges[:-1] + edges[1:])
-    phase = np.unwrap(np.angle(forward))
-    shift = np.interp(rotation.angle, middles, phase)
-    for low, end in ((0, rotation.angle < middles[0]), (-2, rotation.angle > middles[-1])):
-        slope = (phase[low + 1] - phase[low]) / (middles[low + 1] - middles[low])
-        shift[end] = phase[low] + slope * (rotation.angle[end] - middles[low])
-    angle = rotation.angle + shift - shift[0]
-    return attrs.evolve(rotation, angle=angle, turns=max(int((angle[-1] + 1e-6) / (2.0 * pi)), 1))
 
 
 def _fourier(rotation: Rotation) -> complex:

@@ -110,11 +110,6 @@ def unit(name: str) -> str:
     return "N/m" if name[0] == "k" else "N s/m"
 
 
-def _refuse_without_motion(selection: Selection) -> None:
-    if selection.value("excitation.kind") is None or "z_real" not in selection.dataset:
-        raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
-
-
 def coefficients(
     selection: Selection, source: str | None = None, unresolved: float = 0.0, least: int = LEAST_POINTS
 ) -> Coefficients:
@@ -142,10 +137,16 @@ def coefficients(
         selection = _directions_last(selection)
     else:
         only_axes(selection, (SPEED, SPIN), purpose)
-    _refuse_gaps(selection)
+    if selection.unfinished:
+        raise RacewayError(
+            f"the table would have gaps: points without result: {selection.gaps}. Finish them with raceway sweep ... "
+            "--resume (failed ones: --retry-failed), or choose another part with --at"
+        )
+    if LIST in selection.dataset.dims:
+        raise RacewayError("the points of this sweep fill no grid over speed, and a table needs one: sweep with --grid")
     _refuse_few(selection, least)
-    if source != "tangent":
-        _refuse_without_motion(selection)
+    if source != "tangent" and (selection.value("excitation.kind") is None or "z_real" not in selection.dataset):
+        raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
     stiffness, damping, resolved, definition, notes = SOURCES[source](selection)
     measured = resolved[..., 0, 0] & resolved[..., 1, 1]
     damping, replaced = _without_noise(damping, resolved, unresolved)
@@ -234,16 +235,6 @@ def _directions_last(selection: Selection) -> Selection:
         return selection
     axes = {key: selection.axes[key] for key in sorted(selection.axes, key=lambda key: key == DIRECTION)}
     return attrs.evolve(selection, axes=axes, dataset=selection.dataset.transpose(*axes, ...))
-
-
-def _refuse_gaps(selection: Selection) -> None:
-    if selection.unfinished:
-        raise RacewayError(
-            f"the table would have gaps: points without result: {selection.gaps}. Finish them with raceway sweep ... "
-            "--resume (failed ones: --retry-failed), or choose another part with --at"
-        )
-    if LIST in selection.dataset.dims:
-        raise RacewayError("the points of this sweep fill no grid over speed, and a table needs one: sweep with --grid")
 
 
 def _refuse_few(selection: Selection, least: int) -> None:

@@ -143,13 +143,6 @@ def _vtu(grid: Grid) -> bytes:
         return path.read_bytes()
 
 
-def _below(values: np.ndarray, areas: np.ndarray, share: float) -> float:
-    """The value that a share of the whole area stays below."""
-    order = np.argsort(values)
-    summed = np.cumsum(areas[order])
-    return float(values[order][np.searchsorted(summed, share * summed[-1])])
-
-
 def _section_image(grid: Grid, azimuth: float, title: str) -> bytes:
     """PNG of the plane of the axis and a ball, seen along the orbit."""
     across = np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
@@ -159,7 +152,12 @@ def _section_image(grid: Grid, azimuth: float, title: str) -> bytes:
         half = grid.extract_cells(np.flatnonzero(grid.cell_centers().points @ outward > 0.0))
         section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
         stress = section.cell_data["stress"] = 1e-6 * section.cell_data[_STRESSES[0]]
-        top = _below(np.asarray(stress), section.compute_cell_sizes(length=False, volume=False).cell_data["Area"], _SHOWN)
+        # The value that a share of the whole area stays below.
+        values = np.asarray(stress)
+        areas = section.compute_cell_sizes(length=False, volume=False).cell_data["Area"]
+        order = np.argsort(values)
+        summed = np.cumsum(areas[order])
+        top = float(values[order][np.searchsorted(summed, _SHOWN * summed[-1])])
         bar = {
             "title": "MPa", "color": INK, "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,
             "position_x": 0.9, "position_y": 0.15, "height": 0.7, "width": 0.06,
