@@ -77,12 +77,25 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     """Kernels of balls and law, and their numbers, with a first axis of n operating points where these have columns."""
     kernel, base = _bodies_kernels(plan)
     params = law_params(problem.contact.law, contact_pairs(problem, basis))
+    geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
+    out = np.zeros((*problem.points, ring.SCALARS))
+    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
+    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common
+    out[..., ring.DAMPING], out[..., ring.TIME_CONSTANT] = problem.contact.dashpot, problem.time_constant
+    if problem.kinematics.orbiting:
+        out[..., ring.CAGE] = geometry.cage_speed(problem.spin_speed)
+    out[..., ring.DIAMETER] = geometry.ball_diameter
+    if problem.contact.friction > 0.0:
+        out[..., ring.FRICTION] = problem.contact.friction
+        out[..., ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
+    if plan.gyroscopic:
+        add_moments(out, problem, geometry)
     return {
         "kernel": kernel,
         "base_kernel": base,
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         "law_params": params.reshape(*problem.points, -1, params.shape[1]),
-        "scalars": _scalars(problem, plan, basis),
+        "scalars": out,
         "table": _ball_table(problem, plan, basis),
     }
 
@@ -120,23 +133,6 @@ def _grooves(problem: Problem, geometry: BallBearing) -> np.ndarray:
     arm = geometry.inner_centre_radius if problem.bearing.tilt_arm == "groove" else 0.5 * geometry.pitch_diameter
     numbers = (*geometry.rest, geometry.offset_inner, geometry.offset_outer, arm)
     return np.stack(np.broadcast_arrays(*numbers), axis=-1)
-
-
-def _scalars(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
-    geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
-    out = np.zeros((*problem.points, ring.SCALARS))
-    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
-    out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common
-    out[..., ring.DAMPING], out[..., ring.TIME_CONSTANT] = problem.contact.dashpot, problem.time_constant
-    if problem.kinematics.orbiting:
-        out[..., ring.CAGE] = geometry.cage_speed(problem.spin_speed)
-    out[..., ring.DIAMETER] = geometry.ball_diameter
-    if problem.contact.friction > 0.0:
-        out[..., ring.FRICTION] = problem.contact.friction
-        out[..., ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
-    if plan.gyroscopic:
-        add_moments(out, problem, geometry)
-    return out
 
 
 def add_moments(scalars: np.ndarray, problem: Problem, geometry: BallBearing) -> None:

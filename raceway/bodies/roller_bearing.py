@@ -149,12 +149,18 @@ def roller_parts(
 ) -> Tables:
     """Kernels of rollers and law, and their numbers, with a first axis of n operating points where these have columns."""
     length = kind.roller_length
+    out = np.zeros((*problem.points, ring.SCALARS))
+    out[..., ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * _clearance(problem)
+    out[..., ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
+    out[..., ring.DAMPING] = problem.contact.dashpot
+    if problem.kinematics.orbiting:
+        out[..., ring.CAGE] = basis.geometry.cage_speed(problem.spin_speed)
     return {
         "kernel": lines.rollers,
         "base_kernel": lines.rollers,
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         "law_params": _law_params(problem, basis, length, radii),
-        "scalars": _scalars(problem, basis),
+        "scalars": out,
         "table": _table(problem, plan, basis, kind),
     }
 
@@ -178,16 +184,6 @@ def _law_params(problem: Problem, basis: Basis, length: float, radii: tuple[Numb
     )
     params = law_params(problem.contact.law, pairs)
     return params.reshape(*shape, params.shape[1])
-
-
-def _scalars(problem: Problem, basis: Basis) -> np.ndarray:
-    out = np.zeros((*problem.points, ring.SCALARS))
-    out[..., ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * _clearance(problem)
-    out[..., ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
-    out[..., ring.DAMPING] = problem.contact.dashpot
-    if problem.kinematics.orbiting:
-        out[..., ring.CAGE] = basis.geometry.cage_speed(problem.spin_speed)
-    return out
 
 
 def _table(problem: Problem, plan: ScenePlan, basis: Basis, kind: CylindricalRollers) -> np.ndarray:

@@ -115,7 +115,22 @@ def screen(result: ReadTables) -> Screen:
     rows += bodies_rows(result.get("model"))
     rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
     rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]
-    return Screen(result["title"], _bearing(result), [micro(text) for text in result["warnings"]], rows, _left_out(result))
+    # Geometry, arrangement and model, one per line.
+    scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
+    b = scene["bearing"]
+    lines = scene["bodies"]["kind"] == "cylindrical_rollers"
+    if b.get("radial_clearance") and not b.get("contact_angle_deg") and not lines:
+        angle += ", from the clearance"
+    balls = f"{b['ball_count']} {'rollers' if lines else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    geometry = result.get("geometry") or {}
+    maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
+    words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
+    if b.get("arrangement", "single") != "single" or b.get("row"):
+        words.append(_set(b))
+    words += [geometry["designation"]] if "designation" in geometry else []
+    law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
+    words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
+    return Screen(result["title"], "\n".join(words), [micro(text) for text in result["warnings"]], rows, _left_out(result))
 
 
 def report(result: ReadTables) -> list[Part]:
@@ -144,25 +159,6 @@ def _left_out(result: ReadTables) -> str:
     parts = ", ".join(row["part"] for row in left_out[:_LEFT_OUT_SHOWN])
     more = len(left_out[_LEFT_OUT_SHOWN:])
     return f"left out: {parts}{f' and {more} more' if more else ''} (raceway plan)"
-
-
-def _bearing(result: ReadTables) -> str:
-    """Geometry, arrangement and model, one per line."""
-    scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
-    b = scene["bearing"]
-    lines = scene["bodies"]["kind"] == "cylindrical_rollers"
-    if b.get("radial_clearance") and not b.get("contact_angle_deg") and not lines:
-        angle += ", from the clearance"
-    balls = f"{b['ball_count']} {'rollers' if lines else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
-    geometry = result.get("geometry") or {}
-    maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
-    words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
-    if b.get("arrangement", "single") != "single" or b.get("row"):
-        words.append(_set(b))
-    words += [geometry["designation"]] if "designation" in geometry else []
-    law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
-    words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
-    return "\n".join(words)
 
 
 def _integrator(chosen: ReadTables | None) -> str:

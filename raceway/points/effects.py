@@ -386,7 +386,20 @@ def explain(comparison: Findings) -> list[str]:
 
 def in_few_words(comparison: Findings) -> list[str]:
     """Effects on the first quantity, the largest first, doubts and its interactions: for a screen; ``explain`` has the rest."""
-    notes = [*_doubts(comparison), *(f"Note: {note}." for note in comparison.notes)]
+    reasons: dict[str, list[str]] = {}
+    for row in comparison.rows:
+        if row.doubt is not None:
+            point = ", ".join(shown(row.point[axis.key]) for axis in comparison.axes)
+            reasons.setdefault(row.doubt, []).append(f"({point})")
+    words = []
+    for reason, settings in reasons.items():
+        points = ", ".join(settings[:4]) + (f" and {len(settings) - 4} more" if len(settings) > 4 else "")
+        words.append(
+            f"Left out of the explanation, {len(settings)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
+        )
+    if comparison.held and words:
+        words.append(f"Some are at the ends of the axes, so the effects hold for {_settings(comparison.held)} only.")
+    notes = [*words, *(f"Note: {note}." for note in comparison.notes)]
     if not comparison.factorials:
         why = (
             "too many of the runs at the ends of the axes cannot be used"
@@ -483,23 +496,6 @@ def _what_was_run(comparison: Findings) -> str:
     text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
     unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
     return text + (f" {unknown} runs without an estimated error are taken as exact." if unknown else "")
-
-
-def _doubts(comparison: Findings) -> list[str]:
-    reasons: dict[str, list[str]] = {}
-    for row in comparison.rows:
-        if row.doubt is not None:
-            point = ", ".join(shown(row.point[axis.key]) for axis in comparison.axes)
-            reasons.setdefault(row.doubt, []).append(f"({point})")
-    words = []
-    for reason, settings in reasons.items():
-        points = ", ".join(settings[:4]) + (f" and {len(settings) - 4} more" if len(settings) > 4 else "")
-        words.append(
-            f"Left out of the explanation, {len(settings)} of {len(comparison.rows)} runs, {points}: {reason.rstrip('.')}."
-        )
-    if comparison.held and words:
-        words.append(f"Some are at the ends of the axes, so the effects hold for {_settings(comparison.held)} only.")
-    return words
 
 
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:

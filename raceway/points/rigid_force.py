@@ -91,18 +91,14 @@ def rigid_force(scene: Scene, highest_rpm: float | None = None) -> RigidForce:
         "LIMIT_OUTER": outer,
         "steps": _STEPS,
     }
-    numbers |= _by_speed(scene, rpm) | law
-    return RigidForce(numbers, ring.ball_count, now, highest, (inner, outer), error)
-
-
-def _by_speed(scene: Scene, rpm: float) -> Numbers:
-    """(Z, n) entries of ``table`` and ``scalars`` of each ball at rest, and what they grow by over the square of the speed."""
+    # (Z, n) entries of ``table`` and ``scalars`` of each ball at rest, and what they grow by over the square of the speed.
     rings = [_system(_model(scene, rpm * math.sqrt(part))) for part in (0.25, 0.5, 1.0)]
     quarter, half, full = (np.hstack([r.table, np.broadcast_to(r.scalars, (r.ball_count, layout.SCALARS))]) for r in rings)
     growth = (full - quarter) / 0.75
     if np.max(np.abs(full - 0.5 * growth - half)) > _ROUNDING * np.max(np.abs(full)):
         raise SceneError.at(SPIN, rpm, f"changes geometry or preload otherwise than by its square: {_MAP}")
-    return {"at_rest": full - growth, "by_square": growth / (rpm * _RPM) ** 2}
+    numbers |= {"at_rest": full - growth, "by_square": growth / (rpm * _RPM) ** 2} | law
+    return RigidForce(numbers, ring.ball_count, now, highest, (inner, outer), error)
 
 
 def _model(scene: Scene, rpm: float) -> Model:

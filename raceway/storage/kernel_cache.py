@@ -159,22 +159,18 @@ def opened(folder: Path) -> OpenFolder | str:
         reason = why.strerror or str(why)
     with suppress(OSError):
         if any(folder.iterdir()):
-            return OpenFolder(_linked(folder), reason)
+            # A temporary folder with links to all files of another one, for this process: numba reads in no folder that it cannot write.
+            links = Path(tempfile.mkdtemp(prefix="raceway-kernels-"))
+            atexit.register(shutil.rmtree, links, ignore_errors=True)
+            for path in folder.rglob("*"):
+                beside = links / path.relative_to(folder)
+                if path.is_dir():
+                    beside.mkdir(parents=True, exist_ok=True)
+                else:
+                    beside.parent.mkdir(parents=True, exist_ok=True)
+                    beside.symlink_to(path.resolve())
+            return OpenFolder(links, reason)
     return reason
-
-
-def _linked(folder: Path) -> Path:
-    """A temporary folder with links to all files of another one, for this process: numba reads in no folder that it cannot write."""
-    links = Path(tempfile.mkdtemp(prefix="raceway-kernels-"))
-    atexit.register(shutil.rmtree, links, ignore_errors=True)
-    for path in folder.rglob("*"):
-        beside = links / path.relative_to(folder)
-        if path.is_dir():
-            beside.mkdir(parents=True, exist_ok=True)
-        else:
-            beside.parent.mkdir(parents=True, exist_ok=True)
-            beside.symlink_to(path.resolve())
-    return links
 
 
 @attrs.frozen

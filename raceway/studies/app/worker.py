@@ -217,7 +217,10 @@ class _Pictures:
 
         try:
             if job.file:
-                tell("file", self._file(job, scene_input, progress))
+                from raceway.framework.registry import default_registry
+                from raceway.studies.app import picture
+
+                tell("file", picture.write_file(job.file, scene_input.scene(default_registry()), job.path, progress))
             else:
                 self._draw(job, panel, scene_input, tell, progress)
         except Stopped:
@@ -256,9 +259,3 @@ class _Pictures:
             content = {}
         axes = picture.axes_of(scene, job.ranges)
         tell("picture", content | {"curves": picture.curves(result, axes, lambda name: progress(f"curves over {name}"))})
-
-    def _file(self, job: Job, scene_input: Given, progress: Callable[..., None]) -> list[str]:
-        from raceway.framework.registry import default_registry
-        from raceway.studies.app import picture
-
-        return picture.write_file(job.file, scene_input.scene(default_registry()), job.path, progress)

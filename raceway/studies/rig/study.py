@@ -402,20 +402,7 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     record = figures(study.points[0].identified)
     drawn = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawn.items()]
-    return [_page(study, drawn).write(folder / "rig.html"), *files]
-
-
-_ASSUMED = [
-    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are neglected.",
-    "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
-    "The bearing is the scene's, nonlinear: force and moment of the shaft are iterated until shaft and bearing motions "
-    "agree. Motion at other orders than 1x is left out of the signals.",
-    "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
-]
-
-
-def _page(study: _RigStudy, drawn: dict[str, Figure]) -> Page:
-    """Words, tables and figures."""
+    # Words, tables and figures.
     content, rig, signals = study.to_dict(), study.rig, study.rig.signals
     worst, rows = content["worst"], content["rows"]
     words = (
@@ -454,7 +441,16 @@ def _page(study: _RigStudy, drawn: dict[str, Figure]) -> Page:
     _signals(out, rows, drawn, study.points[0].name)
     out.section("What is assumed")
     out.listing(_ASSUMED)
-    return out
+    return [out.write(folder / "rig.html"), *files]
+
+
+_ASSUMED = [
+    "Both bearings carry the same load and are mirror images about the disc; supports are rigid, coupling and weight are neglected.",
+    "The shaft is a Timoshenko beam with rotary inertia and gyroscopic moments; the disc is rigid and does not stiffen it beyond `hub_diameter`.",
+    "The bearing is the scene's, nonlinear: force and moment of the shaft are iterated until shaft and bearing motions "
+    "agree. Motion at other orders than 1x is left out of the signals.",
+    "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
+]
 
 
 def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str) -> None:

@@ -241,11 +241,7 @@ def _kind_words(selection: Selection) -> str:
 
 def _common(selection: Selection) -> list[str]:
     """Notes on the rotor's mass, its other properties, and the force's amplitude."""
-    return [*_mass(selection), *_rotor(selection), *_amplitude(selection)]
-
-
-def _rotor(selection: Selection) -> list[str]:
-    """What the swept rotor brought besides its mass, and a rotor model brings again."""
+    # What the swept rotor brought besides its mass, and a rotor model brings again.
     notes = []
     inertias = [key for key in ("rotor.transverse_inertia", "rotor.polar_inertia") if selection.value(key, 0.0)]
     if inertias and selection.value("supports.tilt", "locked") != "locked":
@@ -254,7 +250,7 @@ def _rotor(selection: Selection) -> list[str]:
         )
     if selection.value("rotor.damping", 0.0):
         notes.append("rotor.damping is part of cyy and czz")
-    return notes
+    return [*_mass(selection), *notes, *_amplitude(selection)]
 
 
 def _mass(selection: Selection) -> list[str]:

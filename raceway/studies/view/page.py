@@ -46,7 +46,14 @@ def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[
     page.text(words["lead"], f"Shown {words['when']}.", kind="lead")
     for note in words["notes"]:
         page.text(note, kind="note")
-    page.markup(_stage(bearing, state))
+    data = {**rings_data(bearing), **state_data(bearing, state)}
+    parts = {
+        "bars": "".join(data.pop("bars")),
+        "data": json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
+        "script": files("raceway").joinpath("data/view.js").read_text(encoding="utf-8"),
+        "label": escape(f"The bearing in three dimensions, {len(state.azimuth)} balls", quote=True),
+    }
+    page.markup(Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts))
     page.section("Balls")
     for inner in (True, False):
         race = "inner" if inner else "outer"
@@ -73,17 +80,6 @@ def _picture(content: bytes, alternative: str, caption: str) -> str:
         f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{escape(alternative, quote=True)}">'
         f"{image}</div><figcaption>{words}</figcaption></figure>"
     )
-
-
-def _stage(bearing: Bearing, state: State) -> str:
-    data = {**rings_data(bearing), **state_data(bearing, state)}
-    parts = {
-        "bars": "".join(data.pop("bars")),
-        "data": json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
-        "script": files("raceway").joinpath("data/view.js").read_text(encoding="utf-8"),
-        "label": escape(f"The bearing in three dimensions, {len(state.azimuth)} balls", quote=True),
-    }
-    return Template(files("raceway").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
 
 
 def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
