@@ -9,7 +9,7 @@ import os
 import platform
 import resource
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import partial
 from math import inf
 from pathlib import Path
@@ -174,6 +174,23 @@ def _run(
     }
     simulation = answer.motions[-1] if answer.motions else None
     stated = _stated(scene, model, equilibrium, simulation)
+    # Each once: a mesh too coarse for its answer comes first, keys without effect last.
+    error, identification = answer.error, answer.identification
+    warnings = [
+        *answer.doubts,
+        *error_warnings(error, identification is not None),
+        *misfit_warnings(model, error),
+        *start_warnings(model, error),
+        *series_warnings(identification),
+        *model.bearing.warnings(model, equilibrium),
+        *([] if identification is None else inertia_warnings(bodies, error["total"])),
+        *pressure_warnings(model, equilibrium.contact_force),
+        *equilibrium.warnings,
+        *stated.warnings,
+        *sliding_warnings(model, equilibrium),
+        *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
+        *scene_warnings(model.problem),
+    ]
     return Result(
         model=model,
         equilibrium=equilibrium,
@@ -186,7 +203,7 @@ def _run(
         lines=_lines(model, simulation),
         bodies=bodies,
         stated=stated,
-        warnings=_warnings(model, equilibrium, answer, bodies, stated.warnings),
+        warnings=tuple(dict.fromkeys(warnings)),
     )
 
 
@@ -261,29 +278,6 @@ def _moved(
     allowance.planned += plan.predicted_wall_s
     model = attrs.evolve(model, problem=plan.problem, plan=plan)
     return model, move(model), [f"{why}: the motion is integrated over time instead"]
-
-
-def _warnings(
-    model: Model, equilibrium: Equilibrium, answer: _Answer, bodies: Tables | None, of_quantities: Iterable[str]
-) -> tuple[str, ...]:
-    """Each once: a mesh too coarse for its answer comes first, keys without effect last."""
-    error, identification = answer.error, answer.identification
-    warnings = [
-        *answer.doubts,
-        *error_warnings(error, identification is not None),
-        *misfit_warnings(model, error),
-        *start_warnings(model, error),
-        *series_warnings(identification),
-        *model.bearing.warnings(model, equilibrium),
-        *([] if identification is None else inertia_warnings(bodies, error["total"])),
-        *pressure_warnings(model, equilibrium.contact_force),
-        *equilibrium.warnings,
-        *of_quantities,
-        *sliding_warnings(model, equilibrium),
-        *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
-        *scene_warnings(model.problem),
-    ]
-    return tuple(dict.fromkeys(warnings))
 
 
 def _lines(model: Model, simulation: Simulation | None) -> list[Line]:

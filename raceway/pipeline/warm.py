@@ -87,7 +87,12 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
     factors : (n,) of ``thermal_network``
     """
     assert scene.heat is not None, "callers look"
-    n, keys = len(next(iter(columns.values()))), _keys(scene)
+    # Keys of the temperatures of ``_FELT``, and of the oil in the contacts.
+    oil = "lubricant.temperature_c" if scene.lubricant is not None else "contact.temperature_c"
+    n, keys = (
+        len(next(iter(columns.values()))),
+        (("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)),
+    )
     inlet, ambient = (
         np.broadcast_to(columns.get(f"heat.{key}", getattr(scene.heat, key)), n) for key in ("oil_inlet_c", "ambient_c")
     )
@@ -227,12 +232,6 @@ def _runaway_words(scene: Scene) -> str:
     if scene.lubricant is not None and not scene.lubricant.thins:
         words += f"{NO_THINNING}. "
     return f"{words}Remove more heat (heat.oil_flow, heat.inner_oil), or use a thinner oil"
-
-
-def _keys(scene: Scene) -> tuple[str, ...]:
-    """Keys of the temperatures of ``_FELT``, and of the oil in the contacts."""
-    oil = "lubricant.temperature_c" if scene.lubricant is not None else "contact.temperature_c"
-    return ("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)
 
 
 def _at(keys: tuple[str, ...], level: np.ndarray) -> dict[str, np.ndarray]:

@@ -70,7 +70,30 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
     _swaps(out, content, load)
     _friction(out, content, drawn)
     _verdicts(out, content)
-    _setting(out, content)
+    scene, speeds, loads = content["scene"], content["speeds_rpm"], content["axial_n"]
+    excitation = scene["excitation"]
+    constant = (
+        f"{excitation['force']:g} N" if "force" in excitation else f"that at {excitation['reference_speed_rpm']:g} r/min"
+    )
+    out.section("What is computed")
+    out.text(
+        f"Without friction the steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(speeds)} speeds from "
+        f"{speeds[0]:g} to {speeds[-1]:g} r/min and {len(loads)} axial loads from {loads[0]:g} to "
+        f"{loads[-1]:g} N. Its synchronous (1x) component gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
+        f"said; the mass m is the ring’s and {scene.get('rotor', {}).get('mass', 0.0):g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
+        "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
+        f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
+        f"too, at the lightest, the scene's own and the heaviest axial load ({content['bodies'][0]} bodies).",
+        f"Tilt of the inner ring: locked, free, or against the shaft with {_round(content['shaft_tilt_stiffness'])} N m/rad (2 E I / L of a shaft of "
+        "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
+        "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
+        "contacts.",
+    )
+    out.text(
+        "The article’s Table 1 is lost: the geometry of B7206C is inferred from makers’ load ratings. Oil film, cage and heat are "
+        "not modelled, neither here nor in the article.",
+        kind="note",
+    )
     _figures(out, content, drawn, study.curves.design.scene_load)
     _static(out, content)
     _trends(out, content)
@@ -137,33 +160,6 @@ def _verdicts(out: Page, content: ReadTables) -> None:
         if verdict["failed"]:
             parts.append(("Failed", f"runs failed or have no stable motion: {verdict['failed']}"))
         out.card(f"{verdict['number']}  {verdict['claim']}", badge, parts)
-
-
-def _setting(out: Page, content: ReadTables) -> None:
-    scene, speeds, loads = content["scene"], content["speeds_rpm"], content["axial_n"]
-    excitation = scene["excitation"]
-    constant = (
-        f"{excitation['force']:g} N" if "force" in excitation else f"that at {excitation['reference_speed_rpm']:g} r/min"
-    )
-    out.section("What is computed")
-    out.text(
-        f"Without friction the steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(speeds)} speeds from "
-        f"{speeds[0]:g} to {speeds[-1]:g} r/min and {len(loads)} axial loads from {loads[0]:g} to "
-        f"{loads[-1]:g} N. Its synchronous (1x) component gives Z = F / x = K − m w² + j w C. k is K = Re Z + m w² unless something else is "
-        f"said; the mass m is the ring’s and {scene.get('rotor', {}).get('mass', 0.0):g} kg of the rotor. w* = (w − w_min) / (w_max − w_min), k* = k / k(w_min).",
-        "Rotating: a force that turns with the rotor (the article’s bidirectional model). Unidirectional: a force along one fixed "
-        f"line. Its amplitude is m e w², or constant: {constant}. The article changes both at once; here each is varied alone, "
-        f"too, at the lightest, the scene's own and the heaviest axial load ({content['bodies'][0]} bodies).",
-        f"Tilt of the inner ring: locked, free, or against the shaft with {_round(content['shaft_tilt_stiffness'])} N m/rad (2 E I / L of a shaft of "
-        "30 mm between bearings 175 mm apart, unless the scene or `--shaft` says otherwise). Ball inertia: the centrifugal force "
-        "of the balls. Rigid: only the contacts deform. Condensed: finite-element rings and balls, condensed exactly onto the "
-        "contacts.",
-    )
-    out.text(
-        "The article’s Table 1 is lost: the geometry of B7206C is inferred from makers’ load ratings. Oil film, cage and heat are "
-        "not modelled, neither here nor in the article.",
-        kind="note",
-    )
 
 
 _FIGURES = {

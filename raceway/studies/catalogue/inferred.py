@@ -227,10 +227,17 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
     made = {angle: found.value for angle, found in angles.items()}
     pairs = [attrs.evolve(x, contact_angle_deg=made.get(x.contact_angle_deg, x.contact_angle_deg)) for x in size.pairs]
     inner, outer = _grooves(attrs.evolve(size, pairs=tuple(pairs)), best, conformity)
+    how = {
+        "tables": "meets C and C0 by the tables of ISO 281 and ISO 76",
+        "grooves": "meets C and C0 with a groove and a filling as other bearings of the maker have",
+    }
+    doubt = "" if best.alike is None or best.alike >= _ALIKE else "; hardly any is like this one, so it is doubtful"
     return Inferred(
         printed=size,
         practice=best.practice,
-        ball_count=_Number(best.ball_count, 1.0 - share, _why_count(best, share)),
+        ball_count=_Number(
+            best.ball_count, 1.0 - share, (f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}")
+        ),
         ball_diameter=_Number(
             best.ball_diameter,
             max(map(abs, best.dynamic_errors)) / 1.8,
@@ -307,15 +314,6 @@ def _unexplained(candidates: list[Candidate]) -> str:
         f"{say}: the nearest, {near.ball_count} balls of {1e3 * near.ball_diameter:.4g} mm, has C {100.0 * c:+.1f} % and C0 "
         f"{100.0 * c0:+.1f} % off by ISO 281 and ISO 76, which their makers meet within {100.0 * LIMITS[0]:g} and {100.0 * LIMITS[1]:g} %"
     )
-
-
-def _why_count(best: Candidate, share: float) -> str:
-    how = {
-        "tables": "meets C and C0 by the tables of ISO 281 and ISO 76",
-        "grooves": "meets C and C0 with a groove and a filling as other bearings of the maker have",
-    }
-    doubt = "" if best.alike is None or best.alike >= _ALIKE else "; hardly any is like this one, so it is doubtful"
-    return f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
 
 
 def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[_Number, _Number]:

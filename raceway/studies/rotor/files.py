@@ -106,6 +106,14 @@ def _nastran_notes(table: Coefficients, number: int) -> list[str]:
         if with_tilts
         else "K5 = K6 = 0: no moment by a tilt; how the tilt is held belongs to the numbers"
     )
+    # Of the directions across the axis; empty where there are none.
+    terms = []
+    for letter, matrix in (("k", table.stiffness), ("c", table.damping)):
+        along = np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))
+        across = np.maximum(np.abs(matrix[..., 0, 1]), np.abs(matrix[..., 1, 0]))
+        share = float(np.max(across / np.where(along > 0.0, along, 1.0)))
+        if share > _ROUNDING and along.any():
+            terms.append(f"{letter}yz, {letter}zy (up to {share:.2g} of the diagonal)")
     return [
         "N, m, s, rad; in a model of N, mm, s: entries 1 to 3 times 1e-3, entries 5 and 6 times 1e3",
         "frame: directions 1, 2, 3 of the element are x (the axis), y, z of the bearing; CBUSH with CID = 0 where the basic system is so",
@@ -114,7 +122,10 @@ def _nastran_notes(table: Coefficients, number: int) -> list[str]:
         "PBUSH holds the values of the first point: normal modes and statics take them, frequency response takes the tables",
         "TABLED1: straight lines between the points, and beyond the ends",
         tilts,
-        *filter(None, [_cross_terms(table), _tilt_coupling(table) if with_tilts else "", _LINEAR]),
+        *filter(
+            None,
+            [(f"left out: {' and '.join(terms)}" if terms else ""), _tilt_coupling(table) if with_tilts else "", _LINEAR],
+        ),
     ]
 
 
@@ -132,18 +143,6 @@ def _diagonals(table: Coefficients) -> tuple[np.ndarray, np.ndarray]:
         stiffness[:, 4:] = np.einsum("nii->ni", table.tangent)[:, 3:]
         damping[:, [0, 4, 5]] = np.einsum("nii->ni", table.tangent_damping)[:, [0, 3, 4]]
     return stiffness, damping
-
-
-def _cross_terms(table: Coefficients) -> str:
-    """Of the directions across the axis; empty where there are none."""
-    terms = []
-    for letter, matrix in (("k", table.stiffness), ("c", table.damping)):
-        along = np.sqrt(np.abs(matrix[..., 0, 0] * matrix[..., 1, 1]))
-        across = np.maximum(np.abs(matrix[..., 0, 1]), np.abs(matrix[..., 1, 0]))
-        share = float(np.max(across / np.where(along > 0.0, along, 1.0)))
-        if share > _ROUNDING and along.any():
-            terms.append(f"{letter}yz, {letter}zy (up to {share:.2g} of the diagonal)")
-    return f"left out: {' and '.join(terms)}" if terms else ""
 
 
 def _tilt_coupling(table: Coefficients) -> str:
