@@ -235,27 +235,21 @@ def text(kind: _Kind, bearings: list[tuple[str, str]]) -> str:
         f"printed = {_list(kind.errors)}",
     ]
     for key, (source, inferred, scatter) in kind.columns.items():
-        lines += ["", f"[columns.{_quoted(key)}]", f'source = "{source}"']
+        head = f'"{key}"' if "." in key else key
+        lines += ["", f"[columns.{head}]", f'source = "{source}"']
         lines += ["inferred = true", f'scatter = "{scatter}"'] if inferred else []
     for key, (value, source, spread) in kind.constants.items():
-        lines += ["", f"[constants.{key}]", f"value = {_toml(value)}", f'source = "{source}"', "inferred = true"]
+        written = f'"{value}"' if isinstance(value, str) else repr(value)
+        lines += ["", f"[constants.{key}]", f"value = {written}", f'source = "{source}"', "inferred = true"]
         lines += [] if spread is None else [f"scatter = {spread}"]
     lines += ["", "[bearings]"]
     lines += [f"{name} = {row}" for name, row in bearings]
     return "\n".join(lines) + "\n"
 
 
-def _quoted(key: str) -> str:
-    return f'"{key}"' if "." in key else key
-
-
 def _cells(numbers: Iterable[float], errors: Iterable[float]) -> str:
     """Errors that are the rounding of a processor are none."""
     return f"[{', '.join([f'{x:.10g}' for x in numbers] + [f'{x if abs(x) > 1e-9 else 0.0:.1e}' for x in errors])}]"
-
-
-def _toml(value: object) -> str:
-    return f'"{value}"' if isinstance(value, str) else repr(value)
 
 
 def _rows(found: Inferred) -> list[tuple[str, str]]:

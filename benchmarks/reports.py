@@ -131,8 +131,7 @@ def write_pages(folder: Path = FOLDER) -> None:
 
 def page(data: dict[str, Any]) -> str:
     """The page of a report."""
-    lines = [f"# {data['title']}", "", table(data), "", _origin(data), ""]
-    return "\n".join(lines)
+    return "\n".join([f"# {data['title']}", "", table(data), "", _origin(data), ""])
 
 
 def _origin(data: dict[str, Any]) -> str:

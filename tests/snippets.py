@@ -44,7 +44,7 @@ def listings(page: Path) -> list[Listing]:
     """Every block of code of a page that is written by hand, in its order."""
     text = re.sub(
         r"(<!-- (?:evidence:\w+|screen) -->\n)(.*?)(<!-- /(?:evidence|screen) -->)",
-        _emptied,
+        lambda match: match[1] + "\n" * match[2].count("\n") + match[3],  # without their content, with as many lines
         page.read_text("utf-8"),
         flags=re.DOTALL,
     )
@@ -53,11 +53,6 @@ def listings(page: Path) -> list[Listing]:
         if token.type in ("fence", "code_block") and token.map is not None:
             found.append(Listing(page, token.map[0] + 1, token.info.strip(), token.content))
     return found
-
-
-def _emptied(match: re.Match[str]) -> str:
-    """A generated block without its content, with as many lines."""
-    return match[1] + "\n" * match[2].count("\n") + match[3]
 
 
 def links(page: Path) -> Iterator[tuple[int, str]]:

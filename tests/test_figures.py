@@ -127,8 +127,7 @@ def of_the_article() -> list[Figure]:
     def k(setting, load, w):
         return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
 
-    found = article_study.study(article_study.curves(k))
-    return [panel.figure() for panel in article.drawings(found)]
+    return [panel.figure() for panel in article.drawings(article_study.study(article_study.curves(k)))]
 
 
 def of_a_rig() -> list[Figure]:
@@ -207,16 +206,11 @@ def of_fits() -> list[Figure]:
     return [fits.draw(one), fits.draw({**two, "series": [*two["series"], wild]}), fits.draw({**one, "free": [lost]})]
 
 
-def of_fits_and_records() -> list[Figure]:
-    return [*of_fits(), *of_a_record()]
-
-
 DRAWN: dict[object, Callable[[], list[Figure]]] = {
     pictures: of_a_run, store_picture: of_a_sweep, comparison: of_a_comparison, precision: of_precision,
     article: of_the_article, rig: of_a_rig, view_pictures: of_contacts,
     stress: of_stresses, drawing: of_the_catalogue, law_picture: of_laws, followed: of_a_branch, bars: of_sensitivities,
-    fits: of_fits_and_records,
-    band_picture: of_a_band,
+    fits: lambda: [*of_fits(), *of_a_record()], band_picture: of_a_band,
 }  # fmt: skip
 
 

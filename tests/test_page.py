@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from raceway.out.page import Cell, Page, data_uri, svg
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"0" * 8
-_VOID = {"meta", "link", "img", "br"}
 
 
 class _Balanced(HTMLParser):
@@ -26,7 +25,7 @@ class _Balanced(HTMLParser):
 
     def handle_starttag(self, tag, attrs):
         self.seen.append((tag, dict(attrs)))
-        if tag not in _VOID:
+        if tag not in ("meta", "link", "img", "br"):
             self.open.append(tag)
 
     def handle_endtag(self, tag):

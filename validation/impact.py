@@ -129,9 +129,7 @@ def structural_compliances(load: float = 300.0) -> tuple[float, float]:
     """
     fine, zone, growth = 0.1e-3, 0.4e-3, 1.25
     block, ball = _block(fine, zone, growth), _ball(fine, zone, growth)
-    down = _under_load(block, 1.0, load, -HEIGHT)
-    up = _under_load(ball, -1.0, load, None)
-    return down, up
+    return _under_load(block, 1.0, load, -HEIGHT), _under_load(ball, -1.0, load, None)
 
 
 def _under_load(mesh: tuple[np.ndarray, np.ndarray], side: float, load: float, clamped: float | None) -> float:

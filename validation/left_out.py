@@ -247,8 +247,7 @@ def compliances() -> Rule:
 
 def _not_kept(*words: Any, **more: Any) -> Any:
     """In the place of the cache of arrays: computes anew."""
-    compute = next(word for word in (*words, *more.values()) if callable(word))
-    return compute()
+    return next(word for word in (*words, *more.values()) if callable(word))()
 
 
 def mirror() -> Rule:

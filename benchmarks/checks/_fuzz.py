@@ -40,7 +40,6 @@ CALLS = 5
 #: Runs that are tried: at most so many steps, predicted seconds beyond start-up (rigid, deforming), and for steady orbits natural
 #: frequencies over the force's.
 _STEPS, _SECONDS, _DEFORMING_S, _ORDER = 3000, 0.5, 6.0, 200.0
-_WARM = Path("examples/minimal.toml")
 _LEAVING = (
     "subprocess.Popen", "os.system", "os.exec", "os.posix_spawn", "os.fork", "os.forkpty", "os.startfile", "pty.spawn", "os.mkdir",
     "os.rename", "os.remove", "os.link", "os.symlink", "os.truncate", "shutil.move", "sqlite3.connect", "socket.connect",
@@ -202,7 +201,7 @@ def main(first: int, last: int, quota: int, out: Path) -> None:
         ["supports.tilt=free"],
         ["contact.kind=penalty"],
     ):
-        run(load_scene(_WARM, changes))
+        run(load_scene(Path("examples/minimal.toml"), changes))
     watch = Watch()
     with tempfile.TemporaryDirectory() as folder, out.open("a") as file:
         fill(Path(folder))

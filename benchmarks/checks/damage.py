@@ -16,7 +16,6 @@ TITLE = "Damaged stores and caches: the same numbers or one message"
 _STORES, _KERNELS, _ARRAYS = 150, 150, 50
 #: Damages after which a store goes on: what is not as it was written is computed again.
 _MENDED = ("two rows swapped", "row of another store", "digit of a value", "another file's journal")
-_CACHES = "python -m benchmarks.faulty_caches"
 
 
 def rows() -> list[Row]:
@@ -48,14 +47,13 @@ def _stores() -> list[Row]:
 def _caches(part: str, count: int) -> Counter[str]:
     """In a process that has loaded no kernel."""
     words = [sys.executable, "-m", "benchmarks.faulty_caches", part, str(count)]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    return Counter(json.loads(done.stdout))
+    return Counter(json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout))
 
 
 def _of_caches(words: str, part: str, found: Counter[str], count: int) -> list[Row]:
     bad = {outcome: times for outcome, times in found.items() if outcome not in (SAME, TOLD)}
     signals = sum(times for outcome, times in bad.items() if "ended by" in outcome)
-    command = f"{_CACHES} {part} {count}"
+    command = f"python -m benchmarks.faulty_caches {part} {count}"
     note = "; ".join(bad) or f"{found[SAME]} in silence, {found[TOLD]} with a message of one line a file"
     return [
         below(f"{words}, {found.total()} tries: other ends than the same numbers, in silence or with a message",

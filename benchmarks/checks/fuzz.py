@@ -24,7 +24,6 @@ COMMAND = "python -m benchmarks.checks fuzz"
 SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))
 RUNS, PROCESSES = 3 * SCENES // 20, 2
 WANTED_SCENES, WANTED_RUNS = 10_000, 1500
-_ROOT = Path(__file__).parents[2]
 #: Faults by the word that a worker gives them.
 _FAULTS = {
     "traceback": "tracebacks: anything but a result or a message with exit code 1 or 2",
@@ -55,7 +54,7 @@ def tries(scenes: int = SCENES, runs: int = RUNS) -> list[dict[str, Any]]:
 
 def _worker(first: int, last: int, quota: int, out: Path) -> subprocess.Popen[bytes]:
     words = [sys.executable, "-m", "benchmarks.checks._fuzz", str(first), str(last), str(quota), str(out)]
-    return subprocess.Popen(words, cwd=_ROOT, stdin=subprocess.DEVNULL)
+    return subprocess.Popen(words, cwd=Path(__file__).parents[2], stdin=subprocess.DEVNULL)
 
 
 def _lines(out: Path) -> Iterator[dict[str, Any]]:

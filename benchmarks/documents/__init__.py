@@ -206,19 +206,6 @@ def with_screen(text: str, shown: str) -> str:
     return _SCREEN.sub(lambda match: match[1] + answer(shown) + match[3], text)
 
 
-def shown_scene(text: str) -> str:
-    """The scene that a README shows."""
-    found = _SCENE.search(text)
-    return found[2] if found else ""
-
-
-def shown_example(text: str) -> str:
-    """The lines of Python that a README shows."""
-    found = _EXAMPLE.search(text)
-    return found[2] if found else ""
-
-
-def shown_screen(text: str) -> str:
-    """The part of a screen that a README shows."""
-    found = _SCREEN.search(text)
-    return found[2] if found else ""
+def shown_parts(text: str) -> list[str]:
+    """The scene, the lines of Python and the part of a screen that a README shows; empty where it has none."""
+    return [found[2] if (found := part.search(text)) else "" for part in (_SCENE, _EXAMPLE, _SCREEN)]

@@ -45,8 +45,7 @@ With one line in its start file the shell completes commands, options, keys of a
 
 def page() -> str:
     """The text of docs/command_line.md."""
-    commands = list(walk(main, "raceway"))
-    return "\n".join([_HEAD, "## Commands\n", *(section(name) for name, _ in commands)])
+    return "\n".join([_HEAD, "## Commands\n", *(section(name) for name, _ in walk(main, "raceway"))])
 
 
 def walk(group: click.Group, path: str) -> Iterator[tuple[str, click.Command]]:

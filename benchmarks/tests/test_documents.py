@@ -21,9 +21,7 @@ from benchmarks.documents import (
     promises,
     scene_page,
     screen,
-    shown_example,
-    shown_scene,
-    shown_screen,
+    shown_parts,
 )
 from benchmarks.documents.versions import with_versions
 from raceway.scene.schema import keys
@@ -43,9 +41,10 @@ def test_the_readme_shows_the_answer_of_the_scene_that_it_shows():
         return " ".join(re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", text).split())
 
     text = README.read_text(encoding="utf-8")
-    assert shown_scene(text) == SHOWN.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
-    assert shown_example(text) == EXAMPLE.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
-    shown, now = shown_screen(text), answer(screen())
+    scene, example, shown = shown_parts(text)
+    assert scene == SHOWN.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
+    assert example == EXAMPLE.read_text(encoding="utf-8"), "run python -m benchmarks.documents"
+    now = answer(screen())
     assert "equivalent stiffness K" in exact(shown) and "balls of" in exact(shown)
     assert exact(shown) == exact(now), "run python -m benchmarks.documents"
     assert words(shown) == words(now), "run python -m benchmarks.documents"

@@ -193,16 +193,11 @@ def flood(application, requests: int) -> None:
     assert status(application, f"/index.html?token={application.token}") == 200
 
 
-def test_many_requests_are_refused_and_cost_no_memory(application):
-    flood(application, 300)
+@pytest.mark.parametrize(
+    ("first", "count", "bound"), [(300, 1000, 5e6), pytest.param(1000, 100_000, 10e6, marks=pytest.mark.night)]
+)
+def test_many_requests_are_refused_and_cost_no_memory(application, first, count, bound):
+    flood(application, first)
     before = proportional_memory(application.process.pid)
-    flood(application, 1000)
-    assert proportional_memory(application.process.pid) - before < 5e6  # a leak of a request's 5 kB would be as much
-
-
-@pytest.mark.night
-def test_a_hundred_thousand_requests_are_refused_and_cost_no_memory(application):
-    flood(application, 1000)
-    before = proportional_memory(application.process.pid)
-    flood(application, 100_000)
-    assert proportional_memory(application.process.pid) - before < 10e6
+    flood(application, count)
+    assert proportional_memory(application.process.pid) - before < bound  # a leak of a request's 5 kB would be more

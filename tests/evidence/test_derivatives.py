@@ -18,7 +18,6 @@ from raceway.scene.changes import continuous_keys, with_number
 
 pytestmark = pytest.mark.night
 
-QUANTITIES = ("displacement", "stiffness", "contact_force")
 #: Keys of orbits, each of which takes four searches.
 OF_ORBITS = {
     "load.axial", "bearing.contact_angle_deg", "rotor.mass", "contact.damping", "excitation.speed_rpm", "excitation.force"
@@ -97,7 +96,7 @@ def test_static_derivatives(claim, bodies, wanted, seed):
         pairs = zip(keys, gradients, strict=True)
         errors = [one for one in (static_errors(model, still, *pair) for pair in pairs) if one]
         scenes, count = scenes + 1, count + len(errors)
-        for what in QUANTITIES:
+        for what in ("displacement", "stiffness", "contact_force"):
             off, size = (max(one[what][k] for one in errors) for k in (0, 1))
             worst = max(worst, off / size)
     quantity = (

@@ -22,10 +22,9 @@ from validation.cubes import block
 from validation.squeezed import squeezed
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
-FORMATS = [Vtu(), Abaqus(), Msh()]
 
 
-@pytest.mark.parametrize("form", FORMATS, ids=lambda f: f.name)
+@pytest.mark.parametrize("form", [Vtu(), Abaqus(), Msh()], ids=lambda f: f.name)
 def test_a_format_keeps_a_mesh_and_names_files_of_no_use(form, tmp_path):
     mesh, path = block(), tmp_path / f"body{form.suffixes[0]}"
     mesh = attrs.evolve(mesh, points=mesh.points + 1e-3 * np.random.default_rng(2).standard_normal(mesh.points.shape))

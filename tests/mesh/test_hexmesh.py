@@ -14,16 +14,11 @@ from validation.cubes import block
 ROUNDING = 1e-12
 
 
-def sheared(mesh):
-    """x += 0.3 z, y += 0.2 x: volume kept."""
-    map_ = np.array([[1.0, 0.0, 0.3], [0.2, 1.0, 0.06], [0.0, 0.0, 1.0]])
-    return attrs.evolve(mesh, points=mesh.points @ map_.T)
-
-
 def test_volume_area_and_normals_of_a_block():
     mesh = block()
     assert mesh.volume() == pytest.approx(6.0, rel=ROUNDING)
-    assert sheared(mesh).volume() == pytest.approx(6.0, rel=ROUNDING)
+    shear = np.array([[1.0, 0.0, 0.3], [0.2, 1.0, 0.06], [0.0, 0.0, 1.0]])  # x += 0.3 z, y += 0.2 x
+    assert attrs.evolve(mesh, points=mesh.points @ shear.T).volume() == pytest.approx(6.0, rel=ROUNDING)
     areas, normals = mesh.facet_areas("outside"), facet_normals(mesh, "outside")
     assert areas.sum() == pytest.approx(22.0, rel=ROUNDING)
     # Closed surface: area vectors cancel, and they point outward, so that their flux of x is three volumes.

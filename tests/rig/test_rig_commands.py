@@ -267,16 +267,11 @@ def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_pa
     assert sum(moving) > 20
 
 
-def test_marks_and_a_speed_that_disagree(rig, held, state):
+def test_marks_that_disagree_with_the_speed_and_columns_that_turn_the_wrong_way(rig, held, state):
     quiet = attrs.evolve(_silent(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="Sample faster, or omit one of the columns"):
         identify_recording(attrs.evolve(own, speed=0.5 * own.speed), rig, held)
-
-
-def test_columns_that_turn_the_wrong_way(rig, held, state):
-    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
-    own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="swap y and z"):
         identify_recording(attrs.evolve(own, y=own.z, z=own.y), rig, held)
 

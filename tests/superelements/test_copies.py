@@ -110,7 +110,6 @@ def test_a_ring_of_unequal_parts_is_no_sectors(case):
     assert sectors(**parts | UNEQUAL[case](**parts), first=0) is None
 
 
-FORMULATIONS = ("one_point", "full", "incompatible")
 #: Sums of some hundred products.
 ROUNDING = 1e-13
 
@@ -129,7 +128,7 @@ def element_by_element(assembly, u):
     )
 
 
-@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("formulation", ["one_point", "full", "incompatible"])
 def test_forces_of_all_bodies_are_those_of_their_elements(formulation):
     assembly = assembly_of(formulation)
     u = moved_by_chance(assembly)
