@@ -110,7 +110,14 @@ class Command(NamedTuple):
         if isinstance(front, str):
             module, _, name = front.partition(":")
             front = getattr(import_module(module), name)
-        signature, words = inspect.signature(front), _parameters(front)
+        # Argument -> its words; several arguments of one line are parted by ``;  ``.
+        lines = re.sub(r"\n\s+", " ", _sections(front)[1])
+        entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
+        parted = (entry.partition(" : ") for entry in entries)
+        signature, words = (
+            inspect.signature(front),
+            {name.strip(): words.strip() for names, _, words in parted for name in names.split(",")},
+        )
         params = [
             p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
         ]
@@ -298,14 +305,6 @@ def _sections(front: Callable[..., Value]) -> tuple[str, str]:
 def _summary(front: Callable[..., Value]) -> str:
     before, _ = _sections(front)
     return before.split("\n\nReturns\n", 1)[0].replace("``", "").strip()
-
-
-def _parameters(front: Callable[..., Value]) -> dict[str, str]:
-    """Argument -> its words; several arguments of one line are parted by ``;  ``."""
-    lines = re.sub(r"\n\s+", " ", _sections(front)[1])
-    entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
-    parted = (entry.partition(" : ") for entry in entries)
-    return {name.strip(): words.strip() for names, _, words in parted for name in names.split(",")}
 
 
 def _option_help(words: str) -> str:

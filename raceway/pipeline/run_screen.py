@@ -126,7 +126,26 @@ def screen(result: ReadTables) -> Screen:
     maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
-        words.append(_set(b))
+        # Arrangement, distances and preload of a set of rows.
+        bearing = b
+        kind, own = bearing.get("arrangement", "single"), bearing.get("row") or []
+        forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
+        if bearing.get("second_preload"):
+            forces += f" and {bearing['second_preload']:g} N"
+        braced = bearing.get("preload") or any(row.get("preload") for row in own)
+        each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
+        mounted = f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if braced else "without preload"
+        count = len(own) if kind == "single" else len(signs_of(kind))
+        apart = bearing.get("row_distance") or bearing.get("width")
+        placed = own and all(row.get("position") is not None for row in own)
+        places = (
+            ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm"
+            if placed
+            else f"{1e3 * (apart or 0.0):g} mm apart"
+        )
+        what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
+        name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
+        words.append(f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}")
     words += [geometry["designation"]] if "designation" in geometry else []
     law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
     words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
@@ -168,23 +187,3 @@ def _integrator(chosen: ReadTables | None) -> str:
 
 #: How the rows of a pair stand to each other.
 _PAIRS = {"DB": "back to back", "DF": "face to face", "DT": "tandem"}
-
-
-def _set(bearing: ReadTables) -> str:
-    """Arrangement, distances and preload of a set of rows."""
-    kind, own = bearing.get("arrangement", "single"), bearing.get("row") or []
-    forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
-    if bearing.get("second_preload"):
-        forces += f" and {bearing['second_preload']:g} N"
-    braced = bearing.get("preload") or any(row.get("preload") for row in own)
-    each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
-    mounted = f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if braced else "without preload"
-    count = len(own) if kind == "single" else len(signs_of(kind))
-    apart = bearing.get("row_distance") or bearing.get("width")
-    placed = own and all(row.get("position") is not None for row in own)
-    places = (
-        ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm" if placed else f"{1e3 * (apart or 0.0):g} mm apart"
-    )
-    what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
-    name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
-    return f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}"

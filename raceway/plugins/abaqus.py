@@ -48,7 +48,13 @@ class Abaqus:
     def read(self, path: Path) -> HexMesh:
         """A mesh; raises ``MeshError`` for files that are unreadable or without hexahedra."""
         exchange.readable(path)
-        _refuse_other_files(path)
+        # A mesh is one file: what *INCLUDE names may be anything, a device without end too.
+        with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
+            for number, line in enumerate(stream, 1):
+                if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
+                    raise MeshError(
+                        f"'{path}', line {number}: *INCLUDE is not supported: insert the content of the included file"
+                    )
         content = exchange.load(path, exchange.meshio().abaqus.read)
         cells, first = exchange.hexahedra(path, content)
         members = {name.lower(): _members(blocks, first) for name, blocks in content.cell_sets.items()}
@@ -84,16 +90,6 @@ class Abaqus:
 
     def example_content(self) -> HexMesh:
         return exchange.example()
-
-
-def _refuse_other_files(path: Path) -> None:
-    """A mesh is one file: what *INCLUDE names may be anything, a device without end too."""
-    with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
-        for number, line in enumerate(stream, 1):
-            if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
-                raise MeshError(
-                    f"'{path}', line {number}: *INCLUDE is not supported: insert the content of the included file"
-                )
 
 
 def _entries(numbers: np.ndarray) -> Iterator[str]:

@@ -586,7 +586,10 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
     large = [e for e in factorial.effects if len(e.term) == 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     words = []
     for effect in large[:_MOST_INTERACTIONS]:
-        held, moved = _ordered(comparison, factorial, effect)
+        # (the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two.
+        main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
+        a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))
+        held, moved = a, b
         changes = [factorial.log_change(moved.key, {held.key: end}) for end in (0, 1)]
         words.append(
             f"{label}, interaction of {held.key} and {moved.key}: with {held.key} = {shown(held.ends[0])}, "
@@ -605,10 +608,3 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
                 f"{label}: no interaction is resolved from the runs' errors (the largest would be {percent(most)})."
             )
     return words
-
-
-def _ordered(comparison: Findings, factorial: _Factorial, effect: Effect) -> tuple[Axis, Axis]:
-    """(the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two."""
-    main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
-    a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))
-    return a, b

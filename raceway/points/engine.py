@@ -196,19 +196,16 @@ def work_through(
                 rows[index] = _lost(item, answer, lost)
             else:
                 rows[index] = answer[0]
-                _put(store, Row(item.key, "done", "", answer[0], {}))
+                # Store a row; on a disk that takes no more the study goes on without, and says so at its end.
+                row = Row(item.key, "done", "", answer[0], {})
+                if store.fault is None:
+                    try:
+                        store.put([row])
+                    except RacewayError as why:
+                        store.fault = why
             if on_progress is not None:
                 on_progress(item.name, len(rows), len(items))
     return [rows[index] for index in range(len(items))], reused
-
-
-def _put(store: Store, row: Row) -> None:
-    """Store a row; on a disk that takes no more the study goes on without, and says so at its end."""
-    if store.fault is None:
-        try:
-            store.put([row])
-        except RacewayError as why:
-            store.fault = why
 
 
 def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:

@@ -143,14 +143,40 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     out = Page("The article’s own model: elastic rings and balls", content["title"], footer)
     drawn = {picture.name: picture for picture in pictures}
     static = _of_phase(content, "static")
-    _opening(out, content)
+    elements = {row["cost"]["elements"] for row in content["rows"] if row["bodies"] == "elastic"} - {None}
+    size = f"{max(elements):,}".replace(",", "\u202f") + " hexahedra" if elements else "no run that came to an end"
+    out.text(
+        f"Rings and balls as finite elements of which every node moves ({size}), in contact at surface points with a penalty and a "
+        f"coefficient of friction of {content['friction']:g} in motion: the model that the article computes with. It stands beside "
+        "condensed bodies, exact compliances between the points of the contacts, and rigid bodies, of which the contacts "
+        f"alone deform. Four load cases at rest; one operating point, {content['speed_rpm']:g} r/min, under both excitations.",
+        kind="lead",
+    )
+    out.listing(in_short(content))
     out.section("Peak pressures")
     out.text(
         "Largest nodal pressure, force over the area around a node, over Hertz’s at the load that the same ball carries, less 1: of the "
         "most loaded ball, and the largest of any ball that carries more than 5 % of it. Rigid bodies have no points: theirs is Hertz’s."
     )
     caption = "Peak pressures against exact Hertz at the most loaded ball; last column: of all loaded balls"
-    out.rows(_pressure_rows(static), caption)
+    # A row for each race whose contacts have points.
+    lines = []
+    for row in static:
+        for race, table in (row.get("from_hertz") or {}).items():
+            if table is not None:
+                within = abs(table["largest"]) <= _ARTICLE_DEVIATION
+                tone, more = ("good", "") if within else ("bad", "beyond the article’s 2.42 %")
+                lines.append({
+                    "load": _case(row),
+                    "bodies": row["bodies"],
+                    "race": race,
+                    "ball load N": f"{table['load_n']:.1f}",
+                    "peak MPa": f"{1e-6 * table['peak_pressure_pa']:.1f}",
+                    "Hertz MPa": f"{1e-6 * table['hertz_peak_pressure_pa']:.1f}",
+                    "off Hertz": percent(table["most_loaded"]),
+                    "most off, any ball": Cell(percent(table["largest"]), tone, more),
+                })  # fmt: skip
+    out.rows(lines, caption)
     show_picture(out, drawn, "article-elastic-pressures")
     out.section("Bodies against each other, at rest")
     at_rest, in_motion = tables(content).items()
@@ -193,19 +219,6 @@ def _of_phase(content: ReadTables, phase: str) -> list[Tables]:
     return [row for row in content["rows"] if row["phase"] == phase]
 
 
-def _opening(out: Page, content: ReadTables) -> None:
-    elements = {row["cost"]["elements"] for row in content["rows"] if row["bodies"] == "elastic"} - {None}
-    size = f"{max(elements):,}".replace(",", "\u202f") + " hexahedra" if elements else "no run that came to an end"
-    out.text(
-        f"Rings and balls as finite elements of which every node moves ({size}), in contact at surface points with a penalty and a "
-        f"coefficient of friction of {content['friction']:g} in motion: the model that the article computes with. It stands beside "
-        "condensed bodies, exact compliances between the points of the contacts, and rigid bodies, of which the contacts "
-        f"alone deform. Four load cases at rest; one operating point, {content['speed_rpm']:g} r/min, under both excitations.",
-        kind="lead",
-    )
-    out.listing(in_short(content))
-
-
 def in_short(content: ReadTables) -> list[str]:
     """What the numbers say, as far as runs came to an end."""
     rows, reference = content["rows"], content["reference"]
@@ -237,27 +250,6 @@ def in_short(content: ReadTables) -> list[str]:
             f"{content['failed']} of {content['runs']} runs failed or were refused: the reasons stand under “Cost”."
         )
     return points
-
-
-def _pressure_rows(rows: list[Tables]) -> list[Tables]:
-    """A row for each race whose contacts have points."""
-    lines = []
-    for row in rows:
-        for race, table in (row.get("from_hertz") or {}).items():
-            if table is not None:
-                within = abs(table["largest"]) <= _ARTICLE_DEVIATION
-                tone, more = ("good", "") if within else ("bad", "beyond the article’s 2.42 %")
-                lines.append({
-                    "load": _case(row),
-                    "bodies": row["bodies"],
-                    "race": race,
-                    "ball load N": f"{table['load_n']:.1f}",
-                    "peak MPa": f"{1e-6 * table['peak_pressure_pa']:.1f}",
-                    "Hertz MPa": f"{1e-6 * table['hertz_peak_pressure_pa']:.1f}",
-                    "off Hertz": percent(table["most_loaded"]),
-                    "most off, any ball": Cell(percent(table["largest"]), tone, more),
-                })  # fmt: skip
-    return lines
 
 
 def _case(row: ReadTables) -> str:

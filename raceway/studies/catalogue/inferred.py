@@ -18,7 +18,7 @@ from raceway.out.wrapping import Words
 from raceway.scene.clearance import clearance_range
 from raceway.storage.tables import Tables
 from raceway.studies.catalogue.deep_groove import GROOVES, STIFFNESS_ERROR, deep_groove_candidates
-from raceway.studies.catalogue.printed import PairStiffness, Printed
+from raceway.studies.catalogue.printed import Printed
 from raceway.studies.catalogue.rating_conventions import (
     CONFORMITY,
     LIMITS,
@@ -232,6 +232,15 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         "grooves": "meets C and C0 with a groove and a filling as other bearings of the maker have",
     }
     doubt = "" if best.alike is None or best.alike >= _ALIKE else "; hardly any is like this one, so it is doubtful"
+    checks = []
+    for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
+        for word, rated, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
+            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", rated, rated * (1.0 + off)))
+    for printed, pair in zip(size.pairs, pairs, strict=True):
+        angle = printed.contact_angle_deg
+        axial, radial = both_stiffnesses(size, best, pair.preload, pair.contact_angle_deg, inner.value, outer.value)
+        checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
+        checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
     return Inferred(
         printed=size,
         practice=best.practice,
@@ -253,7 +262,7 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         conformity_outer=outer,
         share=share,
         other=next(next_likely, None),
-        checks=_checks(size, pairs, best, inner.value, outer.value),
+        checks=tuple(checks),
         stiffness_error=STIFFNESS_ERROR if size.deep_groove else STIFFNESS_95[best.practice],
         contact_angles=angles,
     )
@@ -386,16 +395,3 @@ def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
     means = {nominal: np.mean(each, axis=0) for nominal, each in found.items()}
     why = "gives axial and radial stiffness of a pair"
     return {nominal: _Number(round(float(mean), 3), float(scatter), why) for nominal, (mean, scatter) in means.items()}
-
-
-def _checks(size: Printed, pairs: list[PairStiffness], best: Candidate, inner: float, outer: float) -> tuple[_Check, ...]:
-    checks = []
-    for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
-        for word, rated, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
-            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", rated, rated * (1.0 + off)))
-    for printed, pair in zip(size.pairs, pairs, strict=True):
-        angle = printed.contact_angle_deg
-        axial, radial = both_stiffnesses(size, best, pair.preload, pair.contact_angle_deg, inner, outer)
-        checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
-        checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
-    return tuple(checks)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import attrs
 
@@ -103,7 +103,28 @@ def columns_of(
         Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
     """
     mapping = _mapping(headers, mapping or {})
-    _refuse_mapping(headers, mapping, where)
+    # A map of a column that does not exist, to an unknown name, or to another unit than the header's.
+    texts = {_plain(text): text for text in headers}
+    for header, meant in mapping.items():
+        name, scale = unscaled(meant)
+        if header not in texts:
+            raise ValueError(
+                f"{where}no column '{_shortened(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
+            )
+        if name != IGNORE and _with_y(name) not in COLUMNS:
+            raise ValueError(
+                f'{where}--map "{texts[header]}={name}": unknown name{nearest(name, COLUMNS)}; known: {_names()}'
+            )
+        unit, quantity = _parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
+        if unit in _VOLTS and quantity != "key":
+            if scale is None:
+                raise ValueError(
+                    f"{where}'{texts[header]}' is a voltage: {name} needs the sensor's sensitivity, {_SENSITIVITY}"
+                )
+            continue
+        if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != _with_y(name):
+            remedy = f"{quantity}_{unit} is" if unit in UNITS[quantity] else "values in that unit are"
+            raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
     columns = _recognised(headers, mapping)
     if any(header.fault for header in columns):
         raise ValueError(_message(columns, where, needed))
@@ -231,31 +252,6 @@ def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Head
     if unit not in UNITS[name]:
         return _Header(text, fault=f"has the unit '{unit}', known are {', '.join(UNITS[name])}", guess=name)
     return _Header(text, f"{name}_{unit}")
-
-
-def _refuse_mapping(headers: Iterable[str], mapping: Mapping[str, str], where: str) -> None:
-    """A map of a column that does not exist, to an unknown name, or to another unit than the header's."""
-    texts = {_plain(text): text for text in headers}
-    for header, meant in mapping.items():
-        name, scale = unscaled(meant)
-        if header not in texts:
-            raise ValueError(
-                f"{where}no column '{_shortened(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
-            )
-        if name != IGNORE and _with_y(name) not in COLUMNS:
-            raise ValueError(
-                f'{where}--map "{texts[header]}={name}": unknown name{nearest(name, COLUMNS)}; known: {_names()}'
-            )
-        unit, quantity = _parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
-        if unit in _VOLTS and quantity != "key":
-            if scale is None:
-                raise ValueError(
-                    f"{where}'{texts[header]}' is a voltage: {name} needs the sensor's sensitivity, {_SENSITIVITY}"
-                )
-            continue
-        if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != _with_y(name):
-            remedy = f"{quantity}_{unit} is" if unit in UNITS[quantity] else "values in that unit are"
-            raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
 
 
 def _message(columns: Sequence[_Header], where: str, needed: Mapping[str, str]) -> str:

@@ -12,7 +12,7 @@ from raceway.errors import RacewayError, extra
 from raceway.out.picture import new_figure
 from raceway.plugins.system_libraries import refuse_pictures
 from raceway.storage.tables import Tables
-from raceway.studies.view.bodies import INNER, OUTER, Bearing, Part, State
+from raceway.studies.view.bodies import INNER, OUTER, Bearing, State
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -148,30 +148,6 @@ def look_from(plotter: Plotter, camera: Sequence[Sequence[float]], zoom: float) 
     plotter.camera.zoom(zoom)
 
 
-def _add_parts(pyvista: ModuleType, plotter: Plotter, parts: Sequence[Part], top_load: float, top_pressure: float) -> None:
-    """Put parts into a scene; colours of loads and pressures reach from 0 to the given ends [N, MPa]."""
-    for part in parts:
-        mesh = pyvista.PolyData.from_regular_faces(part.surface.points, part.surface.triangles)
-        mesh.point_data["Normals"] = part.surface.normals
-        mesh.point_data.active_normals_name = "Normals"
-        # Loads are equal all over a part: as a field, so that all parts share one colour bar.
-        look: Tables = {
-            "smooth_shading": True,
-            "split_sharp_edges": False,
-            "opacity": part.opacity,
-            "show_scalar_bar": False,
-        }
-        if part.colour is not None:
-            ambient = 0.65 if "cut face" in part.name else 0.25
-            plotter.add_mesh(mesh, color=part.colour, ambient=ambient, diffuse=1.0 - ambient, specular=0.1, **look)
-        elif part.scale == "pressure":
-            mesh.point_data["pressure"] = part.surface.values
-            plotter.add_mesh(mesh, scalars="pressure", cmap=PRESSURES, clim=(0.0, top_pressure), lighting=False, **look)
-        else:
-            mesh.point_data["load"] = np.full(len(part.surface.points), part.load)
-            plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top_load), ambient=0.3, **look)
-
-
 def _screen_points(plotter: Plotter) -> Callable[[np.ndarray], np.ndarray]:
     """Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner."""
     width, height = plotter.window_size
@@ -207,7 +183,27 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         patches = bearing.patches(state)
         peak = max((float(part.surface.values.max()) for part in patches if part.surface.values is not None), default=1.0)
         parts = [*bearing.rings(), *bearing.balls(state), *bearing.arrows(state, top), *patches]
-        _add_parts(pyvista, plotter, parts, top, peak)
+        # Put parts into a scene; colours of loads and pressures reach from 0 to the given ends [N, MPa].
+        for part in parts:
+            mesh = pyvista.PolyData.from_regular_faces(part.surface.points, part.surface.triangles)
+            mesh.point_data["Normals"] = part.surface.normals
+            mesh.point_data.active_normals_name = "Normals"
+            # Loads are equal all over a part: as a field, so that all parts share one colour bar.
+            look: Tables = {
+                "smooth_shading": True,
+                "split_sharp_edges": False,
+                "opacity": part.opacity,
+                "show_scalar_bar": False,
+            }
+            if part.colour is not None:
+                ambient = 0.65 if "cut face" in part.name else 0.25
+                plotter.add_mesh(mesh, color=part.colour, ambient=ambient, diffuse=1.0 - ambient, specular=0.1, **look)
+            elif part.scale == "pressure":
+                mesh.point_data["pressure"] = part.surface.values
+                plotter.add_mesh(mesh, scalars="pressure", cmap=PRESSURES, clim=(0.0, peak), lighting=False, **look)
+            else:
+                mesh.point_data["load"] = np.full(len(part.surface.points), part.load)
+                plotter.add_mesh(mesh, scalars="load", cmap=LOADS, clim=(0.0, top), ambient=0.3, **look)
         # VTK draws square brackets as round ones.
         _colour_bar(pyvista, plotter, "ball load, N", LOADS, top, (0.045, 0.54))
         _colour_bar(pyvista, plotter, "pressure, MPa", PRESSURES, peak, (0.045, 0.06))
