@@ -146,7 +146,17 @@ class HexMesh:
         Nodes by reverse Cuthill-McKee on the graph of the cells' edges, unless the given numbers are nearer already, as
         those of swept meshes are; cells by their smallest node.
         """
-        order = _cuthill_mckee(self.cells, len(self.points))
+        count = len(self.points)
+        from scipy.sparse import coo_matrix
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+        pairs = self.cells.astype(np.int32)[:, EDGES].reshape(-1, 2)
+        # Each edge once: cells that share it repeat it, and the conversion would carry all of them along.
+        keys = np.unique(pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1))
+        low, high = keys // count, keys % count
+        rows, columns = np.concatenate([low, high]), np.concatenate([high, low])
+        graph = coo_matrix((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count)).tocsr()
+        order = np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), dtype=np.int64)
         rank = np.empty(len(order), dtype=np.int64)
         rank[order] = np.arange(len(order))
         cells = rank[self.cells]
@@ -209,19 +219,6 @@ def shape_slopes(at: np.ndarray) -> np.ndarray:
     for k in range(3):
         out[:, :, k] = CORNERS[:, k] * parts[:, :, (k + 1) % 3] * parts[:, :, (k + 2) % 3] / 8.0
     return out
-
-
-def _cuthill_mckee(cells: np.ndarray, count: int) -> np.ndarray:
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-    pairs = cells.astype(np.int32)[:, EDGES].reshape(-1, 2)
-    # Each edge once: cells that share it repeat it, and the conversion would carry all of them along.
-    keys = np.unique(pairs.min(axis=1).astype(np.int64) * count + pairs.max(axis=1))
-    low, high = keys // count, keys % count
-    rows, columns = np.concatenate([low, high]), np.concatenate([high, low])
-    graph = coo_matrix((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(count, count)).tocsr()
-    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), dtype=np.int64)
 
 
 def _member(sets: dict[str, np.ndarray], name: str, kind: str) -> np.ndarray:

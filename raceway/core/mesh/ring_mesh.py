@@ -60,17 +60,6 @@ class _Outline:
         return np.column_stack([x, np.interp(x, *line.T)])
 
 
-def _plain_outline(seat: float, land: float, width: float, ends: tuple[float, float], edge: float) -> _Outline:
-    """A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m]."""
-    half = 0.5 * width
-    return _Outline(
-        np.array([[-half, land], [ends[0], land]]),
-        np.array([[ends[1], land], [half, land]]),
-        np.array([[-half, seat], [half, seat]]),
-        (-edge, edge),
-    )
-
-
 def _polygon_outline(
     key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
 ) -> _Outline:
@@ -86,21 +75,7 @@ def _polygon_outline(
         raise MeshError(f"`{key}` has {len(points)} points: a section needs at least 4, [x, radius] around it")
     if points[:, 1].min() <= 0.0:
         raise MeshError(f"`{key}`: the radius {points[:, 1].min():g} m must be greater than 0")
-    low, high = _chains(key, points)
-    race, seat = (high, low) if inner else (low, high)
-    side = -1.0 if inner else 1.0
-    left, right = _cut(key, race, groove, np.array([centre_x, centre_r]))
-    angles = [atan2(p[0] - centre_x, side * (p[1] - centre_r)) for p in (left[-1], right[0])]
-    if max(abs(a) for a in angles) >= 0.5 * pi:
-        raise MeshError(
-            f"`{key}`: the shoulder at x = {1e3 * left[-1, 0]:.4g} or {1e3 * right[0, 0]:.4g} mm closes over the groove: it "
-            "must lie between the groove's bottom and its centre"
-        )
-    return _Outline(left, right, seat, (angles[0], angles[1]))
-
-
-def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The lines between the left and the right side face, at small and at large radius."""
+    # The lines between the left and the right side face, at small and at large radius.
     x = points[:, 0]
     size = np.ptp(x)
     count = len(points)
@@ -133,7 +108,17 @@ def _chains(key: str, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     wall = np.interp(every, *lines[1].T) - np.interp(every, *lines[0].T)
     if wall.min() <= 0.0:
         raise MeshError(f"`{key}` crosses itself near x = {1e3 * every[np.argmin(wall)]:.4g} mm")
-    return lines[0], lines[1]
+    low, high = lines[0], lines[1]
+    race, seat = (high, low) if inner else (low, high)
+    side = -1.0 if inner else 1.0
+    left, right = _cut(key, race, groove, np.array([centre_x, centre_r]))
+    angles = [atan2(p[0] - centre_x, side * (p[1] - centre_r)) for p in (left[-1], right[0])]
+    if max(abs(a) for a in angles) >= 0.5 * pi:
+        raise MeshError(
+            f"`{key}`: the shoulder at x = {1e3 * left[-1, 0]:.4g} or {1e3 * right[0, 0]:.4g} mm closes over the groove: it "
+            "must lie between the groove's bottom and its centre"
+        )
+    return _Outline(left, right, seat, (angles[0], angles[1]))
 
 
 def _cut(key: str, race: np.ndarray, groove: float, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -347,7 +332,15 @@ class RingShape:
         if self.profile is not None:
             return self.profile
         reach = self.groove * sin(self.edge)
-        return _plain_outline(self.seat, self.land, self.width, (self.centre_x - reach, self.centre_x + reach), self.edge)
+        # A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m].
+        ends = (self.centre_x - reach, self.centre_x + reach)
+        half = 0.5 * self.width
+        return _Outline(
+            np.array([[-half, self.land], [ends[0], self.land]]),
+            np.array([[ends[1], self.land], [half, self.land]]),
+            np.array([[-half, self.seat], [half, self.seat]]),
+            (-self.edge, self.edge),
+        )
 
     @property
     def wall(self) -> float:
@@ -452,15 +445,11 @@ def ring_mesh(
     psi = np.asarray(azimuths)
     x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
     points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
-    cells = _swept_cells(ni, nj, divisions)
+    k, j, i = np.meshgrid(np.arange(divisions), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
+    near, far = (k * nj + j) * ni + i, ((k + 1) % divisions * nj + j) * ni + i
+    cells = np.stack([n + o for n in (near, far) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
     facets = _facets(shape.inner, (ni, nj, divisions), (len(left) - 1, len(right) - 1), arc, band)
     return HexMesh(points.reshape(-1, 3), cells, {name: nodes_of(cells, f) for name, f in facets.items()}, facets)
-
-
-def _swept_cells(ni: int, nj: int, nk: int) -> np.ndarray:
-    k, j, i = np.meshgrid(np.arange(nk), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
-    near, far = (k * nj + j) * ni + i, ((k + 1) % nk * nj + j) * ni + i
-    return np.stack([n + o for n in (near, far) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
 
 
 def _facets(
@@ -503,7 +492,20 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
     """
     key = "inner_profile" if inner else "outer_profile"
     if getattr(bearing, key, None) is not None:
-        return _profile_ring(bearing, key, inner)
+        # A ring whose section the user gives.
+        groove = _groove(bearing, inner)
+        outline = _polygon_outline(
+            f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
+        )
+        radii, lands = outline.seat[:, 1], np.r_[outline.left[-1, 1], outline.right[0, 1]]
+        seat, land = (radii.min(), lands.max()) if inner else (radii.max(), lands.min())
+        word, diameter = ("bore", bearing.bore) if inner else ("outer_diameter", bearing.outer_diameter)
+        if diameter is not None and abs(2.0 * seat - diameter) > 1e-6 * diameter:
+            raise MeshError(
+                f"`bearing.{key}` has a seat diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
+            )
+        width = float(outline.seat[-1, 0] - outline.seat[0, 0])
+        return RingShape(inner, float(seat), float(land), width, **groove, profile=outline)
     for key in ("bore", "outer_diameter", "width"):
         if getattr(bearing, key, None) is None:
             raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
@@ -527,20 +529,3 @@ def _groove(bearing: Any, inner: bool) -> Tables:
         "centre_r": 0.5 * bearing.pitch_diameter + offset * cos(alpha),
         "contact": -sense * alpha,
     }
-
-
-def _profile_ring(bearing: Any, key: str, inner: bool) -> RingShape:
-    """A ring whose section the user gives."""
-    groove = _groove(bearing, inner)
-    outline = _polygon_outline(
-        f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
-    )
-    radii, lands = outline.seat[:, 1], np.r_[outline.left[-1, 1], outline.right[0, 1]]
-    seat, land = (radii.min(), lands.max()) if inner else (radii.max(), lands.min())
-    word, diameter = ("bore", bearing.bore) if inner else ("outer_diameter", bearing.outer_diameter)
-    if diameter is not None and abs(2.0 * seat - diameter) > 1e-6 * diameter:
-        raise MeshError(
-            f"`bearing.{key}` has a seat diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
-        )
-    width = float(outline.seat[-1, 0] - outline.seat[0, 0])
-    return RingShape(inner, float(seat), float(land), width, **groove, profile=outline)

@@ -72,12 +72,6 @@ class Spacing:
         return attrs.evolve(self, columns=max(self.columns, ceil(widest / self.across)))
 
 
-def _race_divisions(centre_radius: float, groove: float, sense: float, angle: float, across: float, balls: int) -> int:
-    """Points around a race so that they lie ``across`` [m] apart at a contact angle; a multiple of the balls."""
-    circle = 2.0 * pi * (centre_radius + sense * groove * cos(angle))
-    return balls * max(round(circle / across / balls), 1)
-
-
 @attrs.frozen(eq=False)
 class _Race:
     """A race's surface points and its compliance, seen from any ball.
@@ -222,7 +216,9 @@ def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Pat
     middle = 0.5 * (ring.window[0] + ring.window[1])
     finest = min(spacing.along, spacing.across)
     section = graded_profile(shape, spacing.along, ring.window, finest, ring.solid.bulk)
-    count = _race_divisions(shape.centre_r, shape.groove, sense, middle, spacing.across, balls)
+    # Points around a race so that they lie ``across`` [m] apart at a contact angle; a multiple of the balls.
+    circle = 2.0 * pi * (shape.centre_r + sense * shape.groove * cos(middle))
+    count = balls * max(round(circle / spacing.across / balls), 1)
     columns, rows = 2 * spacing.columns + 1, len(section.race)
     neighbours = np.arange(1, balls // 2 + 1) * (count // balls)
     steps = np.concatenate([np.arange(columns), neighbours])

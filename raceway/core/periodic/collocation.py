@@ -169,7 +169,12 @@ def one_pitch(system: System, speed: float, q: np.ndarray) -> Symmetry | None:
             continue
         span = 2.0 * np.pi / count / abs(sense - cage)
         symmetry = Symmetry(span, rotations(np.array([sense * span]))[0], sense * span, np.arange(len(table)), True)
-        if not _forces_turn(system, symmetry, speed):
+        # Whether the force one span later is the force now, turned.
+        times = np.array([0.0, 0.37, 1.9]) / speed
+        push = np.empty((6, 5))
+        forces(system.force, system.force_params, np.concatenate([times, times + symmetry.span / speed]), push)
+        push *= system.free
+        if not bool(np.abs(push[3:] - push[:3] @ symmetry.rotation.T).max() <= _SAME * np.abs(push).max()):
             continue
         order = _order(direction, list(rows.values()), -np.sign(sense - cage) * 2.0 * np.pi / count)
         if order is None:
@@ -189,15 +194,6 @@ def _order(direction: np.ndarray, rows: list[list[int]], by: float) -> np.ndarra
             return None
         order[row] = np.array(row)[off.argmin(axis=1)]
     return order
-
-
-def _forces_turn(system: System, symmetry: Symmetry, speed: float) -> bool:
-    """Whether the force one span later is the force now, turned."""
-    times = np.array([0.0, 0.37, 1.9]) / speed
-    push = np.empty((6, 5))
-    forces(system.force, system.force_params, np.concatenate([times, times + symmetry.span / speed]), push)
-    push *= system.free
-    return bool(np.abs(push[3:] - push[:3] @ symmetry.rotation.T).max() <= _SAME * np.abs(push).max())
 
 
 def _bodies_turn(system: System, symmetry: Symmetry, speed: float, q: np.ndarray) -> bool:
@@ -410,13 +406,6 @@ def _weights(rule: _Rule, nodes: np.ndarray) -> np.ndarray:
     return (derivative[:, 2:-2] / h[:, :, None]).reshape(-1, s + 4)
 
 
-def _lags(problem: Problem, path: Path) -> np.ndarray:
-    """T (m s, Z, r, r) [s]: places by rates."""
-    columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
-    here, *moved = _places(problem, path, [[], *columns])
-    return np.stack([(balls - here) / _step(problem, path) for balls in moved], axis=-1)
-
-
 def _step(problem: Problem, path: Path) -> float:
     return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
 
@@ -442,7 +431,13 @@ def _solve(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
 
     n, z, r = residual.shape
     s, order = len(problem.rule.points), problem.symmetry.order
-    lags, weights = _lags(problem, path), problem.speed * _weights(problem.rule, path.nodes)
+    # T (m s, Z, r, r) [s]: places by rates.
+    columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
+    here, *moved = _places(problem, path, [[], *columns])
+    lags, weights = (
+        np.stack([(balls - here) / _step(problem, path) for balls in moved], axis=-1),
+        problem.speed * _weights(problem.rule, path.nodes),
+    )
     back = np.argsort(order)
     ball, sample = np.meshgrid(np.arange(z), np.arange(n), indexing="ij")
     at = sample[:, :, None] // s * s + np.arange(s + 4) - 2

@@ -336,17 +336,15 @@ def _force_continuation(
         return
 
 
-def _half_a_turn_later(solved: Solved, problem: Problem) -> Path:
-    """The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own."""
-    nodes = solved.path.nodes
-    q, v, _, _, _ = states(solved, nodes + np.pi)
-    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
-    return Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
-
-
 def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
     """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
-    opposite = _reverses(problem) and problem.system.scalars[CAGE] == 0.0
+    # Whether the force half a turn later is its opposite.
+    angles = np.array([0.1, 0.9, 2.3])
+    now, later = np.empty((3, 5)), np.empty((3, 5))
+    system = problem.system
+    forces(system.force, system.force_params, angles / problem.clock, now)
+    forces(system.force, system.force_params, (angles + np.pi) / problem.clock, later)
+    opposite = bool(np.abs(now + later).max() <= 1e-9 * np.abs(now).max()) and problem.system.scalars[CAGE] == 0.0
     for before, after in crossings:
         for share in (1.0, -1.0):
             if (before.parameter - share) * (after.parameter - share) > 0.0 or (share < 0.0 and not opposite):
@@ -354,20 +352,15 @@ def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], t
             path = _towards(before, after, share)
             try:
                 if share < 0.0:
-                    path = _half_a_turn_later(attrs.evolve(after.solved, path=path), problem)
+                    # The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own.
+                    solved = attrs.evolve(after.solved, path=path)
+                    nodes = solved.path.nodes
+                    q, v, _, _, _ = states(solved, nodes + np.pi)
+                    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
+                    path = Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
                 yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
             except ConvergenceError:
                 continue
-
-
-def _reverses(problem: Problem) -> bool:
-    """Whether the force half a turn later is its opposite."""
-    angles = np.array([0.1, 0.9, 2.3])
-    now, later = np.empty((3, 5)), np.empty((3, 5))
-    system = problem.system
-    forces(system.force, system.force_params, angles / problem.clock, now)
-    forces(system.force, system.force_params, (angles + np.pi) / problem.clock, later)
-    return bool(np.abs(now + later).max() <= 1e-9 * np.abs(now).max())
 
 
 #: Speeds, and axial loads, over the wanted one, that the motion is followed from.

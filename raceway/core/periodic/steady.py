@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Problem, Solved, solve
+from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import (
@@ -245,7 +245,12 @@ def starting_orbit(
     except ConvergenceError:
         orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
         try:
-            motion = _collocated(problem, orbit, highest)
+            # The motion of Fourier collocation, solved for once more on a mesh.
+            recorded = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
+            path = recorded.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
+            motion = with_multipliers(
+                refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation"
+            )
         except ConvergenceError:
             if highest <= HIGHEST:
                 raise
@@ -258,13 +263,6 @@ def starting_orbit(
             "ring does not stay on it",
         )
     return _StartingOrbit(_sampled(motion, period), tables, warnings)
-
-
-def _collocated(problem: Problem, orbit: Orbit, highest: float) -> PeriodicMotion:
-    """The motion of Fourier collocation, solved for once more on a mesh."""
-    recorded = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
-    path = recorded.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
-    return with_multipliers(refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation")
 
 
 def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
