@@ -329,6 +329,7 @@ def _summary(
     table = np.array([[row.get(name, np.nan) for row in rows] for name in names])
     ends = table[:, : 2 * (len(rows) // (dimensions + 2))]  # A and B: the rest repeats their numbers
     low, high = np.nanquantile(ends, _LIMITS, axis=1)
+    histograms = [np.histogram(values[np.isfinite(values)], _BINS) for values in ends]
     first: dict[str, list[float]] = {}
     total: dict[str, list[float]] = {}
     if not lost:
@@ -345,16 +346,11 @@ def _summary(
         dict(zip(names, high.tolist(), strict=True)),
         first,
         total,
-        {name: _histogram(values) for name, values in zip(names, ends, strict=True)},
+        {name: (edges.tolist(), counts.tolist()) for name, (counts, edges) in zip(names, histograms, strict=True)},
         len(rows),
         len(lost),
         lost[0] if lost else "",
     )
-
-
-def _histogram(values: np.ndarray) -> tuple[list[float], list[int]]:
-    counts, edges = np.histogram(values[np.isfinite(values)], _BINS)
-    return edges.tolist(), counts.tolist()
 
 
 @door

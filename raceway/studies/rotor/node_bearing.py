@@ -199,7 +199,8 @@ def node_bearing(
     SceneError
         With every mistake that was found.
     """
-    scene = as_scene({"bearing": {"preset": bearing}} if _is_preset(bearing) else bearing)
+    is_preset = isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
+    scene = as_scene({"bearing": {"preset": bearing}} if is_preset else bearing)
     changes = {"load.axial": preload, "supports.tilt": "free" if tilt == "node" else tilt, "supports.axial": axial}
     scene = as_scene(scene, {key: value for key, value in changes.items() if value is not None})
     if not damping >= 0.0 or not np.isfinite(damping):
@@ -216,10 +217,6 @@ def node_bearing(
         identifier=Identifying(method=find("identifier", "fft_1x").plugin()),
     )
     return NodeBearing(scene, tilt == "node", damping)
-
-
-def _is_preset(bearing: SceneSource) -> bool:
-    return isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
 
 
 def _secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
