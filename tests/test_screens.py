@@ -221,7 +221,7 @@ def test_a_precision_study_says_how_well_its_reference_is_known():
 
 
 #: Names of cases and quantities, which stored rows are found by, and column headers of files; screens write the former with the sign.
-NAMES_IN_ASCII = {"verify/study.py", "stability/catalogue.py", "fit/fit.py", "fit/column_headers.py", "fit/response.py"}
+NAMES_IN_ASCII = {"verify/study.py", "fit/fit.py", "fit/column_headers.py", "fit/response.py"}
 
 
 @pytest.mark.parametrize("folder", ["cli", "studies", "plugins"])

@@ -5,7 +5,9 @@ What a case measures is in the module that its ``measure`` names.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from importlib.resources import files
 
 import attrs
 
@@ -15,17 +17,17 @@ from raceway.framework.registry import Entry, Registry
 from raceway.storage.tables import ReadTables, Tables
 from raceway.studies.stability.study import Case
 
-#: The article's bearing, load and force; every case that names no other scene changes this one.
-BASE: Tables = {
-    "title": "B7206C, 1 kN axial, rig unbalance at 12 000 r/min",
-    "bearing": {"preset": "B7206C"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0}, "contact": {"damping": 0.001},
-    "excitation": {
-        "kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5, "reference_speed_rpm": 10980.0,
-    },
-    "kinematics": {"gyroscopic": "none", "ring_growth": False}, "integrator": {"kind": "newmark", "turns": 12},
-}  # fmt: skip
+#: The scenes, their changes, and what each list of them is for (``about``).
+_DATA: Tables = json.loads(files("raceway").joinpath("data/stability.json").read_text(encoding="utf-8"))
+BASE, TINY, COARSE, _POINTS = (_DATA[name] for name in ("base", "tiny", "coarse", "points"))
+SCENES: list[tuple[str, Tables, bool, str]] = _DATA["scenes"]
 #: Nothing that loses energy.
 UNDAMPED = {"contact.damping": 0.0, "rotor.damping": 0.0, "contact.friction": 0.0}
+STATIC: Tables = {"kinematics.ball_inertia": False}
+_PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
+#: Step over the limit and amplitude over the approach of undamped steps: contacts stay closed, or open.
+_UNDAMPED = ((0.1, 0.03), (0.02, 1.5))
+_AT_REST = "scenes:condensed_at_rest"
 
 
 def _force(newton: float) -> Tables:
@@ -33,194 +35,8 @@ def _force(newton: float) -> Tables:
     return {"excitation.amplitude": "constant", "excitation.force": newton}
 
 
-#: Geometry without the dimensions that give the inner ring a mass of its own.
-_BARE = {"bearing.bore": None, "bearing.outer_diameter": None, "bearing.width": None, "bearing.preset": None}
-_B7206C = {
-    "bearing.ball_diameter": 9.525e-3, "bearing.pitch_diameter": 46e-3, "bearing.ball_count": 12,
-    "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0,
-}  # fmt: skip
-_RUBBER, _CERAMIC = {"young": 1e7, "poisson": 0.49, "density": 1100.0}, {"young": 310e9, "poisson": 0.26, "density": 3200.0}
-_NEARLY_INCOMPRESSIBLE: Tables = {"bearing.rings": {"poisson": 0.4999}, "bearing.balls": {"poisson": 0.4999}}
-_RUBBER_BALLS: Tables = {"bearing.rings": _CERAMIC, "bearing.balls": _RUBBER, "load.axial": 10.0}
-STATIC: Tables = {"kinematics.ball_inertia": False}
-#: The whole force from the first step on: while a force grows, energy is not balanced.
-_SUDDEN: Tables = {"integrator.start": "static"}
-
-#: name, what changes in the base, whether the closed form of an axial load holds, and how the motion is judged:
-#: "orbit" by the steady orbit, "slow" by the series of equilibria, "finer" by finer steps and the balance of energy where no
-#: orbit is steady or friction remembers, "" for the equilibrium alone.
-SCENES: tuple[tuple[str, Tables, bool, str], ...] = (
-    ("base", {}, True, "orbit"),
-    ("axial load 1 N", {"load.axial": 1.0, **_force(0.1), **STATIC}, False, "orbit"),
-    ("axial load 1 N under 50 N rotating: rattling", {"load.axial": 1.0, **_force(50.0), **STATIC, **_SUDDEN}, False, "finer"),
-    ("axial load 100 kN", {"load.axial": 1e5, **_force(400.0)}, True, "orbit"),
-    ("speed 1 r/min", {"excitation.speed_rpm": 1.0, **_force(400.0), "integrator.turns": 3}, True, "slow"),
-    ("speed 200 000 r/min", {"excitation.speed_rpm": 2e5, **_force(100.0)}, False, "orbit"),
-    ("radial load = axial", {"load.radial": [1000.0, 0.0], **_force(100.0)}, False, "orbit"),
-    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0], **_force(100.0)}, False, "orbit"),
-    ("radial load 20 x axial", {"load.radial": [20000.0, 0.0], **_force(300.0)}, False, "orbit"),
-    ("radial load 50 x axial", {"load.radial": [50000.0, 0.0], **_force(300.0)}, False, "orbit"),
-    ("lift-off: rotating 3000 N at 1000 N axial", _force(3000.0), True, "orbit"),
-    ("3 balls", {"bearing.ball_count": 3, **_force(100.0)}, True, "orbit"),
-    (
-        "60 balls",
-        {"bearing.ball_diameter": 4e-3, "bearing.pitch_diameter": 80e-3, "bearing.ball_count": 60, **_BARE,
-         "bearing.conformity_inner": 0.522, "bearing.conformity_outer": 0.522, "bearing.contact_angle_deg": 15.0},
-        True, "orbit",
-    ),
-    ("conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501}, False, "orbit"),
-    ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}, True, "orbit"),
-    (
-        "loose: clearance 50 um, rattling",
-        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 50e-6, "load.axial": 20.0, **_force(200.0), **STATIC},
-        False, "finer",
-    ),
-    (
-        "clearance 20 um",
-        {**_BARE, **_B7206C, "bearing.contact_angle_deg": None, "bearing.radial_clearance": 20e-6, **_force(100.0)},
-        True, "orbit",
-    ),
-    ("interference 5 um", {"kinematics.radial_expansion": 5e-6, **_force(100.0)}, False, "orbit"),
-    ("interference 20 um", {"kinematics.radial_expansion": 20e-6, **_force(100.0)}, False, "orbit"),
-    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, True, "orbit"),
-    ("rubber balls in ceramic rings", {**_RUBBER_BALLS, **_force(1.0), "rotor.mass": 0.1, **STATIC}, True, "orbit"),
-    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}, True, "orbit"),
-    ("friction 0.3", {"contact.friction": 0.3, **_force(100.0)}, True, "finer"),
-    ("friction 1.0", {"contact.friction": 1.0, **_force(100.0)}, True, "finer"),
-    ("gyroscopic moments, 40 000 r/min", {"kinematics.gyroscopic": "outer_race", "excitation.speed_rpm": 4e4, **_force(100.0)}, False, "orbit"),
-    ("orbiting balls", {"kinematics.orbiting": True}, True, "orbit"),
-    ("rotor of 1 g", {**_BARE, **_B7206C, "rotor.mass": 1e-3}, True, "orbit"),
-    ("rotor of 10 t", {"rotor.mass": 1e4}, True, "orbit"),
-    ("tilt free", {"supports.tilt": "free", **_force(100.0)}, False, "orbit"),
-    ("tilt free, radial load = axial", {"supports.tilt": "free", "load.radial": [1000.0, 0.0], **_force(50.0)}, False, "orbit"),
-    ("no damping", dict(UNDAMPED), True, "orbit"),
-)  # fmt: skip
-
-#: Those that are run with elastic rings and balls, too.
-_CONDENSED = (
-    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "conformity 0.501",
-    "lift-off: rotating 3000 N at 1000 N axial", "Poisson's ratio 0.4999", "rubber balls in ceramic rings",
-    "ceramic balls in steel rings", "friction 0.3", "tilt free",
-)  # fmt: skip
-#: Those that are run unless all is asked for.
-_QUICK = (
-    "base", "axial load 1 N", "axial load 100 kN", "radial load 5 x axial, balls unloaded", "3 balls", "clearance 20 um", "tilt free",
-    "lift-off: rotating 3000 N at 1000 N axial",
-)  # fmt: skip
-_PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
-
-_POINTS: Tables = {
-    "bodies.kind": "condensed", "contact.discretisation": "nodal", "mesh": {"kind": "structured", "nodes_per_semi_axis": 2}, **STATIC,
-}  # fmt: skip
-#: Scenes at rest whose contacts lie inside the grooves.
-_STILL: tuple[tuple[str, Tables], ...] = (
-    ("base", {}),
-    ("axial load 1 N", {"load.axial": 1.0}),
-    ("radial load 5 x axial, balls unloaded", {"load.radial": [5000.0, 0.0]}),
-    ("3 balls", {"bearing.ball_count": 3}),
-    ("conformity 0.60", {"bearing.conformity_inner": 0.6, "bearing.conformity_outer": 0.6}),
-    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
-    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
-)
-#: Scenes at rest that a user must be told something about.
-_WARNED: tuple[tuple[str, Tables, str, str], ...] = (
-    ("axial load 100 kN", {"load.axial": 1e5}, "groove's edge", "contacts are cut off by the shoulder"),
-    (
-        "conformity 0.501", {"bearing.conformity_inner": 0.501, "bearing.conformity_outer": 0.501},
-        "groove's edge", "the ellipse is longer than the groove",
-    ),
-    ("rubber balls in ceramic rings", _RUBBER_BALLS, "groove's edge", "the balls fill the grooves"),
-    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE, "elements lock", "contacts are nearly twice too stiff"),
-)  # fmt: skip
-
-#: Three balls on some four thousand elements, contacts narrower than an element: every path, no accuracy.
-TINY: Tables = {
-    "title": "three balls on few elements",
-    "bearing": {"preset": "B7206C", "ball_count": 3},
-    "bodies": {"kind": "elastic", "formulation": "one_point"},
-    "mesh": {
-        "kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 1, "azimuth_cells": 12, "growth": 3.0,
-        "patch": 0.5, "ball_load": 300.0,
-    },
-    "load": {"axial": 250.0},
-    "rotor": {"mass": 0.5},
-    "contact": {"kind": "hertz", "discretisation": "nodal"},
-}  # fmt: skip
-_ELASTIC_POINTS: tuple[tuple[str, Tables], ...] = (
-    ("base", {}),
-    ("axial load 1 N", {"load.axial": 1.0}),
-    ("axial load 100 kN", {"load.axial": 1e5}),
-    ("rubber balls in ceramic rings", _RUBBER_BALLS),
-    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
-    ("Poisson's ratio 0.4999", _NEARLY_INCOMPRESSIBLE),
-)
-#: 2688 elements for the base scene's twelve balls.
-COARSE: Tables = {
-    "bodies": {"kind": "elastic", "formulation": "incompatible"},
-    "mesh": {"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 24}, **STATIC,
-}  # fmt: skip
-_RESULTANTS: tuple[tuple[str, Tables], ...] = (
-    ("base", {}),
-    ("axial load 1 N", {"load.axial": 1.0}),
-    ("3 balls", {"bearing.ball_count": 3, "load.axial": 250.0}),
-    ("ceramic balls in steel rings", {"bearing.balls": _CERAMIC}),
-    ("tilt free", {"supports.tilt": "free", "load.radial": [500.0, 0.0]}),
-)
 #: 15 000 r/min, a force that acts at once.
 _EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 15000.0, **_force(60.0)}
-
-#: name, changes, words of the message, why there is no answer.
-_REFUSALS: tuple[tuple[str, Tables, str, str], ...] = (
-    ("no load", {"load.axial": 0.0}, "no load acts", "all motions are free"),
-    (
-        "two balls on the line of the load",
-        {"bearing.ball_count": 2, "bearing.preset": "B7206C", "supports.tilt": "free", "excitation": None},
-        "singular", "the ring turns freely about the line of its two balls",
-    ),
-    (
-        "explicit step above the limit", {"integrator.kind": "central_difference", "integrator.steps_per_turn": 12},
-        "above the stable limit", "it is refused before it blows up",
-    ),
-    ("unilateral law on rigid bodies", {"contact.kind": "unilateral"}, "supports 'nodal'", "it is no function of one approach"),
-    (
-        "steady orbit with friction", {"integrator.kind": "periodic", "contact.friction": 0.3},
-        "depends on the start of the motion", "sticking has a memory",
-    ),
-    ("orbiting balls at rest", {"kinematics.orbiting": True, "kinematics.spin_speed_rpm": 0.0}, "needs a spin speed", "nothing turns"),
-    ("a record of 19 GiB", {"integrator.turns": 10_000_000}, "would take", "it is refused before it fills the memory"),
-    (
-        "penalty stiffer than elastic bodies allow", {"bodies.kind": "condensed", "contact.kind": "penalty", "load.axial": 1e5},
-        "is stiffer than elastic bodies allow", "what finite elements take off a contact's compliance would leave none",
-    ),
-    ("Poisson's ratio 0.5", {"bearing.rings": {"poisson": 0.5}}, "poisson", "the moduli are infinite"),
-    ("no mass", {**_BARE, **_B7206C, "rotor.mass": 0.0}, "moving mass is 0", "no acceleration is defined"),
-)  # fmt: skip
-#: name, changes, words of the warning, what it is about.
-_WARNINGS: tuple[tuple[str, Tables, str, str], ...] = (
-    (
-        "axial load that opens the bearing", {"load.axial": -1000.0, **STATIC, "excitation": None},
-        "the bearing loses axial contact", "grooves without an end would hold the ring on the other side",
-    ),
-    (
-        "contact ellipse beyond the groove's edge", {"load.axial": 1e5, "excitation": None},
-        "beyond the groove's edge", "the ellipse is cut off there in reality",
-    ),
-)  # fmt: skip
-
-#: Axial load, rotating force [N] and tilt of orbits from small to lift-off, and whether they are quick ones.
-_ORBITS = (
-    (400.0, 100.0, "locked", False), (400.0, 400.0, "locked", False), (400.0, 800.0, "locked", False),
-    (400.0, 1500.0, "locked", True), (1000.0, 3000.0, "locked", False), (1000.0, 6000.0, "locked", False),
-    (400.0, 400.0, "free", False), (400.0, 800.0, "free", False),
-)  # fmt: skip
-#: Step over the limit and amplitude over the approach of undamped steps: contacts stay closed, or open.
-_UNDAMPED = ((0.1, 0.03), (0.02, 1.5))
-#: integrator, options, step over the contact's period, whether it may chatter: the law decides.
-_CHATTER: tuple[tuple[str, Tables, float, bool], ...] = (
-    ("newmark", {}, 1.0, True), ("newmark", {}, 0.05, False), ("generalized_alpha", {"rho_infinity": 0.5}, 1.0, False),
-    ("generalized_alpha", {"rho_infinity": 0.0}, 1.0, False), ("central_difference", {}, 0.05, False),
-)  # fmt: skip
-_AT_REST = "scenes:condensed_at_rest"
 
 
 def transient_integrators(registry: Registry) -> list[Entry]:
@@ -293,7 +109,7 @@ def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
             orbit = "orbit at the safe limit", "motions:orbit_at_the_safe_limit"
             if own:
                 yield Case(*orbit, setting, arguments)
-            for axial, newton, tilt, quick in () if own else _ORBITS:
+            for axial, newton, tilt, quick in () if own else _DATA["orbits"]:
                 orbiting = {**changes, "load.axial": axial, **_force(newton), "supports.tilt": tilt}
                 shown = {**setting, "axial": axial, "force": newton, "tilt": tilt}
                 yield Case(*orbit, shown, {**arguments, "changes": orbiting}, quick)
@@ -321,7 +137,7 @@ def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
                 yield Case("deep initial penetration", "motions:deep_penetration", setting, {**moved, "depth": depth})
         guesses = [1e-3, 5e-3, 5e-2, -1e-3, -5e-3]
         yield Case("equilibrium from afar", "motions:settled_from_afar", {"law": law}, {**arguments, "guesses": guesses})
-        for name, options, step, chatters in _CHATTER:
+        for name, options, step, chatters in _DATA["chatter"]:
             if name in names:
                 falling = {**arguments, "integrator": name, "options": options, "step": step, "chatters": chatters}
                 yield Case("chatter", "motions:chatter", {"integrator": name, "law": law}, falling)
@@ -334,8 +150,8 @@ def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
         for law in _laws_with(registry, "resultant"):
             lawful = {**changes, **_with_law(law, registry)}
             arguments: Tables = {"tables": base, "judge": judge, "changes": lawful}
-            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _QUICK)
-            if name in _CONDENSED:
+            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _DATA["quick"])
+            if name in _DATA["condensed"]:
                 arguments |= {"changes": {**lawful, "bodies.kind": "condensed"}, "may_be_too_stiff": True}
                 yield Case(name, "scenes:extreme", {"law": law, "bodies": "condensed"}, arguments, False)
 
@@ -350,9 +166,9 @@ def _points(base: Tables, registry: Registry) -> Iterator[Case]:
             arguments = {"tables": base, "changes": {**_POINTS, **changes, "contact.kind": law}, **more}
             return Case(f"surface points: {name}", measure, setting, arguments, measure == _AT_REST and name == "base")
 
-        for name, changes in _STILL:
+        for name, changes in _DATA["still"]:
             yield case(name, _AT_REST, changes)
-        for name, changes, words, reason in _WARNED:
+        for name, changes, words, reason in _DATA["warned"]:
             yield case(name, "scenes:warning", {**changes, "excitation": None}, words=words, reason=reason)
         for name in transient(registry):
             shown = {"integrator": name}
@@ -375,9 +191,9 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
         return Case(f"elastic bodies: {name}", measure, setting, {"tables": tables, "changes": changes, **more}, False)
 
     for law in _laws_with(registry, "nodal", "resultant"):
-        for name, changes in _RESULTANTS if law == "hertz" else _RESULTANTS[:1]:
+        for name, changes in _DATA["resultants"] if law == "hertz" else _DATA["resultants"][:1]:
             yield case(name, "scenes:calibrated_at_rest", {**changes, "excitation": None}, "resultants", base, law)
-        for name, changes in _ELASTIC_POINTS if law == "hertz" else _ELASTIC_POINTS[:1]:
+        for name, changes in _DATA["elastic_points"] if law == "hertz" else _DATA["elastic_points"][:1]:
             yield case(name, "scenes:points_at_rest", changes, law=law)
         words = "the displacement depend on the mesh"
         reason = "an element is wider than a contact: the displacement is a third too small"
@@ -393,7 +209,7 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
 
 def _messages(base: Tables) -> Iterator[Case]:
     """Scenes that are refused, or that users are warned about."""
-    for measure, messages in (("refusal", _REFUSALS), ("warning", _WARNINGS)):
+    for measure, messages in (("refusal", _DATA["refusals"]), ("warning", _DATA["warnings"])):
         for name, changes, words, reason in messages:
             arguments = {"tables": base, "changes": changes, "words": words, "reason": reason}
             yield Case(name, f"scenes:{measure}", {}, arguments)
