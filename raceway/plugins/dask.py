@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from operator import methodcaller
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
@@ -151,7 +152,9 @@ class _Flight:
         self.fit &= living
         new = living - self.fit - set(self.unfit)
         if new:
-            for worker, fault in self.client.run(_fault, self.work, workers=sorted(new), on_error="return").items():
+            for worker, fault in self.client.run(
+                methodcaller("fault"), self.work, workers=sorted(new), on_error="return"
+            ).items():
                 if fault is None:
                     self.fit.add(worker)
                     continue
@@ -203,10 +206,6 @@ def _greet(address: str, patience: float) -> None:
     # In a thread of its own: the caller may have a loop that runs, a notebook has.
     with ThreadPoolExecutor(1) as thread:
         thread.submit(asyncio.run, meet()).result()
-
-
-def _fault(work: Work) -> str | None:
-    return work.fault()
 
 
 def _outcome(future: Future) -> object:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
+from operator import eq
 from typing import Any, TypeVar, get_args, get_origin
 
 import attrs
@@ -90,10 +92,6 @@ def _number_or_word(value: object, _type: object = None) -> float | str:
     return value if isinstance(value, str) else _number(value)
 
 
-def _integer_or_word(value: object, _type: object = None) -> int | str:
-    return value if isinstance(value, str) else _integer(value)
-
-
 def _optional(inner: Any) -> Any:
     return lambda value, _type=None: None if value is None else inner(value, _type)
 
@@ -108,7 +106,7 @@ _HOOKS: dict[object, Any] = {
     tuple[tuple[float, float], ...] | None: _points,
     float | str: _number_or_word,
     str | float: _number_or_word,
-    int | str: _integer_or_word,
+    int | str: lambda value, _type=None: value if isinstance(value, str) else _integer(value),
     bool | str: lambda value, _type=None: value if isinstance(value, str) else _switch(value),
     float | None: _optional(_number),
     int | None: _optional(_integer),
@@ -171,17 +169,13 @@ def table_of_list(kind: object) -> type | None:
     return kinds[0] if len(kinds) == 2 and kinds[1] is Ellipsis and attrs.has(kinds[0]) else None
 
 
-def _equal_to(kind: object) -> Callable[[object], bool]:
-    return lambda candidate: bool(candidate == kind)
-
-
 def _converter() -> cattrs.Converter:
     converter = cattrs.Converter(detailed_validation=True, forbid_extra_keys=True)
     for kind, hook in _HOOKS.items():
         if isinstance(kind, type):  # plain types: cattrs looks at its own hooks before any predicate
             converter.register_structure_hook(kind, hook)
         else:
-            converter.register_structure_hook_func(_equal_to(kind), hook)
+            converter.register_structure_hook_func(partial(eq, kind), hook)
 
     def factory(cls: type) -> Callable[[object, object], object]:
         attrs.resolve_types(cls)

@@ -61,10 +61,6 @@ def _same(a: Any, b: Any, relative: float = 0.0) -> bool:
     return bool(a == b)
 
 
-def _no_results(form: Format) -> str:
-    return "" if of_results(type(form)) else "is of no results"
-
-
 class FormatSuite(Suite):
     """Duties of ``raceway.framework.contracts.Format``.
 
@@ -101,7 +97,7 @@ class FormatSuite(Suite):
 
     @duty(
         "of results: write(folder, result) returns the paths of its files, a second time too; the result is left untouched",
-        _no_results,
+        lambda form: "" if of_results(type(form)) else "is of no results",
     )
     def test_results(self, form: Format) -> None:
         before = _example_result().to_dict()

@@ -289,14 +289,9 @@ def _patch(mesh: HexMesh, name: str) -> dict[str, dict[str, float]]:
         0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)),
     ]
     area = mesh.facet_areas(name)
-    depth = _volumes(mesh, mesh.facets(name)[:, 0]) / area
+    depth = HexMesh(mesh.points, mesh.cells[mesh.facets(name)[:, 0]]).cell_volumes() / area
     values = {"short": np.minimum(*sides), "long": np.maximum(*sides), "depth": depth}
     return {word: {"min": float(v.min()), "max": float(v.max())} for word, v in values.items()}
-
-
-def _volumes(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
-    """(k,) volumes [m3] of some cells."""
-    return HexMesh(mesh.points, mesh.cells[cells]).cell_volumes()
 
 
 def _widest(patches: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]] | None:

@@ -394,7 +394,7 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
     Bifurcation Theory (1998), section 10.2.
     """
     specials = []
-    for kind, test in ((FOLD, _fold), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
+    for kind, test in ((FOLD, lambda point: float(point.tangent[-1])), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
         if test(start) * test(end) < 0.0:
             specials.append(_Special(kind, *located(branch, start, end, size, test)))
     before, after = _outside(start), _outside(end)
@@ -421,10 +421,6 @@ def located(branch: Branch, start: Point, end: Point, size: float, test: Test) -
 
     length = brentq(value, 0.0, size, xtol=_CLOSE * size, rtol=1e-12)
     return points[length], length
-
-
-def _fold(point: Point) -> float:
-    return float(point.tangent[-1])
 
 
 def _doubling(point: Point) -> float:
