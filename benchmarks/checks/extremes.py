@@ -150,7 +150,7 @@ def finished(raw: list[str], first: int = 0) -> Iterator[tuple[int, Tables, Resu
             if plan.predicted_steps > _STEPS or plan.predicted_work_s > _SECONDS:
                 continue
             yield seed - 1, tables, run(scene)
-        except RacewayError:
-            continue
+        except RacewayError as error:
+            raw += [f"scene {seed - 1}: {error}"] if {"nan", "nan,"} & set(str(error).split()) else []
         except Exception as error:
             raw.append(f"scene {seed - 1}: {error!r}")

@@ -127,9 +127,10 @@ def warm_plan(scene: Scene) -> ScenePlan:
     try:
         return plan_of(_at_row(scene, warmth.columns, 0))
     except SceneError as fault:
-        level = ", ".join(f"{node} at {warmth.temperatures[0, NODES.index(node)]:.4g} °C" for node in _FELT)
+        felt = zip(_FELT, warmth.temperatures[0, _FELT_NODES], strict=True)  # nan: nothing was solved at the start
+        level = "".join(f", {node} at {degrees:.4g} °C" for node, degrees in felt if np.isfinite(degrees))
         raise ConvergenceError(
-            f"the bearing cannot run at its steady temperatures, {level}: {fault.mistakes[0].message}. Remedies: more or colder oil (heat.oil_flow, "
+            f"the bearing cannot run at its steady temperatures{level}: {fault.mistakes[0].message}. Remedies: more or colder oil (heat.oil_flow, "
             "heat.oil_inlet_c), a wetted inner ring (heat.inner_wetting), a lower speed"
         ) from fault
 
