@@ -12,7 +12,7 @@ fmu                   exported FMUs against runs and kernels, a rotor on them, t
 points                time of a point of ``raceway.function``, and equality with runs
 quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
 app                   time from a change to its picture in the application, memory, numbers beside those of runs
-elastic_change        change of stiffness by elastic bodies: the estimate without a mesh against condensed ones
+uncertainty           elastic bodies without a mesh against condensed ones; default hypotheses inside the range of the others
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 
