@@ -82,8 +82,9 @@ def test_what_is_stated_is_no_spread():
     assert model["kyy"] == [_alone(model)[False], _alone(model)[True]] and 0.0 < model["kyy"][1] < model["bound"]
     assert "none" in _alone(_of(rw.Scene.from_dict(STATIC).to_dict())["model"])
     said["kinematics"]["ring_growth"] = False
-    error = _of(said)
-    assert error["model"] is None and "stated" in error["how"]["model"]
+    assert (error := _of(said))["model"] is None and "stated" in error["how"]["model"]
+    said["kinematics"]["spin_speed_rpm"] = 0.0  # without spin nothing changes
+    assert rw.run(said).stiffness.tobytes() == rw.run({**STATIC, "kinematics": {}}).stiffness.tobytes()
 
 
 @pytest.mark.parametrize(

@@ -249,7 +249,7 @@ def _extremes(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]]) -
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
-    """Upper estimate of the relative change of kyy by the hypotheses left at their defaults; None where there are none."""
+    """Upper estimate of the relative change of kyy by the hypotheses left open; None where there are none."""
     values, _ = _alternatives(model.problem, compiled(model.system) is not None)
     return _bound_of(model, equilibrium, values) if values else None
 
@@ -274,7 +274,7 @@ def column_bounds(example: Problem, bearing: ColumnBearing, force: np.ndarray) -
 
 
 def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list[Any]], str]:
-    """Values of the keys left at their defaults that the scene can run with, and what it cannot; a note where there are none."""
+    """Values of the keys left open that the scene can run with, and what it cannot; a note where there are none."""
     if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
     unstated = [key for key in _HYPOTHESES if getattr(problem.scene.kinematics, key) == "auto"]

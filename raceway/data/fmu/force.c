@@ -5,8 +5,7 @@
 /* Columns of at_rest and by_square: raceway.core.ring.kernels.layout's of a ball, then those of all balls. */
 enum { COSINE, SINE, CENTRIFUGAL, OUTER_SHARE, OUTER_FACTOR, SIDE, LEVER, SHIFT, OWN_REST_AXIAL, OWN_REST_RADIAL, OWN_OFFSET_INNER,
        OWN_OFFSET_OUTER, OWN_TILT_ARM, REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM, DAMPING, CAGE, FRICTION, STICK,
-       SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER, TIME_CONSTANT,
-       TRACTION };
+       SHARE_INNER, SHARE_OUTER, BALL_OVER_PITCH, GYROSCOPIC, DIAMETER, TIME_CONSTANT, TRACTION };
 enum { X, Y, Z, TILT_Y, TILT_Z, SPEED, CAGE_ANGLE };
 
 typedef struct { double a, r; } Vector;
@@ -79,43 +78,25 @@ static double moment(Vector i, Vector o, double size, double *by_inner, double *
     return m;
 }
 
-/* Traction: asked / sqrt(1 + (asked / (TRACTION force))^2), with its derivatives. */
-static double traction(double asked, double force, double *by_asked, double *by_force)
+/* What is carried of what is asked, of most at most: smoothly with TRACTION, else all of it; with its derivatives. */
+static double carry(double asked, double most, double *by_asked, double *by_most)
 {
-    double limit = at_rest[0][TRACTION], size = hypot(asked, limit * force), a = size > 0.0 ? asked / size : 0.0, m = size > 0.0 ? limit * force / size : 0.0;
-    *by_asked = m * m * m;
-    *by_force = limit * a * a * a;
-    return limit * force * a;
+    double limit = at_rest[0][TRACTION], size = limit > 0.0 ? hypot(asked, most) : fmax(fabs(asked), most), a = size > 0.0 ? asked / size : 0.0, m = size > 0.0 ? most / size : 0.0;
+    *by_asked = limit > 0.0 ? m * m * m : m == 1.0;
+    *by_most = limit > 0.0 ? a * a * a : m < 1.0 ? a : 0.0;
+    return size * a * m;
 }
-
 static void add_moment(double size, Contact *inner, Contact *outer)
 {
-    double by_i, by_o, m = moment(inner->n, outer->n, size, &by_i, &by_o), diameter = at_rest[0][DIAMETER];
-    double share_i = at_rest[0][SHARE_INNER] / diameter, share_o = at_rest[0][SHARE_OUTER] / diameter, carried = share_i * m, rest = share_o * m;
-    if (at_rest[0][TRACTION] > 0.0) {
-        double i_asked, i_force, o_asked, o_force;
-        carried = traction(carried, inner->force, &i_asked, &i_force);
-        rest = traction(2.0 / diameter * m - carried, outer->force, &o_asked, &o_force);
-        share_i *= i_asked;
-        share_o = o_asked * (2.0 / diameter - share_i);
-        inner->by_length = -i_force * inner->stiffness;
-        outer->by_length = -o_force * outer->stiffness;
-        outer->by_inner = o_asked * i_force * inner->stiffness;
-    } else if (fabs(carried) > inner->force) { /* no more than the normal force; the outer race carries the rest */
-        double sign = m > 0.0 ? 1.0 : -1.0;
-        carried = sign * inner->force;
-        inner->by_length = -sign * inner->stiffness;
-        outer->by_inner = sign * inner->stiffness;
-        share_i = 0.0;
-        share_o = 2.0 / diameter;
-        rest = share_o * m - carried;
-    }
-    inner->h = -carried;
-    outer->h = -rest;
-    inner->by_angle = -share_i * by_i;
-    inner->by_other = -share_i * by_o;
-    outer->by_angle = -share_o * by_o;
-    outer->by_other = -share_o * by_i;
+    double limit = at_rest[0][TRACTION], diameter = at_rest[0][DIAMETER], part = limit > 0.0 ? limit : 1.0; /* inside no more than the normal force */
+    double by_i, by_o, m = moment(inner->n, outer->n, size, &by_i, &by_o), share = at_rest[0][SHARE_INNER] / diameter, rest = 2.0 / diameter, ai, fi, ao, fo;
+    inner->h = -carry(share * m, part * inner->force, &ai, &fi);
+    outer->h = -carry(rest * m + inner->h, limit > 0.0 ? limit * outer->force : 1e300, &ao, &fo);
+    inner->by_length = -part * fi * inner->stiffness;
+    outer->by_length = -part * fo * outer->stiffness;
+    outer->by_inner = ao * part * fi * inner->stiffness;
+    inner->by_angle = -share * ai * by_i, inner->by_other = -share * ai * by_o;
+    outer->by_angle = -ao * (rest - share * ai) * by_o, outer->by_other = -ao * (rest - share * ai) * by_i;
 }
 
 static Contact contact(int number, Vector x, double offset, Vector otherwise)
