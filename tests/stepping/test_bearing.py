@@ -89,7 +89,9 @@ def test_two_halves_are_the_whole(kind):
         for name in ("time", "displacement", "force", "ball", "contact_force", "velocity")[
             : 5 if loops is system and not method.inertial else 6
         ]:
-            assert (np.concatenate([getattr(first, name), getattr(second, name)]) == getattr(whole, name)).all(), name
+            a, b = np.concatenate([getattr(first, name), getattr(second, name)]), getattr(whole, name)
+            # Iterations end at 1e-9 of the forces, and a second half may need one more or one less; velocities are over a step.
+            assert np.abs(a - b).max() <= (1e-8 if method.implicit else 0.0) * np.abs(b).max(), name
 
 
 def test_step_above_the_stable_limit_is_refused_with_the_limit():
