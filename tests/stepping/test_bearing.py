@@ -80,7 +80,7 @@ def test_loops_conform(method):
 
 
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
-def test_two_halves_are_the_whole(kind):
+def test_two_halves_are_the_whole(kind):  # iterations end at 1e-9 of the forces; velocities are over a step
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
     half = attrs.evolve(schedule, steps_per_turn=20)
     for loops in (system, _SteppedBearing(system)):
@@ -90,7 +90,6 @@ def test_two_halves_are_the_whole(kind):
             : 5 if loops is system and not method.inertial else 6
         ]:
             a, b = np.concatenate([getattr(first, name), getattr(second, name)]), getattr(whole, name)
-            # Iterations end at 1e-9 of the forces, and a second half may need one more or one less; velocities are over a step.
             assert np.abs(a - b).max() <= (1e-8 if method.implicit else 0.0) * np.abs(b).max(), name
 
 
