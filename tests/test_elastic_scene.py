@@ -33,9 +33,8 @@ TINY = {
 }  # fmt: skip
 #: 15 000 r/min: a turn of 4 ms.  QUICK: a turn of 6 us, some 430 explicit steps; balls without centrifugal force.
 EXCITED = {"excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0}}
-
-
-QUICK = {"excitation": {**EXCITED["excitation"], "speed_rpm": 1e7}, "kinematics": {"ball_inertia": False}}
+QUIET = {"ball_inertia": False, "ring_growth": False}
+QUICK = {"excitation": {**EXCITED["excitation"], "speed_rpm": 1e7}, "kinematics": QUIET}
 
 
 def scene(**tables):

@@ -46,7 +46,7 @@ def test_rows_are_in_order_and_kept_ones_are_not_computed_again(executor, tmp_pa
 def test_what_takes_its_process_down_is_told_and_tried_again_next_time(tmp_path):
     executor = Processes(workers=1)
     with (
-        pytest.raises(RacewayError, match=r"number 3: its process died \(EXIT\(11\)\).*finished points are stored"),
+        pytest.raises(RacewayError, match=r"number 3: its process died \(EXIT\(11\)\).*run the command again"),
         written(tmp_path) as store,
     ):
         work_through(deadly, ITEMS, store, executor, REGISTRY)

@@ -22,7 +22,8 @@ FREE: dict[str, Any] = {
 }  # fmt: skip
 #: At spindle speed the balls' centrifugal force is the outer race's.
 FAST: dict[str, Any] = {
-    "title": "fast", "bearing": {"preset": "B7206C"}, "load": {"axial": 100.0}, "kinematics": {"spin_speed_rpm": 30000.0}
+    "title": "fast", "bearing": {"preset": "B7206C"}, "load": {"axial": 100.0},
+    "kinematics": {"spin_speed_rpm": 30000.0, "gyroscopic": "none", "ring_growth": False},
 }  # fmt: skip
 EXCITED = {"kind": "bidirectional", "speed_rpm": 3000.0, "unbalance": 1e-5}
 #: What every study must call by these names.

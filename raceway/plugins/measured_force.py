@@ -154,7 +154,8 @@ def _parse(path: str, _time: int, _size: int) -> tuple[np.ndarray, dict[str, np.
 def _judge(header: list[str]) -> None:
     if "t" not in header or not set(header) & set(_COLUMNS):
         raise ValueError(f"the first line must name t and some of {', '.join(_COLUMNS)}, not {header}")
+    # A second column of a name is called by its number as well.
+    if twice := [name for name in _COLUMNS if any(f"{name} {k + 1}" == word for k, word in enumerate(header))]:
+        raise ValueError(f"columns {', '.join(twice)} are duplicated")
     if unknown := [word for word in header if word not in (*_COLUMNS, "t")]:
         raise ValueError(f"unknown columns {', '.join(unknown)}; known: t, {', '.join(_COLUMNS)}")
-    if twice := sorted({word for word in header if header.count(word) > 1}):
-        raise ValueError(f"columns {', '.join(twice)} are duplicated")

@@ -88,7 +88,7 @@ GOOD = "\n".join(f"{k * 1e-4:.6f},{k % 3}.5" for k in range(12))
         ("", "is empty: a header line and samples are needed"),
         ("time,Fy\n" + GOOD, "the first line must name t"),
         ("t,force\n" + GOOD, "the first line must name t and some of Fx"),
-        ("t,Fy,Fq\n" + GOOD, "unknown columns Fq"),
+        ("t,Fy,Fq\n" + GOOD, "no numbers stand under 'Fq' of line 1"),
         ("t,Fy\n0,1\n1e-4,1\n", "2 samples; at least 8"),
         ("t,Fy\n" + GOOD.replace("2.5", "two"), "line 4: 2 numbers are needed, found '0.000200,two'"),
         ("t,Fy\n" + GOOD.replace("2.5", "nan"), "line 4: a sample is missing (0.000200,nan)"),
