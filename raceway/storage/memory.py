@@ -1,4 +1,4 @@
-"""Memory that this process may take, and what of it is left, as the system tells."""
+"""Memory that this process may take, and what of it is left, as the system says."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _V2 = ("memory.max", "memory.current", "inactive_file")
 
 
 def allowed_bytes() -> float:
-    """The machine's, its container's or the process's own limit [B]; inf where the system does not tell."""
+    """The machine's, its container's or the process's own limit [B]; inf where the system does not say."""
     machine, (own, resident) = _machine("MemTotal"), _own()
     return min(machine, *(limit for limit, _ in _groups()), own - resident)
 
