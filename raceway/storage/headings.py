@@ -121,8 +121,8 @@ def heading_of(path: Path, encoding: str) -> Heading:
     names, units, line = _names(lines, above, sign, fields, most)
     texts = [k for k in range(most) if k not in fields and any(words[k : k + 1] > [""] for words in rows)]
     notes = tuple(f"the text of '{_name(names, units, k)}' is left out" for k in texts)
-    if bare := [name for name in names[most:] if name and line is not None]:
-        notes = (*notes, f"no numbers stand under '{', '.join(bare)}' of line {line + 1}")
+    if line is not None and any(bare := names[most:]):
+        notes = (*notes, f"no numbers stand under '{', '.join(filter(None, bare))}' of line {line + 1}")
     picked = None if sign != " " and fields == tuple(range(most)) else fields
     header = [_name(names, units, k) for k in fields]
     heading = Heading(header, (first if line is None else line) + 1, first, sign, picked, most, notes)

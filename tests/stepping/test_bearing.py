@@ -80,7 +80,7 @@ def test_loops_conform(method):
 
 
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])
-def test_two_halves_are_the_whole(kind):  # iterations end at a share of the largest excitation so far, which a restart forgets
+def test_two_halves_are_the_whole(kind):  # tolerance: a share of the largest force so far, unknown to a restart
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
     half = attrs.evolve(schedule, steps_per_turn=20)
     for loops in (system, _SteppedBearing(system)):
