@@ -62,16 +62,21 @@ def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
 @cache
 def _growth(b: Bearing, depth: Number) -> Number:
     """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
-    if has_columns(b):
-        rows = (at_row(b, point) for point in range(length(b)))
-        return np.array([_growth.__wrapped__(row, groove_depth(row)) for row in rows])
     young, poisson = b.rings.young, b.rings.poisson
-    if b.width is not None:
-        from raceway.core.mesh.ring_mesh import RingSection
+    if b.width is None:
+        bore, land = 0.5 * (b.bore or 0.0), 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
+        return land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2)
+    from raceway.core.mesh.ring_mesh import RingSection
 
+    if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)
-    bore, land = 0.5 * (b.bore or 0.0), 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
-    return float(land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2))
+    # Of all columns it depends on these; points often share them.
+    numbers = b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle, depth, young, poisson
+    columns = np.stack(np.broadcast_arrays(*numbers, np.zeros(length(b))))
+    _, points, index = np.unique(columns, axis=1, return_index=True, return_inverse=True)
+    rows = [at_row(b, point) for point in points]
+    each = [RingSection.of(row, groove_depth(row)).growth(row.rings.young, row.rings.poisson) for row in rows]
+    return np.array(each)[index.ravel()]
 
 
 def groove_depth(bearing: Bearing) -> float:
