@@ -61,7 +61,7 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
         options differ are then built at once, else once for each value.
     12. ``line_contact`` = True says that it is a law of line contacts, of rollers: ``pairs.length`` is their length.
     13. ``hertzian`` = True says that the resultant of a point contact is Hertz's, ``hertz_factor`` times the approach to the 1.5: what
-       the calibration of elastic bodies leaves is then an error of the numbers, else of the law.
+        the calibration of elastic bodies leaves is then an error of the numbers, else of the law.
     """
 
     name: ClassVar[str]

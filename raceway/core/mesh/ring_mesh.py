@@ -234,7 +234,9 @@ class RingSection:
         elastic[:3, :3] += lame
         weight = self.r * self.area
         stress = np.matmul(elastic, strain)
-        stiffness = (strain * weight).reshape(len(strain), -1) @ stress.reshape(len(strain), -1).T
+        # In parts of a size that libraries of linear algebra give one thread: two wait for each other longer than they compute.
+        left, right = (part.reshape(len(strain), -1, 3 * _ACROSS) for part in (strain * weight, stress))
+        stiffness = (left.transpose(1, 0, 2) @ right.transpose(1, 2, 0)).sum(axis=0)
         work = np.zeros(len(strain))
         work[: len(powers)] = [(r[0][i] * x[0][j] * self.r) @ weight for i, j in powers]
         amount = np.linalg.solve(stiffness, work)[: len(powers)]
