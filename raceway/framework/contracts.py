@@ -22,19 +22,12 @@ if TYPE_CHECKING:
     import click
     import numpy as np
 
-    from raceway.bodies.model import Bearing as BuiltBearing
-    from raceway.bodies.model import Equilibrium, Model
     from raceway.core.jit import Kernel
     from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.record import Record
     from raceway.core.signals import Identification
     from raceway.core.time.schemes import Scheme
     from raceway.errors import Mistake
-    from raceway.out.quantities import Quantity
-    from raceway.planning.parts import Balls, Decisions, Motion
-    from raceway.planning.plan import ScenePlan
-    from raceway.planning.resolve import Problem
-    from raceway.scene.bearing import Bearing
 
 
 class ContactLaw(attrs.AttrsInstance, Protocol):
@@ -247,6 +240,32 @@ class Identifier(attrs.AttrsInstance, Protocol):
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification: ...
 
 
+class Equilibrium(Protocol):
+    """The static state as identifiers see it: of the ring displacement (5,) [m, rad] and tangent stiffness (5, 5), of the balls (Z, 2) [m]."""
+
+    @property
+    def displacement(self) -> np.ndarray: ...
+    @property
+    def stiffness(self) -> np.ndarray: ...
+    @property
+    def stiffness_rows_held(self) -> np.ndarray: ...
+    @property
+    def ball(self) -> np.ndarray: ...
+
+
+class Model(Protocol):
+    """What moved, as identifiers see it: the scene, its excitation, the system that was integrated, the mass of K = Re Z + m w^2 [kg]."""
+
+    @property
+    def scene(self) -> Any: ...
+    @property
+    def excitation(self) -> Any: ...
+    @property
+    def system(self) -> Any: ...
+    @property
+    def mass_used(self) -> float: ...
+
+
 class Mesher(attrs.AttrsInstance, Protocol):
     """Bodies to hexahedra.
 
@@ -260,11 +279,12 @@ class Mesher(attrs.AttrsInstance, Protocol):
     5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
        ``raceway.core.mesh.quality.Prediction``; None: unknown); what cannot be meshed raises ``MeshError`` here
        already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
+    6. May be left out: ``swept`` = True says that rings are swept from their sections, in as many equal sectors as there are balls.
     """
 
     name: ClassVar[str]
 
-    def mesh(self, bearing: Bearing) -> Mapping[str, HexMesh]: ...
+    def mesh(self, bearing: Any) -> Mapping[str, HexMesh]: ...
 
 
 class Format(attrs.AttrsInstance, Protocol):
@@ -288,13 +308,51 @@ class Format(attrs.AttrsInstance, Protocol):
 _T = TypeVar("_T")
 
 
+class Problem(Protocol):
+    """What is computed as quantities see it: tables of the scene by their names, and what follows from them.
+
+    Where ``points`` is (n,) numbers are columns of n operating points; ``spin_speed`` [rad/s] is the inner ring's, ``ratings`` are each row's.
+    """
+
+    @property
+    def scene(self) -> Any: ...
+    @property
+    def bearing(self) -> Any: ...
+    @property
+    def bodies(self) -> Any: ...
+    @property
+    def mesh(self) -> Any: ...
+    @property
+    def load(self) -> Any: ...
+    @property
+    def contact(self) -> Any: ...
+    @property
+    def excitation(self) -> Any: ...
+    @property
+    def kinematics(self) -> Any: ...
+    @property
+    def lubricant(self) -> Any: ...
+    @property
+    def heat(self) -> Any: ...
+    @property
+    def quantities(self) -> Any: ...
+    @property
+    def points(self) -> tuple[int, ...]: ...
+    @property
+    def spin_speed(self) -> Any: ...
+    @property
+    def ratings(self) -> tuple[Any, ...]: ...
+    @property
+    def traits(self) -> Traits: ...
+
+
 @attrs.frozen(eq=False, slots=False)
 class SolvedPoints:
     """n solved operating points as quantities see them; Z balls of all rows; race 0 is the inner, 1 the outer one.
 
     Attributes
     ----------
-    problem : of ``raceway.planning.resolve``: its continuous numbers are scalars, or columns (n,)
+    problem : its continuous numbers are scalars, or columns (n,)
     row : (Z,) row of each ball;  side : (Z,) +1 where its outer race takes an axial force along +x, else -1
     speed : (n,) of the shaft [rad/s]
     load : (n, 2, Z) contact forces under the constant loads [N], 0 where a contact is open
@@ -366,7 +424,7 @@ class Quantities(attrs.AttrsInstance, Protocol):
     """
 
     name: ClassVar[str]
-    numbers: ClassVar[tuple[Quantity, ...]]
+    numbers: ClassVar[tuple[Any, ...]]
 
     def why_not(self, problem: Problem) -> str: ...
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]: ...
@@ -492,16 +550,17 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
         overrides ``build`` gives its own, as traits of laws, integrators and identifiers are said anew where a duty is overridden.
     12. May be left out, beside it: ``why_no_columns(problem, key)``: why ``key``, or with None anything, can be no column, in words;
         empty where it can.
+    13. May be left out: ``rollers`` = True says that these bodies roll on rollers: screens call them so, else balls.
     """
 
     name: ClassVar[str]
 
-    def faults(self, problem: Problem) -> list[Mistake]: ...
-    def traits(self, problem: Problem) -> Traits: ...
-    def stable_step(self, problem: Problem) -> float | None: ...
-    def decide(self, problem: Problem, parts: Decisions) -> None: ...
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost: ...
-    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing: ...
+    def faults(self, problem: Any) -> list[Mistake]: ...
+    def traits(self, problem: Any) -> Traits: ...
+    def stable_step(self, problem: Any) -> float | None: ...
+    def decide(self, problem: Any, parts: Any) -> None: ...
+    def cost(self, problem: Any, balls: Any, motion: Any, parts: Any) -> Cost: ...
+    def build(self, problem: Any, plan: Any) -> Any: ...
 
 
 class Study(attrs.AttrsInstance, Protocol):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
 
@@ -16,15 +16,9 @@ from raceway.framework.sources import blamed
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.bodies.columns import ColumnBearing
-    from raceway.bodies.model import Bearing
     from raceway.errors import Mistake
-    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Quantities, SolvedPoints
+    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Problem, Quantities, SolvedPoints
     from raceway.framework.shown import Fact
-    from raceway.planning.parts import Balls, Decisions, Motion
-    from raceway.planning.plan import ScenePlan
-    from raceway.planning.resolve import Problem
-    from raceway.scene.scene import SceneTables
     from raceway.storage.tables import ReadTables, Tables
 
 T = TypeVar("T")
@@ -56,16 +50,16 @@ class BodyKind:
     def stable_step(self) -> float | None:
         return _answer(self._name, "stable_step", lambda: self._plugin.stable_step(self._problem), float, type(None))
 
-    def decide(self, parts: Decisions) -> None:
+    def decide(self, parts: Any) -> None:
         _answer(self._name, "decide", lambda: self._plugin.decide(self._problem, parts), type(None))
 
-    def cost(self, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, balls: Any, motion: Any, parts: Any) -> Cost:
         return _answer(self._name, "cost", lambda: self._plugin.cost(self._problem, balls, motion, parts), Cost)
 
-    def build(self, plan: ScenePlan) -> Bearing:
+    def build(self, plan: Any) -> Any:
         return _answer(self._name, "build", lambda: self._plugin.build(self._problem, plan), object)
 
-    def columns(self, plan: ScenePlan) -> ColumnBearing:
+    def columns(self, plan: Any) -> Any:
         return _answer(self._name, "columns", lambda: self._plugin.columns(self._problem, plan), object)
 
     def why_no_columns(self, key: str | None = None) -> str:
@@ -83,7 +77,7 @@ class BodyKind:
         return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._problem, changed), object))
 
 
-def unused_with_bodies(tables: SceneTables) -> list[tuple[str, str]]:
+def unused_with_bodies(tables: Any) -> list[tuple[str, str]]:
     """(key, reason) for each key of a scene that changes nothing with its kind of bodies, or ``PluginError``; none unless it says so."""
     if not hasattr(tables.bodies, "unused"):
         return []
@@ -170,9 +164,10 @@ renews, line_contact, is_constraint, is_foundation, _is_elementwise = map(
     _says, ("renewed", "line_contact", "constraint", "foundation", "elementwise")
 )
 is_hertzian = _says("hertzian", "build", "kernel")
-#: Of formats, integrators, identifiers and bodies.
-of_results, finds_orbit = _says("of_results"), _says("orbit", "scheme")
+#: Of meshers, formats, integrators, identifiers and bodies.
+is_swept, of_results, finds_orbit = _says("swept", "mesh"), _says("of_results"), _says("orbit", "scheme")
 is_synchronous, gives_columns = _says("synchronous", "identify"), _says("columns", "build")
+has_rollers = _says("rollers", "build")
 
 
 def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair") -> np.ndarray:

@@ -25,9 +25,8 @@ from raceway.out.quantities import Quantity
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.framework.contracts import SolvedPoints
+    from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.framework.shown import Fact
-    from raceway.planning.resolve import Problem
     from raceway.storage.tables import ReadTables, Tables
 
 

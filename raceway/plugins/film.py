@@ -23,8 +23,7 @@ if TYPE_CHECKING:
 
     from raceway.core.columns import Number
     from raceway.core.contact.film import Film
-    from raceway.framework.contracts import SolvedPoints
-    from raceway.planning.resolve import Problem
+    from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.storage.tables import ReadTables, Tables
 
 

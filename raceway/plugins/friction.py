@@ -24,9 +24,8 @@ if TYPE_CHECKING:
 
     from raceway.core.columns import Number
     from raceway.core.rolling_friction import BallContacts, Losses
-    from raceway.framework.contracts import SolvedPoints
+    from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.framework.shown import Fact
-    from raceway.planning.resolve import Problem
     from raceway.storage.tables import ReadTables, Tables
 
 #: Sources of friction, as results name them, and what they are.

@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 
     from raceway.core.columns import Number
     from raceway.core.thermal import Network
-    from raceway.framework.contracts import SolvedPoints
+    from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.framework.shown import Fact
-    from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
     from raceway.storage.tables import ReadTables, Tables
 

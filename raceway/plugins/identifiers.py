@@ -13,9 +13,9 @@ from raceway.framework.options import between, option, worded
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.bodies.model import Equilibrium, Model
     from raceway.core.record import Record
     from raceway.core.signals import Identification
+    from raceway.framework.contracts import Equilibrium, Model
 
 
 def whole_turns(record: Record) -> Record:

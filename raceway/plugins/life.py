@@ -41,8 +41,7 @@ from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
     from raceway.core.columns import Number
-    from raceway.framework.contracts import SolvedPoints
-    from raceway.planning.resolve import Problem
+    from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.scene.ratings import LoadRatings
     from raceway.storage.tables import ReadTables, Tables
 

@@ -11,10 +11,10 @@ from raceway.framework.options import between, option
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.bodies.model import Equilibrium, Model
     from raceway.core.record import Record
     from raceway.core.ring.ring import Ring
     from raceway.core.signals import Identification
+    from raceway.framework.contracts import Equilibrium, Model
 
 
 @attrs.frozen
